@@ -9,9 +9,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.report.answers import Asked, judge
-from runner.report.sweep.question import ask
-from runner.report.sweep.subject import Subject
+from runner.reporting.answers import Asked, judge
+from runner.reporting.sweep.question import ask
+from runner.reporting.sweep.subject import Subject
 from runner.statistics import compare_paired
 from runner.sweeps.measurements import Axis, Measurements
 

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from runner.api.again import Signals
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import labelled
-from runner.report.charts.figure import Panel, Series
-from runner.report.charts.stills import as_figure, draw
+from runner.reporting.charts.figure import Panel, Series
+from runner.reporting.charts.stills import as_figure, draw
 
 _JOINT = re.compile(r"(q|dq|tau)(\d+)(_command)?")
 _AXIS = re.compile(r"(\w+)_([xyz])")
@@ -29,7 +29,7 @@ _BESIDE = {"tip": "desired"}  # what is drawn dashed beside a signal
 
 @dataclass(frozen=True)
 class _Curves:
-    """What is drawn; see runner.report.charts.figure.CurveFigure."""
+    """What is drawn; see runner.reporting.charts.figure.CurveFigure."""
 
     panels: Sequence[Panel]
     columns: int = 1

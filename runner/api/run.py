@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from runner.recordings.compare import RecordingComparison
-    from runner.report.key_metrics import KeyMetric
+    from runner.reporting.key_metrics import KeyMetric
     from runner.statistics.spec import Spec
 
 _IN_TEXT, _ON_PAGE = 1, 6
@@ -197,7 +197,7 @@ class Run:
         return ", ".join(str(part) for part in (config["robot"]["name"], *kinds))
 
     def _key_metrics(self, most: int) -> "Sequence[KeyMetric]":
-        from runner.report.key_metrics import key_metrics
+        from runner.reporting.key_metrics import key_metrics
 
         return key_metrics(self.stored, most)
 

@@ -167,9 +167,9 @@ class Sweep:
         """
         import pandas as pd
 
-        from runner.report.answers import Asked, judge
-        from runner.report.comparison.levels import levels
-        from runner.report.sweep.subject import first_screen, whole_metrics
+        from runner.reporting.answers import Asked, judge
+        from runner.reporting.comparison.levels import levels
+        from runner.reporting.sweep.subject import first_screen, whole_metrics
 
         inside = [within] if isinstance(within, str) else within
         compared = levels(self._measurements, axis, inside, metrics=self._names(metrics))
@@ -209,8 +209,8 @@ class Sweep:
 
     def _cells(self) -> str:
         """Return the first cells as a table, with the medians of the metrics that its report would compare."""
-        from runner.report.metric_titles import title
-        from runner.report.sweep.subject import choose
+        from runner.reporting.metric_titles import title
+        from runner.reporting.sweep.subject import choose
 
         runs = self._measurements
         subject = choose(runs)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from runner.base.texts import one_line
 
 if TYPE_CHECKING:
-    from runner.report.answers import Answer
+    from runner.reporting.answers import Answer
 
 COMPARED = ("interval", "n", "effect", "p")
 """Columns of what `answer_cells` returns, between the difference and the word."""

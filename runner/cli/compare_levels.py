@@ -6,13 +6,13 @@ from pathlib import Path
 
 from runner.base.texts import one_line
 from runner.cli.columns import COMPARED, aligned, answer_cells
-from runner.report.answers import EXPLAINED, Asked, judge
-from runner.report.comparison.caveats import caveats_of
-from runner.report.comparison.cells import label_text
-from runner.report.comparison.levels import levels
-from runner.report.comparison.side import Side, open_side, stored_part
-from runner.report.comparison.words import NOISE_ALONE, counted, noise_alone
-from runner.report.sweep.subject import first_screen, whole_metrics
+from runner.reporting.answers import EXPLAINED, Asked, judge
+from runner.reporting.comparison.caveats import caveats_of
+from runner.reporting.comparison.cells import label_text
+from runner.reporting.comparison.levels import levels
+from runner.reporting.comparison.side import Side, open_side, stored_part
+from runner.reporting.comparison.words import NOISE_ALONE, counted, noise_alone
+from runner.reporting.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep
 from runner.sweeps.finer_step import work_out_sweep
 

@@ -26,8 +26,8 @@ def print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: flo
     from runner.base import progress
     from runner.base.progress.stages import READING, SOON, of_report
     from runner.recordings.compare import compare_recording
-    from runner.report.recording.report import recording_document, report_folder
-    from runner.report.render import write_report
+    from runner.reporting.recording.report import recording_document, report_folder
+    from runner.reporting.render import write_report
     from runner.store.latest import note
 
     progress.plan({READING: SOON, **of_report(("html", "pdf"))})

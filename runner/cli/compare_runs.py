@@ -8,7 +8,7 @@ from runner.base.texts import one_line
 from runner.cli.columns import COMPARED, aligned, answer_cells, letter, number
 
 if TYPE_CHECKING:
-    from runner.report.comparison.side import Side
+    from runner.reporting.comparison.side import Side
     from runner.store import Run
 
 # What a result may follow from beside its config; date, machine and command tell nothing about the physics.
@@ -35,9 +35,9 @@ def print_runs(runs: "Sequence[Run]", metrics: Sequence[str]) -> None:
 
 def _print_two(a: "Run", b: "Run", name: str, metrics: Sequence[str], end: str) -> None:
     from runner import store
-    from runner.report.comparison.beyond import beyond
-    from runner.report.comparison.cells import one_cell
-    from runner.report.comparison.side import side_of_run
+    from runner.reporting.comparison.beyond import beyond
+    from runner.reporting.comparison.cells import one_cell
+    from runner.reporting.comparison.side import side_of_run
     from runner.sweeps.finer_step import work_out
 
     for run in (a, b):
@@ -104,11 +104,11 @@ def _metric_rows(a: "Run", b: "Run", metrics: Sequence[str]) -> Iterator[list[st
 
 def _paired(a: "Side", b: "Side", metrics: Sequence[str]) -> str:
     """Return the comparison of two runs on the same seeds, repetition by repetition, or why there is none."""
-    from runner.report.answers import EXPLAINED, Asked, judge
-    from runner.report.comparison.cells import one_cell
-    from runner.report.comparison.pairs import compare, share_seeds
-    from runner.report.comparison.words import NOISE_ALONE, noise_alone
-    from runner.report.sweep.subject import first_screen, whole_metrics
+    from runner.reporting.answers import EXPLAINED, Asked, judge
+    from runner.reporting.comparison.cells import one_cell
+    from runner.reporting.comparison.pairs import compare, share_seeds
+    from runner.reporting.comparison.words import NOISE_ALONE, noise_alone
+    from runner.reporting.sweep.subject import first_screen, whole_metrics
     from runner.statistics import SMALLEST_SAMPLE
 
     one, other = a.measurements, b.measurements

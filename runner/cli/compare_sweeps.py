@@ -6,15 +6,15 @@ from pathlib import Path
 
 from runner.base.texts import one_line
 from runner.cli.columns import COMPARED, aligned, answer_cells, letter, number
-from runner.report.answers import EXPLAINED, Asked, judge
-from runner.report.comparison.beyond import Beyond, Value
-from runner.report.comparison.caveats import SideCaveat, caveats_of
-from runner.report.comparison.cells import label_text
-from runner.report.comparison.side import open_side, stored_part
-from runner.report.comparison.summary import cells_told, size_told
-from runner.report.comparison.sweeps import MetricComparison, SweepComparison, compare_sweeps
-from runner.report.comparison.words import NOISE_ALONE, POOLED
-from runner.report.sweep.subject import first_screen, whole_metrics
+from runner.reporting.answers import EXPLAINED, Asked, judge
+from runner.reporting.comparison.beyond import Beyond, Value
+from runner.reporting.comparison.caveats import SideCaveat, caveats_of
+from runner.reporting.comparison.cells import label_text
+from runner.reporting.comparison.side import open_side, stored_part
+from runner.reporting.comparison.summary import cells_told, size_told
+from runner.reporting.comparison.sweeps import MetricComparison, SweepComparison, compare_sweeps
+from runner.reporting.comparison.words import NOISE_ALONE, POOLED
+from runner.reporting.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep
 from runner.sweeps.finer_step import work_out_sweep
 

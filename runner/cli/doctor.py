@@ -43,8 +43,8 @@ def main(arguments: Sequence[str]) -> int:
     for finding in found.findings:
         print(one_line(str(finding)))
     if options.html is not None:
-        from runner.report.doctor_report import doctor_document
-        from runner.report.render import write_report
+        from runner.reporting.doctor_report import doctor_document
+        from runner.reporting.render import write_report
 
         write_report(doctor_document(found), options.html, ("html",))
         print(options.html)

@@ -42,7 +42,7 @@ def tell_run(run: "Run", made: bool, thresholds: Any) -> int:
 def _tell_metrics(run: "Run", made: bool) -> None:
     """Print what was run, where it is, and the metrics that say most of it."""
     from runner.cli.columns import aligned
-    from runner.report.key_metrics import key_metrics
+    from runner.reporting.key_metrics import key_metrics
 
     config, count = run.config, run.record["repetitions"]
     what = ", ".join(str(config[group][key]) for group, key in _NAMES)
@@ -59,7 +59,7 @@ def _tell_spec(run: "Run") -> None:
     if run.spec is None:
         return
     from runner.cli.columns import aligned
-    from runner.report.spec_words import HEADER, lacking_text, spec_rows
+    from runner.reporting.spec_words import HEADER, lacking_text, spec_rows
 
     print(aligned([HEADER, *spec_rows(run.spec)]), file=sys.stderr)
     lacking = lacking_text(run.spec, run.metrics)
@@ -104,8 +104,8 @@ def tell_sweep(ended: "Ended") -> int:
 def _tell_cells(ended: "Ended") -> None:
     """Print how many runs were made, what may be said of them, and what may be typed next."""
     from runner import store
-    from runner.report.sweep.question import in_short
-    from runner.report.sweep.subject import choose
+    from runner.reporting.sweep.question import in_short
+    from runner.reporting.sweep.subject import choose
     from runner.sweeps.finer_step import work_out_sweep
     from runner.sweeps.measurements import measure_sweep
 
@@ -119,7 +119,7 @@ def _tell_cells(ended: "Ended") -> None:
         subject = choose(measure_sweep(sweep))
         told = in_short(subject)
         if sweep.spec:
-            from runner.report.sweep.spec import summary  # imports what draws, which takes long
+            from runner.reporting.sweep.spec import summary  # imports what draws, which takes long
 
             kept = summary(subject, sweep)
     for line in filter(None, (text, told, kept)):

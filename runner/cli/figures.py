@@ -16,7 +16,7 @@ from runner.config.compose.user_settings import outputs_dir
 from runner.study.names import work_names
 
 if TYPE_CHECKING:
-    from runner.report.document import Document
+    from runner.reporting.document import Document
     from runner.store import Run
 
 _COLUMNS = {"single": 88.0, "double": 180.0}  # mm
@@ -46,8 +46,8 @@ def main(arguments: Sequence[str]) -> int:
     options = parser.parse_args(arguments)
     width = _millimetres(options.width)
     quiet_environment()
-    from runner.report.charts.sheet import column
-    from runner.report.export.figures import chosen, figures_of, write_figures
+    from runner.reporting.charts.sheet import column
+    from runner.reporting.export.figures import chosen, figures_of, write_figures
 
     document, report = _document(options.folder)
     figures = chosen(figures_of(document), options.only)

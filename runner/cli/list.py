@@ -12,7 +12,7 @@ from runner.cli.arguments import Parser
 from runner.config.compose.options import group_options
 
 if TYPE_CHECKING:
-    from runner.report.claims import PublishedClaim
+    from runner.reporting.claims import PublishedClaim
 
 _GROUPS = {
     "robots": "robot",
@@ -85,7 +85,7 @@ def _read_bullets(docstring: str) -> dict[str, str]:
 
 
 def _list_claims(_: Sequence[Path]) -> dict[str, str]:
-    from runner.report.claims import claimed, load_claims, load_statements, stated
+    from runner.reporting.claims import claimed, load_claims, load_statements, stated
 
     claims = {
         f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"

@@ -15,7 +15,7 @@ from runner.config.compose.user_settings import outputs_dir
 from runner.store.latest import note
 
 if TYPE_CHECKING:
-    from runner.report.document import Document
+    from runner.reporting.document import Document
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -52,7 +52,7 @@ def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str
         RunnerError: if a folder is none of these, or damaged; for an unknown metric or format.
     """
     progress.plan({READING: SOON, **of_report(formats)})
-    from runner.report.render import write_report
+    from runner.reporting.render import write_report
 
     document, folder = compose_report(folders, metrics)
     write_report(document, folder, formats)
@@ -90,7 +90,7 @@ def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> "tup
 
 def _of_runs(folders: Sequence[Path], _: Sequence[str], __: Path) -> "tuple[Document, str]":
     from runner import store
-    from runner.report.run_report import run_document
+    from runner.reporting.run_report import run_document
 
     progress.begin(READING)
     runs = [run for folder in folders for run in store.open_runs(folder)]
@@ -99,7 +99,7 @@ def _of_runs(folders: Sequence[Path], _: Sequence[str], __: Path) -> "tuple[Docu
 
 def _of_sweep(folders: Sequence[Path], metrics: Sequence[str], reports: Path) -> "tuple[Document, str]":
     from runner import store
-    from runner.report.sweep.report import sweep_document
+    from runner.reporting.sweep.report import sweep_document
 
     sweep = store.open_sweep(folders[0])
     address = os.path.relpath(sweep.outputs / "runs", reports / "any") + "/"
@@ -108,8 +108,8 @@ def _of_sweep(folders: Sequence[Path], metrics: Sequence[str], reports: Path) ->
 
 def _of_sweeps(folders: Sequence[Path], metrics: Sequence[str], _: Path) -> "tuple[Document, str]":
     from runner.cli.columns import letter
-    from runner.report.comparison.report import comparison_document
-    from runner.report.comparison.side import open_side
+    from runner.reporting.comparison.report import comparison_document
+    from runner.reporting.comparison.side import open_side
 
     sides = [open_side(letter(place), folder) for place, folder in enumerate(folders)]
     names = [folder.resolve().name for folder in folders]
@@ -117,7 +117,7 @@ def _of_sweeps(folders: Sequence[Path], metrics: Sequence[str], _: Path) -> "tup
 
 
 def _of_tuning(folders: Sequence[Path], _: Sequence[str], reports: Path) -> "tuple[Document, str]":
-    from runner.report.tuning.report import tuning_document
+    from runner.reporting.tuning.report import tuning_document
     from runner.sweeps.tuning.study import open_tuning
 
     return tuning_document(open_tuning(folders[0]), reports / "any"), folders[0].resolve().name

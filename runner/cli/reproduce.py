@@ -26,7 +26,7 @@ from runner.study.changes import FILE
 from runner.study.names import find_work, work_names
 
 if TYPE_CHECKING:
-    from runner.report.document import Document
+    from runner.reporting.document import Document
     from runner.store import Calibration, Run
     from runner.study.expected_caveats import ExpectedCaveat
     from runner.study.given import GivenPart
@@ -116,7 +116,7 @@ def _chosen(text: str, way: _Way) -> "list[Work | None]":
 
 def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
     from runner import store
-    from runner.report.render import write_report
+    from runner.reporting.render import write_report
     from runner.study.gains import write_gains
 
     name = AUDIT if work is None else work.name
@@ -163,7 +163,7 @@ def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
 
 def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
     """Make what a work needs, and its document."""
-    from runner.report.markup import literal
+    from runner.reporting.markup import literal
     from runner.study.check import formulas_at
     from runner.study.late_claims import late_claims
     from runner.study.making import make_all
@@ -185,7 +185,7 @@ def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
 def _audit(folder: Path) -> _Reproduced:
     """Judge the equations of all works; write their table, and return the report."""
     from runner.audit.audit import as_csv, audit_all
-    from runner.report.audit.report import audit_document
+    from runner.reporting.audit.report import audit_document
     from runner.store.atomic import write_atomically
 
     print("auditing the equations ...", file=sys.stderr)

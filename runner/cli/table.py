@@ -16,7 +16,7 @@ from runner.cli.arguments import Parser, stored
 if TYPE_CHECKING:
     from argparse import Namespace
 
-    from runner.report.export.paper_table import PaperTable
+    from runner.reporting.export.paper_table import PaperTable
     from runner.store import Sweep
     from runner.sweeps.measurements import Measurements
 
@@ -50,11 +50,11 @@ def main(arguments: Sequence[str]) -> int:
     if not (chosen or options.metrics or options.by or options.where):
         return _whole(options.folder, measurements)
     if chosen in ("markdown", "latex"):
-        from runner.report.export.paper_table import of_sweep
+        from runner.reporting.export.paper_table import of_sweep
 
         table = of_sweep(measurements, sweep.command, options.metrics, options.by, options.where)
         return _put(_for_paper(table, chosen), options.output)
-    from runner.report.export.tidy import as_csv, as_parquet, selection
+    from runner.reporting.export.tidy import as_csv, as_parquet, selection
 
     frame = selection(measurements, options.metrics, options.by, options.where)
     return _put(as_parquet(frame, measurements) if chosen == "parquet" else as_csv(frame), options.output)
@@ -125,22 +125,22 @@ def _of_run(options: "Namespace", chosen: str) -> int:
     if not run.metrics:
         raise RunnerError(f"the run has no metrics: it {run.failure_text}")
     if chosen in ("", "markdown", "latex"):
-        from runner.report.export.paper_table import of_run
+        from runner.reporting.export.paper_table import of_run
 
         _put(_for_paper(of_run(run, options.metrics), chosen or "markdown"), options.output)
         if not chosen:
             print(options.folder)
         return 0
-    from runner.report.export.paper_table import measured
-    from runner.report.export.tidy import as_csv, as_parquet, of_one
+    from runner.reporting.export.paper_table import measured
+    from runner.reporting.export.tidy import as_csv, as_parquet, of_one
 
     frame = of_one(measured(run), options.metrics)
     return _put(as_parquet(frame, measured(run)) if chosen == "parquet" else as_csv(frame), options.output)
 
 
 def _for_paper(table: "PaperTable", chosen: str) -> bytes:
-    from runner.report.export.latex import latex
-    from runner.report.export.markdown import markdown
+    from runner.reporting.export.latex import latex
+    from runner.reporting.export.markdown import markdown
 
     return (latex if chosen == "latex" else markdown)(table).encode("utf-8", errors="replace")
 

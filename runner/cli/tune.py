@@ -75,7 +75,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _tell(tuning: "Tuning") -> int:
-    from runner.report.answers import CHOSEN
+    from runner.reporting.answers import CHOSEN
     from runner.sweeps.tuning.study import at_ends
     from runner.sweeps.tuning.trial import best
 

@@ -14,11 +14,11 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.limits import CHAPTER, read_text
 from runner.base.progress.stages import CHAPTERS
-from runner.report.audit.report import rows
-from runner.report.claim import Claim
-from runner.report.claims import CLAIMS, FACTOR, Verdict, load_claims
-from runner.report.document import Equations, Origin, Section, Verdicts
-from runner.report.outline import numbered
+from runner.reporting.audit.report import rows
+from runner.reporting.claim import Claim
+from runner.reporting.claims import CLAIMS, FACTOR, Verdict, load_claims
+from runner.reporting.document import Equations, Origin, Section, Verdicts
+from runner.reporting.outline import numbered
 from runner.store import Calibration, Run
 from runner.study.about import About, Part
 from runner.study.claims import judged_claims, legend

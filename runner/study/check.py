@@ -5,8 +5,8 @@ from fnmatch import fnmatchcase
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import WORK_FILE
-from runner.report.document import Document
-from runner.report.formulas import faulty
+from runner.reporting.document import Document
+from runner.reporting.formulas import faulty
 from runner.store import Calibration, Run
 from runner.study.chapters import Chapters, chapter_text
 from runner.study.conclusions import fallen

@@ -11,8 +11,8 @@ from runner.base.expressions.evaluator import Budget, Scope
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.insertions import fill
 from runner.base.paths import works_dir
-from runner.report import outline
-from runner.report.document import Code, Formula, Items, Notice, Provenance, Section, Table, Text
+from runner.reporting import outline
+from runner.reporting.document import Code, Formula, Items, Notice, Provenance, Section, Table, Text
 from runner.schema.model import StrictModel
 
 _FILE = "checklist.yaml"

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 
-from runner.report.document import Block, Code, Section, Text
+from runner.reporting.document import Block, Code, Section, Text
 from runner.store import Run
 
 _SPECIAL = re.compile(r"[&%$#_{}~^\\]")

@@ -8,11 +8,11 @@ import numpy as np
 
 from runner.base.quantities import quantity, ranged, spread
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.report.claim import Claim, ClaimResult, EquationVerdict
-from runner.report.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
-from runner.report.claims.judging import Simulated, scaled, simulated_by, verdict_on
-from runner.report.figures import columns
-from runner.report.words import PLANT
+from runner.reporting.claim import Claim, ClaimResult, EquationVerdict
+from runner.reporting.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
+from runner.reporting.claims.judging import Simulated, scaled, simulated_by, verdict_on
+from runner.reporting.figures import columns
+from runner.reporting.words import PLANT
 from runner.store import Run
 from runner.study.job import MissingError
 from runner.study.run_values import median

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.report.claim import Claim
-from runner.report.document import Document, Equations, Verdicts
-from runner.report.outline import blocks
+from runner.reporting.claim import Claim
+from runner.reporting.document import Document, Equations, Verdicts
+from runner.reporting.outline import blocks
 from runner.store import Calibration, Run
 from runner.study.expected_caveats import ExpectedCaveat, caveats_as_data
 from runner.study.findings import findings

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Any
 
-from runner.report.document import Block, Notice, Section, Table, Text
-from runner.report.markup import literal
+from runner.reporting.document import Block, Notice, Section, Table, Text
+from runner.reporting.markup import literal
 from runner.store import Run
 from runner.study.job import distinct
 

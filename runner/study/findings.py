@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from runner.report.document import Document, Notice
-from runner.report.outline import chapters
+from runner.reporting.document import Document, Notice
+from runner.reporting.outline import chapters
 from runner.study.measured import Condition
 
 

@@ -8,9 +8,9 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import above_rounding, with_powers
-from runner.report.document import Block, Notice
-from runner.report.figures import columns
-from runner.report.words import in_words
+from runner.reporting.document import Block, Notice
+from runner.reporting.figures import columns
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.study.measured import Measured
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import check_inside
 from runner.plugins.discovery import use_plugins
-from runner.report.claims import CLAIMS, load_claims
+from runner.reporting.claims import CLAIMS, load_claims
 from runner.store import Calibration, Run
 from runner.study.about import read_about
 from runner.study.caveats import read_expected
@@ -26,7 +26,7 @@ from runner.study.profiles import Profile
 from runner.study.tunings import Tuning
 
 if TYPE_CHECKING:  # drawing comes with these
-    from runner.report.document import Cover, Document, Section
+    from runner.reporting.document import Cover, Document, Section
     from runner.study.chapters import Chapters
 
 Calibrations = Mapping[str, tuple[str, ...]]
@@ -192,7 +192,7 @@ class Work:
 
     def _by_profile(self, runs: Mapping[str, Run]) -> "Iterator[Section]":
         """Yield what the profile makes otherwise than the whole work; nothing where that is nothing."""
-        from runner.report.document import Section, Text
+        from runner.reporting.document import Section, Text
 
         dropped, repetitions = self.dropped(), self._profile.repetitions if self._profile else None
         if not (dropped or repetitions):
@@ -204,7 +204,7 @@ class Work:
 
     def _cover(self, runs: Mapping[str, Run]) -> "Cover | None":
         """Return the picture of the first screen; None where there is none, or its run was not made."""
-        from runner.report.cover import cover
+        from runner.reporting.cover import cover
 
         wanted = self.about.cover
         if wanted is None or wanted.run not in runs or runs[wanted.run].status == "failed":

@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from runner.report.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
-from runner.report.markup import literal, literals
-from runner.report.outline import numbered
-from runner.report.run_report import provenance
-from runner.report.tally import hanging
+from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
+from runner.reporting.markup import literal, literals
+from runner.reporting.outline import numbered
+from runner.reporting.run_report import provenance
+from runner.reporting.tally import hanging
 from runner.store import Calibration, Run
 from runner.study.checklist import Checklist
 from runner.study.citing import citing_section

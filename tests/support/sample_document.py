@@ -3,8 +3,8 @@
 import numpy as np
 
 from runner.base.expressions.parser import parse
-from runner.report.claim import Claim, ClaimResult
-from runner.report.document import (
+from runner.reporting.claim import Claim, ClaimResult
+from runner.reporting.document import (
     Body,
     Code,
     Curves,
@@ -29,7 +29,7 @@ from runner.report.document import (
     Text,
     Verdicts,
 )
-from runner.report.markup import linked, marked
+from runner.reporting.markup import linked, marked
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20" width="40" height="20"><path d="M0 0h40v20z"/></svg>'
 

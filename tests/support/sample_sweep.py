@@ -4,7 +4,7 @@ import itertools
 
 import numpy as np
 
-from runner.report.sweep.subject import Subject, choose
+from runner.reporting.sweep.subject import Subject, choose
 from runner.sweeps.measurements import Axis, Measurements
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from runner.report.document import Block, Curves, Notice, Section, Table, Text
+from runner.reporting.document import Block, Curves, Notice, Section, Table, Text
 from runner.store import Run
 
 FAILURE = {"reason": "diverged: for this test", "time": 0.01, "joint": "q1", "repetition": 0}

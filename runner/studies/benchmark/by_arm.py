@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.report.document import Section, Table, Text
-from runner.report.words import in_words
+from runner.reporting.document import Section, Table, Text
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED
 from runner.studies.benchmark.figures import any_origin, error_words

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import number
-from runner.report.document import Block, Section, Table, Text
-from runner.report.words import in_words
+from runner.reporting.document import Block, Section, Table, Text
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin, error_words, ratio

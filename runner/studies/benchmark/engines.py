@@ -6,9 +6,9 @@ import numpy as np
 from scipy import stats
 
 from runner.base.quantities import number
-from runner.report.document import Table
-from runner.report.figures import origin
-from runner.report.words import PLANT, in_words
+from runner.reporting.document import Table
+from runner.reporting.figures import origin
+from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import Cell, cells
 from runner.studies.benchmark.made import CONDITIONS

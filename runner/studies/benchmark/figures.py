@@ -6,10 +6,10 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity
-from runner.report.charts.figure import Map, Panel, Series
-from runner.report.document import Curves, Maps, Origin, Table, Text
-from runner.report.figures import origin
-from runner.report.words import in_words
+from runner.reporting.charts.figure import Map, Panel, Series
+from runner.reporting.document import Curves, Maps, Origin, Table, Text
+from runner.reporting.figures import origin
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, tuned
 from runner.studies.benchmark.leads import Entry, Lead

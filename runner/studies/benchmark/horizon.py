@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.report.document import Table
-from runner.report.words import in_words
+from runner.reporting.document import Table
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import ROUND, Cell
 from runner.studies.benchmark.figures import answer, any_origin, error_words

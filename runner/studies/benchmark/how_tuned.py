@@ -4,8 +4,8 @@ import itertools
 from collections.abc import Mapping
 
 from runner.base.quantities import number
-from runner.report.document import Table, Text
-from runner.report.words import in_words
+from runner.reporting.document import Table, Text
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.by_law import keys_of
 from runner.studies.benchmark.cells import UNTUNED, tuned

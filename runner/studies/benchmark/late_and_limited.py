@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.optimize import brentq
 
-from runner.report.charts.figure import Map
-from runner.report.document import Maps
-from runner.report.words import in_words
+from runner.reporting.charts.figure import Map
+from runner.reporting.document import Maps
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin, ratio, typical

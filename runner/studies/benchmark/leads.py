@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.report.answers import ALPHA, SHARE
+from runner.reporting.answers import ALPHA, SHARE
 from runner.statistics import Comparison, compare_paired, holm, holm_levels
 
 _LEAST = 1.0 / (1.0 - SHARE)  # ratio of errors; less is no lead

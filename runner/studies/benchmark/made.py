@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.report.answers import SHARE
-from runner.report.words import in_words
+from runner.reporting.answers import SHARE
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import ALL_SEEDS, ROUND, Cell, cells
 from runner.study.job import LeftOutError, Made

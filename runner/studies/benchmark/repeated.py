@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.base.quantities import quantity
-from runner.report.document import Table
-from runner.report.figures import origin
-from runner.report.words import in_words
+from runner.reporting.document import Table
+from runner.reporting.figures import origin
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.made import ARMS, CONDITIONS
 from runner.study.measured import Measured

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from runner.report.words import in_words
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED
 from runner.studies.benchmark.figures import ratio

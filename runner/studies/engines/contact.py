@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.report.figures import columns, joint_columns, model_of
+from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 
 _ALONG = 1  # the hammer's joint that hits, counted from 0

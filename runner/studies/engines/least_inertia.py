@@ -1,6 +1,6 @@
 """What the inertia that MuJoCo asks for does to accelerations."""
 
-from runner.report.figures import model_of
+from runner.reporting.figures import model_of
 from runner.store import Run
 from runner.studies.engines.side_by_side import difference, mujoco_of
 

@@ -8,7 +8,7 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.plants.bullet import Bullet
 from runner.plants.mujoco import Mujoco
-from runner.report.figures import model_of
+from runner.reporting.figures import model_of
 from runner.robots import RobotModel
 from runner.store import Run
 

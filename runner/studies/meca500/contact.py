@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.report.figures import columns
+from runner.reporting.figures import columns
 from runner.store import Run
 from runner.studies.meca500.figures import law_of, servo_compliance, wrenches
 

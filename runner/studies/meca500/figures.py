@@ -12,7 +12,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.quantities import number, quantity, with_powers
 from runner.controllers.force.admittance_filter import Admittance
-from runner.report.figures import AXES, columns, joint_columns, model_of
+from runner.reporting.figures import AXES, columns, joint_columns, model_of
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
 from runner.study.measured import ROUNDING, Measured

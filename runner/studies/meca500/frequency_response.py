@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.controllers.force.admittance_filter import AXES
-from runner.report.document import Panel, Series
+from runner.reporting.document import Panel, Series
 from runner.store import Run
 from runner.studies.meca500.admittance_response import ComplexArray, frequency_response, sampled_frequency_response
 from runner.studies.meca500.figures import Runs, displacement, law_of, loads_of, once, servo_compliance

@@ -8,8 +8,8 @@ from runner.base.quantities import number, quantity, with_interval
 from runner.calibration import identify_gravity
 from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
 from runner.calibration.procedures.gravity import even_postures
-from runner.report.document import Panel, Series, Table
-from runner.report.figures import joint_columns, origin
+from runner.reporting.document import Panel, Series, Table
+from runner.reporting.figures import joint_columns, origin
 from runner.robots import RobotModel
 from runner.store import Calibration
 from runner.studies.meca500.figures import Calibrations, Runs, degrees, error, flange_of, predicted, refusal, wrenches

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.report.figures import columns
+from runner.reporting.figures import columns
 from runner.store import Run
 
 _PEAK_OVER_MEAN = 1.875  # speed of a quintic from rest to rest

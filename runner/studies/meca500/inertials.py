@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.report.figures import joint_columns, model_of
+from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.meca500.figures import Runs
 from runner.study.measured import ROUNDING

@@ -12,8 +12,8 @@ from runner.audit.evaluation import evaluate
 from runner.audit.verdict import Judge, Judged
 from runner.base.expressions.parser import parse
 from runner.base.quantities import number
-from runner.report.document import Table
-from runner.report.figures import model_of
+from runner.reporting.document import Table
+from runner.reporting.figures import model_of
 from runner.robots.denavit_hartenberg import modified_frames
 from runner.robots.model import RobotModel
 from runner.studies.meca500.equations.truths.meca500 import TABLE

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from runner.report.document import Series
-from runner.report.figures import joint_columns, model_of
+from runner.reporting.document import Series
+from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.meca500.figures import Runs
 from runner.study.run_values import clock

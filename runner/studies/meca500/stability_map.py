@@ -12,8 +12,8 @@ from runner.config.validation import validate
 from runner.controllers.force.admittance_stability import stiffest_wall
 from runner.metrics.caveats.touch import servo_contact
 from runner.plants.servo_contact import ServoContact, contact_radius, stiffest_servo_wall
-from runner.report.document import Panel, Series
-from runner.report.figures import joint_columns
+from runner.reporting.document import Panel, Series
+from runner.reporting.figures import joint_columns
 from runner.store import Run
 from runner.studies.meca500.figures import Runs, bounces, law_of, once
 from runner.studies.meca500.plan import law

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from runner.audit.audit import audit
-from runner.report.claim import EquationVerdict
-from runner.report.claims import Verdict, load_statements
-from runner.report.document import Verdicts
+from runner.reporting.claim import EquationVerdict
+from runner.reporting.claims import Verdict, load_statements
+from runner.reporting.document import Verdicts
 from runner.study.chapters import Concluded
 from runner.study.claims import judged_statements
 

@@ -8,8 +8,8 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.controllers.force.admittance_filter import AXES
-from runner.report.document import Panel, Series
-from runner.report.figures import joint_columns, model_of
+from runner.reporting.document import Panel, Series
+from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.meca500.admittance_response import step_response
 from runner.studies.meca500.figures import Runs, added_inertia, displacement, law_of, loads_of, once, servo_compliance

@@ -5,7 +5,7 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.calibration import consistency, identify_tool_centre_point, joint_deviation, pose_covariances
-from runner.report.document import Table
+from runner.reporting.document import Table
 from runner.sensing.wrench import cross_matrix
 from runner.store import Calibration
 from runner.studies.meca500.figures import Calibrations, fit, flange_of, predicted, refusal

@@ -6,8 +6,8 @@ from scipy.linalg import solve_discrete_lyapunov
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.controllers.force.admittance_filter import AXES, discretise
-from runner.report.document import Series, Table
-from runner.report.figures import joint_columns, origin
+from runner.reporting.document import Series, Table
+from runner.reporting.figures import joint_columns, origin
 from runner.sensing.force_torque import AXES as SENSOR_AXES
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.wrench import wrench_transform

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from runner.base.quantities import number, quantity
-from runner.report.document import Curves, Origin, Panel, Series, Table
-from runner.report.figures import origin
+from runner.reporting.document import Curves, Origin, Panel, Series, Table
+from runner.reporting.figures import origin
 from runner.store import Run
 from runner.studies.precision.tried import (
     COMPILED,

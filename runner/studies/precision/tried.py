@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from runner.report.figures import columns, joint_columns
+from runner.reporting.figures import columns, joint_columns
 from runner.store import Run
 from runner.studies.precision.measure import FILE, PLANT, load
 from runner.study.job import MissingError

@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.report.charts import top_view
-from runner.report.document import Picture
-from runner.report.figures import columns, model_of, origin
+from runner.reporting.charts import top_view
+from runner.reporting.document import Picture
+from runner.reporting.figures import columns, model_of, origin
 from runner.store import Run
 from runner.study.measured import Measured
 

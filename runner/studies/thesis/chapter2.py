@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import above_rounding, number
-from runner.report.charts import workspace_sphere
-from runner.report.document import Picture, Table
-from runner.report.figures import model_of, origin
+from runner.reporting.charts import workspace_sphere
+from runner.reporting.document import Picture, Table
+from runner.reporting.figures import model_of, origin
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.robots.workspace import analyse
 from runner.store import Run

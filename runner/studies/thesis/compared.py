@@ -8,10 +8,10 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity, ranged
 from runner.metrics.caveats.torques import CHATTER
-from runner.report.charts.thinning import envelope
-from runner.report.claims import PublishedClaim
-from runner.report.document import Panel, Series
-from runner.report.figures import AXES, columns, until_time
+from runner.reporting.charts.thinning import envelope
+from runner.reporting.claims import PublishedClaim
+from runner.reporting.document import Panel, Series
+from runner.reporting.figures import AXES, columns, until_time
 from runner.store import Run
 
 APART = 20.0

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.controllers.force.late_stability import delay_limit, miss_limit, pattern_limit
-from runner.report.document import Series
+from runner.reporting.document import Series
 from runner.store import Run
 from runner.study.prose.patterns import found
 from runner.study.run_values import clock

@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
-from runner.report.figures import joint_columns, model_of
+from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.study.run_values import clock
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.report.document import Series
+from runner.reporting.document import Series
 from runner.store import Run
 from runner.studies.thesis.figures import printed
 from runner.study.measured import Measured

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.quantities import number
-from runner.report.document import Curves, Panel, Series, Table
+from runner.reporting.document import Curves, Panel, Series, Table
 from runner.store import Run
 from runner.studies.thesis.measure import FILE, TERMS, load
 from runner.study.job import MissingError

@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from runner.base.quantities import above_rounding, number, quantity, ranged
-from runner.report.claims import judge, load_claims
-from runner.report.metric_titles import title
-from runner.report.plant_step import describe_plant, percent
-from runner.report.words import PLANT
+from runner.reporting.claims import judge, load_claims
+from runner.reporting.metric_titles import title
+from runner.reporting.plant_step import describe_plant, percent
+from runner.reporting.words import PLANT
 from runner.store import Run
 from runner.study.run_values import median
 

@@ -8,11 +8,11 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding
 from runner.controllers.operational_space.operational_space_graph import operational_space_graph
-from runner.report.charts import block_diagram, frame_assignment
-from runner.report.claims import load_claims
-from runner.report.document import Block, Curves, Picture, Table, Text
-from runner.report.figures import columns, joint_columns, model_of, origin
-from runner.report.words import PRESET, in_words
+from runner.reporting.charts import block_diagram, frame_assignment
+from runner.reporting.claims import load_claims
+from runner.reporting.document import Block, Curves, Picture, Table, Text
+from runner.reporting.figures import columns, joint_columns, model_of, origin
+from runner.reporting.words import PRESET, in_words
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
 from runner.studies.thesis.compared import Compared

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.report.document import Series
-from runner.report.figures import columns, joint_columns, model_of
+from runner.reporting.document import Series
+from runner.reporting.figures import columns, joint_columns, model_of
 from runner.robots.cantilever import frequency_errors
 from runner.robots.modes import Mode
 from runner.store import Run

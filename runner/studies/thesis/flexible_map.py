@@ -10,7 +10,7 @@ from runner.config.validation import validate
 from runner.controllers import Controller
 from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.plant import innermost
-from runner.report.document import Series
+from runner.reporting.document import Series
 from runner.simulation.assembly import assemble
 from runner.store import Run
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity, ranged
-from runner.report.figures import joint_columns, model_of
+from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.thesis.figures import at_rest
 from runner.studies.thesis.left_out_gravity import missing_acceleration

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.report.figures import joint_columns, model_of
+from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 
 

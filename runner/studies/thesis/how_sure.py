@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import number, quantity, with_ends
-from runner.report.claims import FACTOR, load_claims
-from runner.report.document import Curves, Panel, Series, Table
-from runner.report.figures import origin
-from runner.report.sweep.intervals import at_texts
-from runner.report.words import PRESET
+from runner.reporting.claims import FACTOR, load_claims
+from runner.reporting.document import Curves, Panel, Series, Table
+from runner.reporting.figures import origin
+from runner.reporting.sweep.intervals import at_texts
+from runner.reporting.words import PRESET
 from runner.statistics.share import count_share
 from runner.store import Run
 from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.report.figures import AXES, columns
+from runner.reporting.figures import AXES, columns
 from runner.store import Run
 from runner.study.run_values import clock
 

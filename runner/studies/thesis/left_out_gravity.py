@@ -3,7 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
-from runner.report.figures import joint_columns, model_of
+from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from runner.report.figures import joint_columns
+from runner.reporting.figures import joint_columns
 from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.prose.patterns import found

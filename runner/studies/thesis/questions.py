@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.report.figures import joint_columns, model_of
-from runner.report.words import PRESET
+from runner.reporting.figures import joint_columns, model_of
+from runner.reporting.words import PRESET
 from runner.store import Run
 from runner.study.job import PRESETS
 from runner.study.run_values import cell

@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
-from runner.report.figures import columns, joint_columns, model_of
+from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study.prose.signals import largest_of
 from runner.study.run_values import clock, median

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.report.figures import columns
+from runner.reporting.figures import columns
 from runner.store import Run
 from runner.study.measured import Measured
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.report.figures import joint_columns
+from runner.reporting.figures import joint_columns
 from runner.store import Run
 
 

@@ -7,8 +7,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.report.document import Block, Table, Text
-from runner.report.figures import columns, origin
+from runner.reporting.document import Block, Table, Text
+from runner.reporting.figures import columns, origin
 from runner.store import Run
 from runner.study.measured import Condition, Measured
 from runner.study.prose.patterns import found

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from runner.report.figures import columns
+from runner.reporting.figures import columns
 from runner.store import Run
 from runner.studies.thesis.figures import rest_of_way
 from runner.studies.thesis.left_out_gravity import missing_acceleration

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.quantities import number
-from runner.report.figures import columns, joint_columns, model_of
+from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study.prose.signals import limit_margin
 from runner.study.run_values import clock, median, values

@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.report.figures import model_of
+from runner.reporting.figures import model_of
 from runner.store import Run
 from runner.studies.xarm7.parts.three_joint_kinematics import BRANCHES, MOVING, Branch, ThreeJointArm
 from runner.studies.xarm7.printed_kinematics import CENTIMETRES, printed_inverse, printed_tip, random_postures

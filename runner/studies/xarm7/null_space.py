@@ -6,8 +6,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.report.document import Series
-from runner.report.figures import columns, joint_columns, model_of
+from runner.reporting.document import Series
+from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.prose.patterns import called, found

@@ -7,8 +7,8 @@ from scipy.optimize import minimize
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.report.document import Block, Notice, Series
-from runner.report.figures import columns, joint_columns, model_of
+from runner.reporting.document import Block, Notice, Series
+from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.studies.xarm7.figures import SHOULDER
 from runner.study.prose.patterns import found

@@ -5,9 +5,9 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.report.charts import arm_motion
-from runner.report.document import Picture
-from runner.report.figures import columns, joint_columns, model_of, origin
+from runner.reporting.charts import arm_motion
+from runner.reporting.document import Picture
+from runner.reporting.figures import columns, joint_columns, model_of, origin
 from runner.store import Run
 from runner.study.prose.reading import trace_of
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding, number
-from runner.report.document import Series
-from runner.report.figures import joint_columns, model_of
+from runner.reporting.document import Series
+from runner.reporting.figures import joint_columns, model_of
 from runner.robots import RobotModel
 from runner.store import Run
 from runner.studies.xarm7.figures import ROWS, line_length, smallest_margin

@@ -9,10 +9,10 @@ from dataclasses import replace
 from typing import Any
 
 from runner.base.quantities import number, quantity
-from runner.report import figures
-from runner.report.document import Block, Curves, Formula, Notice, Playback
-from runner.report.plant_step import describe_plant
-from runner.report.words import PLANT
+from runner.reporting import figures
+from runner.reporting.document import Block, Curves, Formula, Notice, Playback
+from runner.reporting.plant_step import describe_plant
+from runner.reporting.words import PLANT
 from runner.store import Run
 from runner.study import run_values
 from runner.study.measured import Measured

@@ -9,8 +9,8 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-from runner.report.document import Block, Items, Section, Text
-from runner.report.markup import linked, literal, marked
+from runner.reporting.document import Block, Items, Section, Text
+from runner.reporting.markup import linked, literal, marked
 from runner.study.prose.expressions import PLACEHOLDER, Values
 from runner.study.prose.problem import ProseError
 from runner.study.prose.shown import filled

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from runner.base.errors import RunnerError, nearest
-from runner.report.words import in_words
+from runner.reporting.words import in_words
 from runner.store import Run
 from runner.study.job import Made
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.report.document import Curves, Map, Maps, Panel, Series
-from runner.report.figures import AXES, joint_columns, origin
+from runner.reporting.document import Curves, Map, Maps, Panel, Series
+from runner.reporting.figures import AXES, joint_columns, origin
 from runner.store import Run
 from runner.study.prose.patterns import axes_of, called, found, other
 from runner.study.prose.reading import Signal, number_of, times_of, trace_of

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from runner.base.errors import nearest
-from runner.report.document import Block, Section, Text
+from runner.reporting.document import Block, Section, Text
 from runner.study.findings import Finding, finding
 from runner.study.measured import Condition
 from runner.study.prose.expressions import Values

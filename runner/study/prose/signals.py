@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.report.figures import columns, joint_columns, model_of
+from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study import run_values
 from runner.study.prose.reading import Signal, check_signal, config_value, trace_of

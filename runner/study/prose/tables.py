@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import Shown, above_rounding, labelled
-from runner.report.document import Origin, Table
-from runner.report.figures import origin
-from runner.report.metric_titles import title
+from runner.reporting.document import Origin, Table
+from runner.reporting.figures import origin
+from runner.reporting.metric_titles import title
 from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.prose.patterns import Found, axes_of, called, found, other

@@ -5,7 +5,7 @@ import pytest
 from runner.audit.entry import Entry, entries, parts
 from runner.audit.sources import sources
 from runner.base.errors import RunnerError
-from runner.report.markup import spans
+from runner.reporting.markup import spans
 
 GOOD = {"id": "a", "number": "1", "place": "p", "title": "t", "printed": {"math": "x"}}
 
@@ -49,7 +49,7 @@ def test_ids_are_unique_and_name_the_source(source):
 
 @pytest.mark.parametrize("source", sources())
 def test_the_mathematics_of_every_finding_is_valid(source):
-    from runner.report import formulas
+    from runner.reporting import formulas
 
     texts = [text for _, entry in entries(source) for text in (entry.finding, entry.repair.why if entry.repair else "")]
     inline = [span.text for text in texts for span in spans(text) if span.math]

@@ -11,9 +11,9 @@ import pytest
 import runner
 from runner.base.paths import examples_dir
 from runner.recordings.compare import compare_recording
-from runner.report import html
-from runner.report.formulas import faulty
-from runner.report.recording.report import recording_document, report_folder
+from runner.reporting import html
+from runner.reporting.formulas import faulty
+from runner.reporting.recording.report import recording_document, report_folder
 from runner.sweeps.execution import run
 
 HERE = examples_dir() / "recording"

@@ -3,8 +3,8 @@
 from fixtures.stored import RUNS
 from support.engines import ASKED
 
-from runner.report.key_metrics import key_metrics
-from runner.report.run_report import run_document
+from runner.reporting.key_metrics import key_metrics
+from runner.reporting.run_report import run_document
 
 SHORT = ("robot=macro", ASKED, "trajectory=quintic", "trajectory.duration=0.5", "duration=1.2")
 

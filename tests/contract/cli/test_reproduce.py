@@ -9,7 +9,7 @@ import pytest
 from runner.audit.audit import audit
 from runner.audit.verdict import VERDICTS
 from runner.cli import reproduce
-from runner.report.document import Document, Section
+from runner.reporting.document import Document, Section
 from runner.study.expected_caveats import ExpectedCaveat
 from runner.study.findings import finding
 from runner.study.making import make_all
@@ -149,7 +149,7 @@ def test_all_reproduces_every_work_the_shortest_first(cli, monkeypatch, tmp_path
     empty = reproduce._Reproduced(Document("", "", "", (), "2026-01-01"), {}, {})
     monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: empty)
     monkeypatch.setattr(reproduce, "_audit", lambda *_: empty)
-    monkeypatch.setattr("runner.report.render.write_report", lambda *_: None)
+    monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
     assert cli("reproduce").out.split() == [
         f"outputs/reports/{name}" for name in ("audit", "xarm7", "meca500", "thesis")
     ]

@@ -17,7 +17,7 @@ TUNE = ("tune", *SHORT, RANGE, "--minimize", "peak_torque", "--trials", 4)
 @pytest.fixture
 def no_report(monkeypatch):
     """Lets no report be rendered, where its folder alone is asked for."""
-    monkeypatch.setattr("runner.report.render.write_report", lambda *_: None)
+    monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
 
 
 @pytest.mark.costs(2)

@@ -10,8 +10,8 @@ from support.pages import ROOT
 
 import runner
 from runner.base.errors import ConfigError
-from runner.report.formulas import faulty
-from runner.report.run_report import run_document
+from runner.reporting.formulas import faulty
+from runner.reporting.run_report import run_document
 
 ROBOT_YAML = """\
 # @package _global_

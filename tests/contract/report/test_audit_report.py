@@ -7,11 +7,11 @@ import pytest
 
 from runner.audit.audit import audit
 from runner.audit.verdict import VERDICTS
-from runner.report import formulas, html, outline
-from runner.report.audit.report import audit_document
-from runner.report.document import Curves, Equations, Table
-from runner.report.tally import tallies
-from runner.report.templating import VERDICT_SIGNS
+from runner.reporting import formulas, html, outline
+from runner.reporting.audit.report import audit_document
+from runner.reporting.document import Curves, Equations, Table
+from runner.reporting.tally import tallies
+from runner.reporting.templating import VERDICT_SIGNS
 
 
 @pytest.fixture(scope="module")

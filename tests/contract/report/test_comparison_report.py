@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support.sample_sides import LAWS, side
 
-from runner.report.comparison.report import comparison_document
-from runner.report.document import Code, Curves, Notice, Table, Text
-from runner.report.render import write_report
+from runner.reporting.comparison.report import comparison_document
+from runner.reporting.document import Code, Curves, Notice, Table, Text
+from runner.reporting.render import write_report
 
 
 def error(robot, gravity):

@@ -9,10 +9,10 @@ import pytest
 from support.sample_document import HOSTILE, SVG, curves, document, maps, playback
 
 from runner.base.errors import RunnerError
-from runner.report.charts.sheet import column
-from runner.report.document import Curves, Document, Maps, Origin, Panel, Picture, Section, Series
-from runner.report.export.figures import chosen, figures_of, write_figures
-from runner.report.export.points import as_csv
+from runner.reporting.charts.sheet import column
+from runner.reporting.document import Curves, Document, Maps, Origin, Panel, Picture, Section, Series
+from runner.reporting.export.figures import chosen, figures_of, write_figures
+from runner.reporting.export.points import as_csv
 
 SHEETS = {88.0: column(88.0), 180.0: column(180.0)}
 POINTS = 72.0 / 25.4  # in a millimetre

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fixtures.stored import RUNS
 
-from runner.report.figures import (
+from runner.reporting.figures import (
     columns,
     desired_motion,
     joint_columns,

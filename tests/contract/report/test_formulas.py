@@ -3,8 +3,8 @@
 import pytest
 from support.sample_document import document
 
-from runner.report import formulas
-from runner.report.document import Document, Formula, Section, Text
+from runner.reporting import formulas
+from runner.reporting.document import Document, Formula, Section, Text
 
 
 def test_depth_is_how_far_a_formula_reaches_below_the_line():

@@ -13,11 +13,11 @@ import pytest
 from support.sample_document import HOSTILE, curves, document, playback
 
 from runner.base.texts import plain
-from runner.report import html, outline
-from runner.report.claim import Claim, ClaimResult
-from runner.report.document import Block, Document, Origin, Section, Text, Verdicts
-from runner.report.markup import spans
-from runner.report.templating import html_environment
+from runner.reporting import html, outline
+from runner.reporting.claim import Claim, ClaimResult
+from runner.reporting.document import Block, Document, Origin, Section, Text, Verdicts
+from runner.reporting.markup import spans
+from runner.reporting.templating import html_environment
 
 
 class Page(HTMLParser):

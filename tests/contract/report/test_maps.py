@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from support.sample_document import HOSTILE, maps
 
-from runner.report.charts import map_stills
-from runner.report.charts.map_scale import scale_marks, value_range
-from runner.report.document import Map, Maps
-from runner.report.maps import maps_spec
+from runner.reporting.charts import map_stills
+from runner.reporting.charts.map_scale import scale_marks, value_range
+from runner.reporting.document import Map, Maps
+from runner.reporting.maps import maps_spec
 
 
 def one_map(values, log=False, **changes):

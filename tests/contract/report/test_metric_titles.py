@@ -6,7 +6,7 @@ import pytest
 
 from runner.metrics import summary
 from runner.plugins import discovery as plugins
-from runner.report.metric_titles import TITLES, metric_label, title
+from runner.reporting.metric_titles import TITLES, metric_label, title
 
 
 def test_every_metric_of_the_runner_has_a_title_and_no_other():

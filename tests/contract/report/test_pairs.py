@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from support.sample_sweep import measurements, noisy, two_axes
 
-from runner.report.document import Section, Table
-from runner.report.sweep import extremes, pairs
-from runner.report.sweep.subject import choose
+from runner.reporting.document import Section, Table
+from runner.reporting.sweep import extremes, pairs
+from runner.reporting.sweep.subject import choose
 
 ROBOTS = {"robot": ["macro", "xarm7"], "controller": ["computed_torque", "operational_space"]}
 

@@ -6,9 +6,9 @@ from typing import get_args
 import pytest
 from support.sample_document import HOSTILE, document
 
-from runner.report import pdf
-from runner.report.document import Block, Document, Section, Table
-from runner.report.templating import quoted, typst_environment, typst_value
+from runner.reporting import pdf
+from runner.reporting.document import Block, Document, Section, Table
+from runner.reporting.templating import quoted, typst_environment, typst_value
 
 
 @pytest.mark.parametrize("kind", get_args(Block), ids=lambda kind: kind.block)

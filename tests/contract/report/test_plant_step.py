@@ -3,9 +3,9 @@
 import pytest
 
 from runner.base.engines import has_pybullet
-from runner.report.plant_step import describe_plant, percent
-from runner.report.run_report import run_document
-from runner.report.words import PLANT
+from runner.reporting.plant_step import describe_plant, percent
+from runner.reporting.run_report import run_document
+from runner.reporting.words import PLANT
 from runner.sweeps.execution import run
 
 KIND = "bullet" if has_pybullet() else "mujoco"

@@ -6,7 +6,7 @@ import pytest
 from support.sample_document import document
 
 from runner.base.errors import RunnerError, StoreError
-from runner.report.render import write_report
+from runner.reporting.render import write_report
 
 
 def test_both_files_are_written_into_a_new_folder(tmp_path):

@@ -6,8 +6,8 @@ from support.sample_document import document
 from runner.audit.audit import audit_all
 from runner.base import progress
 from runner.base.progress.stages import AUDITING, FIGURES, HTML, PDF, of_report
-from runner.report import outline
-from runner.report.render import write_report
+from runner.reporting import outline
+from runner.reporting.render import write_report
 
 
 @pytest.fixture

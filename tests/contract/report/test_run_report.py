@@ -7,13 +7,13 @@ from fixtures.stored import RUNS
 from support.engines import ASKED
 
 from runner.base.quantities import quantity
-from runner.report import outline
-from runner.report.document import Curves, Notice, Playback, Provenance, Table, Text
-from runner.report.formulas import faulty
-from runner.report.metric_titles import title
-from runner.report.render import write_report
-from runner.report.run_report import provenance, run_document
-from runner.report.words import PLANT
+from runner.reporting import outline
+from runner.reporting.document import Curves, Notice, Playback, Provenance, Table, Text
+from runner.reporting.formulas import faulty
+from runner.reporting.metric_titles import title
+from runner.reporting.render import write_report
+from runner.reporting.run_report import provenance, run_document
+from runner.reporting.words import PLANT
 from runner.sweeps.execution import run
 
 

@@ -3,12 +3,12 @@
 import pytest
 
 from runner.config.spec import Bound
-from runner.report import outline
-from runner.report.document import Notice, Table
-from runner.report.formulas import faulty
-from runner.report.render import write_report
-from runner.report.run_report import run_document
-from runner.report.spec_words import HEADER, bound_text
+from runner.reporting import outline
+from runner.reporting.document import Notice, Table
+from runner.reporting.formulas import faulty
+from runner.reporting.render import write_report
+from runner.reporting.run_report import run_document
+from runner.reporting.spec_words import HEADER, bound_text
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.report.spoken import spoken
+from runner.reporting.spoken import spoken
 
 
 @pytest.mark.parametrize(

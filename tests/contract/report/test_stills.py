@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from support.sample_document import HOSTILE, curves
 
-from runner.report.charts import stills
-from runner.report.curves import plotly_spec
-from runner.report.document import Curves, Panel, Series
+from runner.reporting.charts import stills
+from runner.reporting.curves import plotly_spec
+from runner.reporting.document import Curves, Panel, Series
 
 
 @pytest.mark.parametrize("text", HOSTILE)

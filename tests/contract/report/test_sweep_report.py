@@ -5,11 +5,11 @@ import shutil
 import pytest
 from fixtures.stored import GRID, NOISY
 
-from runner.report import outline
-from runner.report.document import Maps, Playback, RunList
-from runner.report.formulas import faulty
-from runner.report.render import write_report
-from runner.report.sweep.report import sweep_document
+from runner.reporting import outline
+from runner.reporting.document import Maps, Playback, RunList
+from runner.reporting.formulas import faulty
+from runner.reporting.render import write_report
+from runner.reporting.sweep.report import sweep_document
 from runner.store import open_sweep, write_sweep
 from runner.sweeps.execution import run
 

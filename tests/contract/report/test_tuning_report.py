@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from runner.base.errors import StoreError
-from runner.report.document import Curves, Notice, Playback, RunList, Table, Text
-from runner.report.markup import literal
-from runner.report.tuning import history
-from runner.report.tuning.report import tuning_document
-from runner.report.tuning.subject import Subject
+from runner.reporting.document import Curves, Notice, Playback, RunList, Table, Text
+from runner.reporting.markup import literal
+from runner.reporting.tuning import history
+from runner.reporting.tuning.report import tuning_document
+from runner.reporting.tuning.subject import Subject
 from runner.sweeps.tuning.objective import Objective
 from runner.sweeps.tuning.run import tune
 from runner.sweeps.tuning.study import at_ends

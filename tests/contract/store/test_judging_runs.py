@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from runner.config.spec import Bound
-from runner.report.document import Notice
-from runner.report.outline import blocks
-from runner.report.spec_words import spec_rows
-from runner.report.sweep.report import sweep_document
+from runner.reporting.document import Notice
+from runner.reporting.outline import blocks
+from runner.reporting.spec_words import spec_rows
+from runner.reporting.sweep.report import sweep_document
 from runner.store import judged, open_run, open_sweep, write_sweep
 from runner.sweeps.execution import run
 

@@ -9,7 +9,7 @@ import pytest
 
 import runner
 from runner.metrics.summary import MOST_LISTED
-from runner.report.comparison.pairs import MOST_PAIRS
+from runner.reporting.comparison.pairs import MOST_PAIRS
 from runner.store import DamagedError, open_run
 from runner.sweeps.execution import run
 from runner.sweeps.measurements import measure_sweep

@@ -13,7 +13,7 @@ from support.work_plans import FULL_ALONE
 
 from runner.base.errors import RunnerError
 from runner.cli.reproduce import _chosen, _Way
-from runner.report.formulas import faulty
+from runner.reporting.formulas import faulty
 from runner.studies.benchmark import engines
 from runner.studies.benchmark.cells import cells
 from runner.studies.benchmark.figures import said

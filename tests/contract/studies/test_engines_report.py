@@ -11,7 +11,7 @@ from fixtures.studies import Made
 pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
 from runner.cli.reproduce import _chosen, _Way
-from runner.report.figures import model_of
+from runner.reporting.figures import model_of
 from runner.store import Run
 from runner.studies.engines import contact, same_arm, side_by_side
 

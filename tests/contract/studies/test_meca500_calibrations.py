@@ -11,7 +11,7 @@ from support.study_sections import blocks
 
 from runner.calibration import REST, GravityCalibration, Tool, WrenchCompensation
 from runner.calibration.tool_centre_point import identify_tool_centre_point
-from runner.report.document import Curves, Table
+from runner.reporting.document import Curves, Table
 from runner.studies.meca500.figures import consistency, error, fit, predicted, refusal
 from runner.studies.meca500.gravity import angles, exact_readings, force_step, swapped_moment_step
 from runner.studies.meca500.tool_centre_point import common_point_covariance, independent_rows_covariance

@@ -5,10 +5,10 @@ import re
 import pytest
 from support.engines import DEFAULT_PLANT
 
-from runner.report import outline
-from runner.report.document import Curves, Notice, Playback, Table, Text
-from runner.report.formulas import faulty
-from runner.report.render import write_report
+from runner.reporting import outline
+from runner.reporting.document import Curves, Notice, Playback, Table, Text
+from runner.reporting.formulas import faulty
+from runner.reporting.render import write_report
 
 
 @pytest.fixture(scope="session")

@@ -14,7 +14,7 @@ from runner.cli.reproduce import _chosen, _Way
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.plants.rk4 import Rk4
-from runner.report.document import Table
+from runner.reporting.document import Table
 from runner.robots.model import RobotModel
 from runner.store import Run
 from runner.studies.precision import measure, tried

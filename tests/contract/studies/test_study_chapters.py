@@ -8,9 +8,9 @@ from fixtures.studies import Made
 from support.study_sections import every_run, every_third, unfinished_texts
 from support.work_plans import FULL_ALONE, WORKS, chapter_files
 
-from runner.report import outline
-from runner.report.document import Document, Section
-from runner.report.formulas import faulty
+from runner.reporting import outline
+from runner.reporting.document import Document, Section
+from runner.reporting.formulas import faulty
 from runner.store import Run
 from runner.study.prose.trying import never_failing
 from runner.study.work import load_work

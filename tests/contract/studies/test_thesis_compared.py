@@ -6,8 +6,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from runner.report.claims import load_claims
-from runner.report.words import PRESET
+from runner.reporting.claims import load_claims
+from runner.reporting.words import PRESET
 from runner.store import Run
 from runner.studies.thesis.compared import APART, Compared
 from runner.studies.thesis.engines import parting, step_of_both

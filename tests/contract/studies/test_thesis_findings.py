@@ -6,8 +6,8 @@ import pytest
 from fixtures.studies import Made, made_up_costs
 from support.study_sections import every_run
 
-from runner.report.document import Document, Section
-from runner.report.formulas import faulty
+from runner.reporting.document import Document, Section
+from runner.reporting.formulas import faulty
 from runner.studies.thesis import dynamics_cost, figures, stage_sampling
 from runner.study.findings import findings
 from runner.study.measured import Measured

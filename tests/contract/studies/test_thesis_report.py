@@ -5,13 +5,13 @@ from collections import Counter
 
 import pytest
 
-from runner.report import outline
-from runner.report.document import Curves, Picture, Table, Text, Verdicts
-from runner.report.formulas import faulty
-from runner.report.places import Places
-from runner.report.render import write_report
-from runner.report.tally import tallies
-from runner.report.words import PRESET
+from runner.reporting import outline
+from runner.reporting.document import Curves, Picture, Table, Text, Verdicts
+from runner.reporting.formulas import faulty
+from runner.reporting.places import Places
+from runner.reporting.render import write_report
+from runner.reporting.tally import tallies
+from runner.reporting.words import PRESET
 from runner.study.job import PRESETS
 
 ONCE = (

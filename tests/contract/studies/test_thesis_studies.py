@@ -8,9 +8,9 @@ import pytest
 from fixtures.studies import Made
 from support.study_sections import every_run, texts
 
-from runner.report import formulas
-from runner.report.document import Document, Section, Table
-from runner.report.figures import torque_and_error
+from runner.reporting import formulas
+from runner.reporting.document import Document, Section, Table
+from runner.reporting.figures import torque_and_error
 from runner.store import Run
 from runner.studies.thesis import measure
 from runner.study.checklist import load_checklist

@@ -9,7 +9,7 @@ from support.recorded_runs import recorded
 from support.thin_plans import make_calibrations, make_runs
 from support.work_plans import RECORDED, meca500_calibrations, meca500_jobs, planned, recorded_jobs, thesis_jobs
 
-from runner.report.formulas import faulty
+from runner.reporting.formulas import faulty
 from runner.store import Run
 from runner.study.findings import findings
 from runner.study.prose.trying import never_failing

@@ -5,10 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from runner.report import outline
-from runner.report.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
-from runner.report.formulas import faulty
-from runner.report.render import write_report
+from runner.reporting import outline
+from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
+from runner.reporting.formulas import faulty
+from runner.reporting.render import write_report
 from runner.study.chapters import Chapters
 from runner.study.findings import findings
 from runner.study.job import PRESETS

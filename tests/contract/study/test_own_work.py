@@ -9,7 +9,7 @@ import pytest
 from runner.base.errors import RunnerError
 from runner.base.paths import example_work_dir
 from runner.cli.main import dispatch
-from runner.report.document import Table
+from runner.reporting.document import Table
 from runner.study.check import problems
 from runner.study.names import find_work, work_names
 from runner.study.new import write_new
@@ -133,7 +133,9 @@ def test_a_cover_shows_a_run_in_motion_and_one_that_is_none_is_told(tmp_path, ma
 
 def test_a_part_has_sections_and_a_file_of_python_is_a_chapter(tmp_path, made):
     about = "title: T\nsource: S\nabstract: A\nchapters: [{title: Part, sections: [one.md, two.py]}]\n"
-    code = "from runner.report.document import Section\ndef section(runs):\n    return Section(f'{len(runs)} runs')\n"
+    code = (
+        "from runner.reporting.document import Section\ndef section(runs):\n    return Section(f'{len(runs)} runs')\n"
+    )
     folder = a_work(tmp_path / "paper", work__yaml=about, two__py=code)
     _, (part,) = read(folder, made, allow_code=True)
     assert [section.title for section in part.sections] == ["One", "4 runs"]

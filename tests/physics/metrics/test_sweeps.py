@@ -4,12 +4,12 @@ import pandas as pd
 import pytest
 from support.engines import ASKED
 
-from runner.report import outline
-from runner.report.document import Notice, RunList, Table
-from runner.report.formulas import faulty
-from runner.report.run_list import SHOWN
-from runner.report.run_report import run_document
-from runner.report.sweep.report import sweep_document
+from runner.reporting import outline
+from runner.reporting.document import Notice, RunList, Table
+from runner.reporting.formulas import faulty
+from runner.reporting.run_list import SHOWN
+from runner.reporting.run_report import run_document
+from runner.reporting.sweep.report import sweep_document
 from runner.store import open_run, open_sweep
 
 SWEPT = (

@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.expressions.parser import parse
 from runner.base.expressions.typesetting import linear, matrix, symbol, typeset
-from runner.report import formulas
+from runner.reporting import formulas
 
 
 @pytest.mark.parametrize(

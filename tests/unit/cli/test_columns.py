@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.cli.columns import COMPARED, aligned, answer_cells, letter
-from runner.report.answers import Asked, judge
+from runner.reporting.answers import Asked, judge
 from runner.statistics import compare_paired
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from bench.answers import CASES, false_answers, same_law, true_answers
 from runner.base.quantities import ROUNDING
-from runner.report.answers import ALPHA, Asked, judge
+from runner.reporting.answers import ALPHA, Asked, judge
 from runner.statistics import compare_paired
 
 N = 8

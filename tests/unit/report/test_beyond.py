@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from support.sample_sides import LAWS, side
 
-from runner.report.comparison.beyond import ABSENT, Value, beyond
-from runner.report.comparison.cells import match
+from runner.reporting.comparison.beyond import ABSENT, Value, beyond
+from runner.reporting.comparison.cells import match
 
 
 def nothing(*_):

@@ -6,7 +6,7 @@ import pytest
 from support.sample_sides import LAWS, side
 
 from runner.base.errors import RunnerError
-from runner.report.comparison.cells import label_text, match
+from runner.reporting.comparison.cells import label_text, match
 
 
 def nothing(*_):

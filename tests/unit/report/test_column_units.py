@@ -3,8 +3,8 @@
 import pytest
 
 from runner.base.quantities import number
-from runner.report.column_units import in_readable_units, readable
-from runner.report.document import Document, Section, Table
+from runner.reporting.column_units import in_readable_units, readable
+from runner.reporting.document import Document, Section, Table
 
 
 def column(head, *cells):

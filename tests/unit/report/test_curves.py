@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from support.sample_document import HOSTILE, curves
 
-from runner.report.curves import neutral, plotly_spec
-from runner.report.document import Curves, Panel, Series
+from runner.reporting.curves import neutral, plotly_spec
+from runner.reporting.document import Curves, Panel, Series
 
 
 def panel_of(**changes):

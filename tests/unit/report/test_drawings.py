@@ -10,10 +10,10 @@ from support.arms import model_of, urdf_of
 
 from runner.controllers.graph import ControlGraph, Edge, Node
 from runner.controllers.operational_space.operational_space_graph import operational_space_graph
-from runner.report.charts import arm_motion, block_diagram, frame_assignment, top_view, workspace_sphere
-from runner.report.charts.arm import _nearest
-from runner.report.charts.canvas import Camera, circle
-from runner.report.charts.workspace import _best_samples
+from runner.reporting.charts import arm_motion, block_diagram, frame_assignment, top_view, workspace_sphere
+from runner.reporting.charts.arm import _nearest
+from runner.reporting.charts.canvas import Camera, circle
+from runner.reporting.charts.workspace import _best_samples
 from runner.robots import RobotModel
 from runner.robots.workspace import analyse
 

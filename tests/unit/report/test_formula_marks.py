@@ -2,8 +2,8 @@
 
 import pytest
 
-from runner.report import formulas
-from runner.report.audit.formula_marks import marked_formulas
+from runner.reporting import formulas
+from runner.reporting.audit.formula_marks import marked_formulas
 
 
 @pytest.mark.parametrize(

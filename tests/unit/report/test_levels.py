@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.report.comparison.levels import level_pairs, levels
-from runner.report.comparison.pairs import MOST_PAIRS, CellPairs, compare
+from runner.reporting.comparison.levels import level_pairs, levels
+from runner.reporting.comparison.pairs import MOST_PAIRS, CellPairs, compare
 from runner.statistics import compare_paired
 from runner.sweeps.measurements import Axis, Measurements
 

@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from runner.base.errors import RunnerError
-from runner.report.claims import claim, claimed, load_claims, load_statements
+from runner.reporting.claims import claim, claimed, load_claims, load_statements
 
 
 @pytest.fixture

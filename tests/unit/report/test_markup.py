@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.texts import plain
-from runner.report.markup import Link, Literal, Math, spans
+from runner.reporting.markup import Link, Literal, Math, spans
 
 
 def test_dollars_enclose_mathematics():

@@ -4,8 +4,8 @@ import pytest
 
 from runner.base.expressions.parser import parse
 from runner.base.expressions.tree import Name
-from runner.report.audit.matrices import gathered
-from runner.report.equation import Matrix
+from runner.reporting.audit.matrices import gathered
+from runner.reporting.equation import Matrix
 
 
 def elements(*names):

@@ -3,8 +3,8 @@
 import numpy as np
 from support.sample_document import document
 
-from runner.report import outline
-from runner.report.document import Document, Formula, Section, Table, Text
+from runner.reporting import outline
+from runner.reporting.document import Document, Formula, Section, Table, Text
 
 
 def test_sections_are_numbered_by_their_place():

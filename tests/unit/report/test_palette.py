@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from runner.report.charts import palette
+from runner.reporting.charts import palette
 
 # Machado, Oliveira, Fernandes: A Physiologically-based Model for Simulation of Color Vision Deficiency, IEEE TVCG 2009,
 # table 1, severity 1.0; they act on linear red, green and blue.

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.report.export.columns import column, decimals
+from runner.reporting.export.columns import column, decimals
 from runner.statistics import median_interval
 
 

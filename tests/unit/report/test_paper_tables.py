@@ -8,12 +8,12 @@ import pytest
 from support.paper_sweep import by_hand
 
 from runner.base.errors import RunnerError
-from runner.report.export.columns import Unit
-from runner.report.export.latex import escaped as latex_escaped
-from runner.report.export.latex import latex, unit_macro
-from runner.report.export.markdown import escaped as markdown_escaped
-from runner.report.export.markdown import markdown
-from runner.report.export.paper_table import of_sweep
+from runner.reporting.export.columns import Unit
+from runner.reporting.export.latex import escaped as latex_escaped
+from runner.reporting.export.latex import latex, unit_macro
+from runner.reporting.export.markdown import escaped as markdown_escaped
+from runner.reporting.export.markdown import markdown
+from runner.reporting.export.paper_table import of_sweep
 from runner.statistics import median_interval
 from runner.sweeps.measurements import Axis
 

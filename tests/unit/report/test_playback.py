@@ -9,8 +9,8 @@ import pytest
 import zstandard
 from support.sample_document import playback
 
-from runner.report.document import Body
-from runner.report.playback import FRAME_RATE, FRAMES, frames, player, record
+from runner.reporting.document import Body
+from runner.reporting.playback import FRAME_RATE, FRAMES, frames, player, record
 
 
 def test_a_recording_opens_no_socket_and_prints_nothing(monkeypatch, capsys):

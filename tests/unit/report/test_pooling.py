@@ -7,7 +7,7 @@ import pytest
 from support.paper_sweep import by_hand
 
 from runner.base.errors import RunnerError
-from runner.report.export.pooling import failed_cells, pool
+from runner.reporting.export.pooling import failed_cells, pool
 from runner.sweeps.measurements import Axis
 
 

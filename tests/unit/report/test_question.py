@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from support.sample_sweep import measurements
 
-from runner.report.sweep.question import ask, in_short, sentences, too_few
-from runner.report.sweep.subject import choose
+from runner.reporting.sweep.question import ask, in_short, sentences, too_few
+from runner.reporting.sweep.subject import choose
 from runner.sweeps.differing import Difference
 
 AXES = {"noise.position": [1e-4, 1e-3], "controller": ["computed_torque", "operational_space"]}

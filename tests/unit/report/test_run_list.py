@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from support.sample_document import HOSTILE, run_list
 
-from runner.report.markup import spans
-from runner.report.run_list import ON_PAPER, run_list_spec, table_header, table_rows
+from runner.reporting.markup import spans
+from runner.reporting.run_list import ON_PAPER, run_list_spec, table_header, table_rows
 
 
 def test_columns_keep_their_order():

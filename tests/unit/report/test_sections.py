@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from support.sample_sweep import measurements, noisy, two_axes
 
-from runner.report.document import Curves, Maps, Notice, Table, Text
-from runner.report.sweep import axes, distributions, effects, failures, maps
-from runner.report.sweep.intervals import cells_with_intervals
-from runner.report.sweep.subject import choose
+from runner.reporting.document import Curves, Maps, Notice, Table, Text
+from runner.reporting.sweep import axes, distributions, effects, failures, maps
+from runner.reporting.sweep.intervals import cells_with_intervals
+from runner.reporting.sweep.subject import choose
 from runner.sweeps.differing import Difference
 
 

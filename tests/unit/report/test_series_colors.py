@@ -5,9 +5,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from runner.report.document import Curves, Document, Panel, Section, Series
-from runner.report.export.figures import figures_of
-from runner.report.series_colors import colored
+from runner.reporting.document import Curves, Document, Panel, Section, Series
+from runner.reporting.export.figures import figures_of
+from runner.reporting.series_colors import colored
 
 X = np.arange(2.0)
 

@@ -4,10 +4,10 @@ import re
 
 import numpy as np
 
-from runner.report.charts.figure import Panel, Series, shares_legend
-from runner.report.charts.stills import draw
-from runner.report.curves import plotly_spec
-from runner.report.document import Curves
+from runner.reporting.charts.figure import Panel, Series, shares_legend
+from runner.reporting.charts.stills import draw
+from runner.reporting.curves import plotly_spec
+from runner.reporting.document import Curves
 
 X = np.arange(3.0)
 

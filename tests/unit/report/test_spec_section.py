@@ -7,9 +7,9 @@ import pytest
 from support.sample_sweep import measurements, two_axes
 
 from runner.config.spec import Bound
-from runner.report.document import Curves, Maps, Table, Text
-from runner.report.sweep import spec
-from runner.report.sweep.subject import choose
+from runner.reporting.document import Curves, Maps, Table, Text
+from runner.reporting.sweep import spec
+from runner.reporting.sweep.subject import choose
 from runner.statistics.share import count_share
 from runner.store.sweep import Sweep
 

@@ -5,7 +5,7 @@ import pytest
 from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.base.errors import RunnerError
-from runner.report.sweep.subject import choose, spans_decades
+from runner.reporting.sweep.subject import choose, spans_decades
 
 AXES = {"noise.position": [1e-4, 1e-3]}
 

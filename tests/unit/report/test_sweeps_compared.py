@@ -8,7 +8,7 @@ from support.sample_sides import LAWS, side
 
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
-from runner.report.comparison.sweeps import by_cell, compare_sweeps
+from runner.reporting.comparison.sweeps import by_cell, compare_sweeps
 from runner.statistics import compare_paired
 
 

@@ -2,9 +2,9 @@
 
 from support.sample_document import equations
 
-from runner.report.claim import Claim, ClaimResult
-from runner.report.document import Document, Section, Verdicts
-from runner.report.tally import hanging, tallies
+from runner.reporting.claim import Claim, ClaimResult
+from runner.reporting.document import Document, Section, Verdicts
+from runner.reporting.tally import hanging, tallies
 
 
 def claim(number, *verdicts):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.report.sweep.theory import explained, lines
+from runner.reporting.sweep.theory import explained, lines
 from runner.sweeps.measurements import Axis
 
 

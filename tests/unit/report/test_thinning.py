@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.report.charts.figure import Series
-from runner.report.charts.thinning import band, envelope, runs, spaced, thin
+from runner.reporting.charts.figure import Series
+from runner.reporting.charts.thinning import band, envelope, runs, spaced, thin
 
 
 @given(st.integers(2001, 9000), st.data())

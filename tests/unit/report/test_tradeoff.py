@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from support.sample_sweep import noisy, two_axes
 
-from runner.report.sweep.tradeoff import front, pair, section
+from runner.reporting.sweep.tradeoff import front, pair, section
 
 COORDINATES = st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=1, max_size=30)
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from support.sample_sweep import measurements
 
-from runner.report.charts.thinning import POINTS
-from runner.report.document import Curves, Table, Text
-from runner.report.sweep import distributions, effects, failures, maps, tradeoff
-from runner.report.sweep.subject import MOST_GROUPS, choose, grouped
+from runner.reporting.charts.thinning import POINTS
+from runner.reporting.document import Curves, Table, Text
+from runner.reporting.sweep import distributions, effects, failures, maps, tradeoff
+from runner.reporting.sweep.subject import MOST_GROUPS, choose, grouped
 
 SEEDS = 3000
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.report.comparison.words import counted, noise_alone
+from runner.reporting.comparison.words import counted, noise_alone
 
 
 @pytest.mark.parametrize(("count", "text"), [(0, "0 cells are"), (1, "1 cell is"), (2, "2 cells are")])

@@ -3,12 +3,13 @@
 import ast
 from pathlib import Path
 
-import runner.base.quantities
 import runner.report
-import runner.report.charts
 
-FOLDER = Path(runner.report.__file__).parent
-DRAWING = sorted(Path(runner.report.charts.__file__).parent.glob("*.py"))
+import runner.base.quantities
+import runner.reporting.charts
+
+FOLDER = Path(runner.reporting.__file__).parent
+DRAWING = sorted(Path(runner.reporting.charts.__file__).parent.glob("*.py"))
 
 
 def imported(path):

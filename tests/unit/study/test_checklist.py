@@ -4,7 +4,7 @@ import pytest
 from pydantic import ValidationError
 
 from runner.base.paths import works_with
-from runner.report.document import Curves, Origin, Section
+from runner.reporting.document import Curves, Origin, Section
 from runner.study.checklist import Checklist, load_checklist
 
 CONTENT = {

@@ -2,7 +2,7 @@
 
 from support.made_up_runs import made_up_run
 
-from runner.report.document import Code
+from runner.reporting.document import Code
 from runner.study.citing import citing_section
 
 

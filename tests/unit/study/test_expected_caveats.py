@@ -9,7 +9,7 @@ from support.made_up_runs import made_up_run
 
 from runner.base.errors import RunnerError
 from runner.metrics.caveats.registry import KEYS
-from runner.report.document import Notice, Table
+from runner.reporting.document import Notice, Table
 from runner.study.expected_caveats import (
     ExpectedCaveat,
     caveats_as_data,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.report.document import Document, Section, Text
+from runner.reporting.document import Document, Section, Text
 from runner.study.findings import finding, findings
 from runner.study.measured import Measured
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from runner.report.document import Items, Table, Text
-from runner.report.markup import linked, marked
+from runner.reporting.document import Items, Table, Text
+from runner.reporting.markup import linked, marked
 from runner.study.measured import Measured
 from runner.study.prose import ProseError, read_chapter
 

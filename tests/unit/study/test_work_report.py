@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.report.document import Section, Text
+from runner.reporting.document import Section, Text
 from runner.study.job import Made, MissingError
 from runner.study.work_report import parts
 

@@ -1,0 +1,207 @@
+"""The one rule for what may be said of a comparison: "smaller", "larger", or why neither.
+
+Said is a difference whose p-value, corrected by Holm's procedure for all comparisons of its family, is below 5 %, and
+which is larger than the plant's own error in it and than 2 % of the larger of the two medians (0.02 of a fraction).
+Word, interval and p follow from one test: the interval has the level at which Holm's procedure decided, so that it
+excludes zero exactly if the corrected p is below 5 %.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from runner.base.quantities import ROUNDING, number, quantity, with_ends
+from runner.reporting.metric_titles import title
+from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
+
+ALPHA = 0.05
+"""Probability of one or more false differences in a family of comparisons."""
+
+SHARE = 0.02
+"""Share of the larger median, or a fraction itself, up to which a difference is no answer."""
+
+EXPLAINED = (
+    "Both have the same seeds and are compared draw by draw, cells that share a draw by their mean: the Hodges-Lehmann "
+    "estimate of the difference, its interval from n pairs, the effect (rank-biserial correlation: 1 with all pairs "
+    "larger, -1 with all smaller), and p of the signed-rank test. Each axis, or pair of runs or sweeps, asks a "
+    "question of its own. Its comparisons in the first metric are one family, those in the other metrics of the first "
+    "screen another, all others a third: p is corrected within the family (Holm), and the interval has the level at "
+    f"which it was decided. Smaller or larger is said where p is below {ALPHA:g} and the difference above the plant's "
+    f"error in it and above {100 * SHARE:g} % of the larger median, or {SHARE:g} of a fraction."
+)
+
+CHOSEN = (
+    "Trials are chosen by their own draws and may look better than they are. To compare one, run it and another one "
+    "with another seed."
+)
+"""What is said of the trials that a tuning chose: none is called the best."""
+
+HEADER = ("difference", "interval", "n", "effect", "p")
+"""Columns between the names of what is compared and the word."""
+
+_SMALLEST = 1e-3  # p-value that is told
+
+
+class Asked(NamedTuple):
+    """A comparison that is to be judged: of which metric, and its unit."""
+
+    metric: str
+    unit: str
+    comparison: Comparison
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """A comparison, judged beside the others of its family.
+
+    Attributes:
+        metric: Name of the metric.
+        unit: Its unit.
+        comparison: The comparison.
+        p_value: Its p, corrected for the family; None with too few pairs for any p.
+        level: The level at which it was decided.
+        family: Number of comparisons in the family.
+    """
+
+    metric: str
+    unit: str
+    comparison: Comparison
+    p_value: float | None
+    level: float
+    family: int
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """The interval of the difference; None with too few pairs for its level."""
+        return self.comparison.interval(self.level)
+
+    @property
+    def least(self) -> float:
+        """The difference from which on it is an answer, whatever the plant leaves, in the metric's unit."""
+        known = [abs(median) for median in self.comparison.medians if np.isfinite(median)]
+        share = SHARE if "fraction" in self.metric else SHARE * max(known, default=0.0)
+        return max(share, ROUNDING)
+
+    @property
+    def sign(self) -> int:
+        """-1 where the second may be called smaller, 1 where larger, 0 where neither may be said."""
+        error, size = self.comparison.error or 0.0, abs(self.comparison.difference)
+        told = self.p_value is not None and self.p_value < ALPHA and size > max(self.least, error)
+        return int(np.sign(self.comparison.difference)) if told else 0
+
+    @property
+    def word(self) -> str:
+        """What the second is beside the first, or why that cannot be said."""
+        found, size = self.comparison, abs(self.comparison.difference)
+        if self.p_value is None:
+            return f"too few pairs to say ({found.n} of {SMALLEST_SAMPLE})"
+        if self.p_value >= ALPHA:
+            few = f"too few pairs for {self.family} comparisons ({found.n} of {fewest_pairs(self.level)})"
+            return "no difference shown" if self.interval else few
+        if size <= ROUNDING:
+            return "no more than rounding"
+        if found.error is not None and size <= found.error:
+            left = quantity(found.error, self.unit, 2) if np.isfinite(found.error) else "a run fails on a finer step"
+            return f"below what the plant's step leaves ({left})"
+        if size <= self.least:
+            return f"less than {SHARE:g} apart" if "fraction" in self.metric else f"less than {100 * SHARE:g} % apart"
+        return "smaller" if self.sign < 0 else "larger"
+
+    @property
+    def cells(self) -> list[str]:
+        """The cells of a table: HEADER, then the word."""
+        found = self.comparison
+        low, high = self.interval or (None, None)
+        text, ends, shown = with_ends(found.difference, low, high, self.unit)
+        return [
+            text if np.isfinite(found.difference) else "beyond every number",
+            "–" if low is None else _with_unit(ends, shown),
+            str(found.n),
+            f"{found.effect:.2f}",
+            "–" if self.p_value is None else _chance(self.p_value),
+            self.word,
+        ]
+
+    def sentence(self, first: str, second: str, beside: str = "") -> str:
+        """Return in some sentences how the second compares with the first in this metric, and how many pairs would do.
+
+        Args:
+            first: What the first is called.
+            second: What the second is called.
+            beside: A sentence between the two, with a space before it.
+        """
+        name = title(self.metric)
+        head, told = f"{name[:1].upper()}{name[1:]}:", self._evidence()
+        if self.sign:
+            unknown = "" if self.comparison.error is not None else "; the plant's own error in it is not known"
+            return f"{head} {second} is {self.word} than {first} by {self.amount} ({told}{unknown}).{beside}"
+        said = f"{second} and {first}: {self.word}; {told}"
+        if self.word == "no difference shown":
+            said = f"no difference between {first} and {second} is shown ({told})"
+        return f"{head} {said}.{beside}{self._would_do()}"
+
+    @property
+    def amount(self) -> str:
+        """The size of the difference in words."""
+        difference = abs(self.comparison.difference)
+        return quantity(difference, self.unit) if np.isfinite(difference) else "more than any number"
+
+    def _evidence(self) -> str:
+        found = self.comparison
+        medians = " and ".join(quantity(one, self.unit) if np.isfinite(one) else "never" for one in found.medians)
+        difference, interval, *_ = self.cells
+        ends = [] if self.interval is None else [f"difference {difference}, {interval}"]
+        p_value = [] if self.p_value is None else [f"p = {_chance(self.p_value)}"]
+        lost = [f"no value in {a} and {b} of {found.n} draws" for a, b in [found.lost] if a or b]
+        return ", ".join([f"medians {medians}", *ends, *p_value, *lost, f"{found.n} pairs"])
+
+    def _would_do(self) -> str:
+        """Return how many pairs would do, where the pairs tell."""
+        found = self.comparison
+        if self.p_value is not None and self.p_value < ALPHA:
+            return ""
+        if self.p_value is None or self.interval is None:
+            return f" At least {fewest_pairs(self.level)} pairs are needed."
+        least = max(self.least, found.error or 0.0)
+        count = found.pairs_needed(least, self.level)
+        if count is None or found.correlation is None:
+            return ""
+        enough = f"about {number(float(count), 2)} would" if count > found.n else "these"
+        size = quantity(least, self.unit, 2)
+        return f" The pairs correlate by {found.correlation:.2f}: {enough} show a difference of {size}."
+
+
+def judge(asked: Sequence[Asked], first: Sequence[str]) -> list[Answer]:
+    """Return the answers to a question, in the order of its comparisons.
+
+    Args:
+        asked: All comparisons that the question makes.
+        first: Metrics of the first screen: the task's primary one, then others.
+    """
+    answers: dict[int, Answer] = {}
+    places: list[list[int]] = [[], [], []]
+    for place, one in enumerate(asked):
+        places[0 if one.metric in first[:1] else 1 if one.metric in first else 2].append(place)
+    for family in places:
+        tested = [place for place in family if asked[place].comparison.p_value is not None]
+        p_values = [asked[place].comparison.p_value or 0.0 for place in tested]
+        corrected = dict(zip(tested, holm(p_values).tolist(), strict=True))
+        levels = dict(zip(tested, holm_levels(p_values, ALPHA).tolist(), strict=True))
+        for place in family:
+            level = levels.get(place, ALPHA / max(len(family), 1))
+            answers[place] = Answer(*asked[place], corrected.get(place), level, len(family))
+    return [answers[place] for place in range(len(asked))]
+
+
+def _chance(p_value: float) -> str:
+    return f"{p_value:.2g}" if p_value >= _SMALLEST else f"< {_SMALLEST:g}"
+
+
+def _with_unit(ends: str, unit: str) -> str:
+    """Return a range with its unit behind the last number."""
+    low, high = ends.split(" to ")
+    if high != "never":
+        return f"{ends} {unit}".strip()
+    return ends if low == "never" else f"{low} {unit}".strip() + " to never"

@@ -1,0 +1,167 @@
+"""The forms of a judged equation as a report shows them: what differs is marked, and long ones are cut to that."""
+
+from collections.abc import Iterator, Mapping, Sequence, Set
+
+from runner.audit.entry import Entry, Form
+from runner.base.expressions.difference import Difference, difference
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.parser import parse
+from runner.base.expressions.shortening import holds, shortened
+from runner.base.expressions.tree import Node, Sum, size
+from runner.base.expressions.typesetting import linear
+from runner.reporting.audit.formula_marks import marked_formulas
+from runner.reporting.audit.likeness import Likeness
+from runner.reporting.audit.matrices import gathered
+from runner.reporting.audit.pieces import LONG, cut, pieces
+from runner.reporting.equation import EquationForm, Matrix
+
+_SYMBOLS = 40  # symbols of a form that is shown whole
+_OTHER = 0.5  # share of symbols that differ from which on an expression is another, and not one with a fault
+_FAULTS = 6  # differing parts up to which it is one with faults
+
+_Elements = Mapping[str, Node]
+_Shown = list[tuple[Node, Node | Matrix]]
+
+
+def forms_of(entry: Entry, likeness: Likeness) -> list[EquationForm]:
+    """Return the forms of an equation, each with what it does not share with the next one marked.
+
+    Args:
+        entry: The equation.
+        likeness: The right forms of the equations around it.
+    """
+    forms = [form for form in (entry.printed, entry.repair, entry.corrected) if form is not None]
+    read = [_read(form) for form in forms]
+    marks = _marks(read)
+    found = []
+    for place, (form, elements) in enumerate(zip(forms, read, strict=True)):
+        label = _label(entry, form)
+        note = entry.repair.why if entry.repair is not None and form is entry.repair else ""
+        beside = forms[1 - place] if len(forms) > 1 and place < 2 else None
+        if form.math and form is entry.repair and form.math == entry.printed.math:
+            found.append(EquationForm(label, note=note))
+        elif form.math:
+            found.append(EquationForm(label, math=_math(forms, place), note=note))
+        elif elements is None:
+            found.append(_unread(f"{label}, as the text has it", form, beside, note))
+        elif form is entry.repair and read[0] is None and entry.corrected is None:
+            found.append(_unread(label, form, beside, note))
+        else:
+            like = likeness.words(entry, elements) if len(forms) == place + 2 and entry.corrected is not None else ""
+            alone = len(forms) == 1
+            made = _shown(label, form, elements, marks[place], f"{note} {like}".strip(), like=like, alone=alone)
+            mended = entry.repair is not None and beside is not None and form is not entry.corrected
+            empty = not (made.expressions or like)
+            found.append(_unread(label, form, beside, note) if mended and empty else made)
+    return found
+
+
+def _math(forms: Sequence[Form], place: int) -> str:
+    """Return a formula with what it does not share with the next one marked, the last with the one before."""
+    first = min(place, len(forms) - 2)
+    if first < 0 or not (forms[first].math and forms[first + 1].math):
+        return forms[place].math
+    return marked_formulas(forms[first].math, forms[first + 1].math)[place - first]
+
+
+def _label(entry: Entry, form: Form) -> str:
+    if form is entry.corrected:
+        return "corrected"
+    return "as printed" if form is entry.printed else "repaired"
+
+
+def _read(form: Form) -> _Elements | None:
+    """Return the elements of a form, whose parts know their places in all of it; None where one cannot be read."""
+    found, place = {}, 0
+    try:
+        for name, text in form.elements.items():
+            found[name] = parse(" " * place + text).root
+            place += len(text)
+    except ExpressionError:
+        return None
+    return found
+
+
+def _marks(read: list[_Elements | None]) -> list[set[Node]]:
+    """Return what each form does not share with the next one, the last with the one before."""
+    marks: list[set[Node]] = [set() for _ in read]
+    for place in range(len(read) - 1):
+        ours, theirs = read[place], read[place + 1]
+        if ours and theirs and len(ours) == len(theirs):
+            first, second = marks[place], marks[place + 1]
+            first.clear()
+            for one, other in zip(ours.values(), theirs.values(), strict=True):
+                found = difference(one, other)
+                if found.symbols_alone or _has_fault(one, other, found):
+                    first |= found.first
+                    second |= found.second
+                elif len(ours) > 1:
+                    first.add(one)
+                    second.add(other)
+    return marks
+
+
+def _has_fault(one: Node, other: Node, found: Difference) -> bool:
+    """Return whether two expressions are the same but for faults that can be pointed at."""
+    shares = _share(one, found.first), _share(other, found.second)
+    return max(shares) < 1 and min(shares) <= _OTHER and min(len(found.first), len(found.second)) <= _FAULTS
+
+
+def _share(node: Node, marked: Set[Node]) -> float:
+    return sum(map(size, marked)) / size(node)
+
+
+def _unread(label: str, form: Form, beside: Form | None, note: str) -> EquationForm:
+    """Return a form as text, cut to where it differs from the form beside it."""
+    text = _text(form)
+    shown = pieces(text, _text(beside)) if beside else cut(text)
+    return EquationForm(label, raw=shown, note=note, whole=text if len(text) > LONG else "")
+
+
+def _text(form: Form) -> str:
+    return "; ".join(f"{name} = {text}" for name, text in form.elements.items())
+
+
+def _shown(
+    label: str, form: Form, elements: _Elements, marked: set[Node], note: str, *, like: str, alone: bool
+) -> EquationForm:
+    """Return a form that can be read: all of it where it is short or stands alone, else what is marked."""
+    whole = linear(_text(form))
+    groups, marks = gathered(elements), frozenset(marked)
+    if alone or sum(map(size, elements.values())) <= _SYMBOLS:
+        return EquationForm(label, groups, marks, note=note)
+    if like:
+        return EquationForm(label, note=note, whole=whole)
+    shown = _short([(left, _cut(part, marks)) for left, part in groups if _holds(part, marks)] or _begun(groups))
+    return EquationForm(label, shown, marks, note=note, whole=whole)
+
+
+def _nodes(part: Node | Matrix) -> Iterator[Node]:
+    if isinstance(part, Matrix):
+        for row in part.rows:
+            yield from row
+    else:
+        yield part
+
+
+def _holds(part: Node | Matrix, marked: Set[Node]) -> bool:
+    return any(holds(node, marked) for node in _nodes(part))
+
+
+def _cut(part: Node | Matrix, marked: Set[Node]) -> Node | Matrix:
+    if isinstance(part, Matrix):
+        return Matrix([[shortened(node, marked) for node in row] for row in part.rows])
+    return shortened(part, marked)
+
+
+def _begun(groups: _Shown) -> _Shown:
+    """Return the first terms of a form in which nothing is marked."""
+    return [
+        (left, _cut(part, {term for _, term in part.terms} if isinstance(part, Sum) else set()))
+        for left, part in groups
+    ]
+
+
+def _short(groups: _Shown) -> _Shown:
+    """Return what is shown of a form, or nothing where it is still too long to be read."""
+    return groups if sum(size(node) for _, part in groups for node in _nodes(part)) <= 2 * _SYMBOLS else []

@@ -1,0 +1,200 @@
+"""The audit as a report: the equations of each source, wrong ones first, and what a robot does that uses them."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from datetime import UTC, datetime
+
+from runner.audit.audit import counts
+from runner.audit.inventory import inventory
+from runner.audit.rollout import run_rollout
+from runner.audit.verdict import SAMPLES, VERDICTS, Judged
+from runner.base import progress
+from runner.base.progress.stages import BELIEVING
+from runner.base.quantities import quantity
+from runner.reporting.audit.forms import forms_of
+from runner.reporting.audit.likeness import Likeness
+from runner.reporting.document import (
+    Block,
+    Curves,
+    Document,
+    Equation,
+    Equations,
+    Items,
+    Notice,
+    Origin,
+    Panel,
+    Provenance,
+    Section,
+    Series,
+    Table,
+    Text,
+)
+from runner.reporting.markup import literals, marked
+from runner.store import provenance
+
+COMMAND = "runner reproduce audit"
+DATA = "equations.csv"
+"""Name of the table of all equations, which stands beside the report."""
+
+_PANELS = 4  # panels of a figure
+_WORDS = (
+    "Correct: equal to the truth, but for rounding, at every configuration tried. Correct after repair: so once damage "
+    "of the text is mended. Wrong as printed: not so, and the right form stands beside it, with what differs marked. "
+    "Unreadable: too much of the text is lost. Definition: it only names things."
+)
+
+
+def audit_document(judged: Mapping[str, Sequence[Judged]]) -> Document:
+    """Return the report on the audit.
+
+    Args:
+        judged: The verdicts of each source, by its name.
+    """
+    everything = [each for source in judged.values() for each in source]
+    total = counts(everything)
+    progress.begin(BELIEVING, None, sum(len(_rollouts(each)) for each in judged.values()), "wrong formulas")
+    return Document(
+        title="Equations of three published works, checked by machine",
+        subtitle="Every printed equation against the arm's true kinematics and dynamics",
+        abstract=(
+            f"{len(everything)} equations were transcribed as they are printed and tried at {SAMPLES} random "
+            f"configurations each. {total['correct']} are correct and {total['correct after repair']} more once damage "
+            f"of the text is mended; {total['wrong as printed']} are wrong as printed, each with its right form below; "
+            f"{total['unreadable']} can be read no more, and {total['definition']} only name things. Every verdict of "
+            "wrong was found in two independent ways."
+        ),
+        sections=(
+            *(_source(source, each) for source, each in judged.items()),
+            Section("How they were judged", (Text(_reading()), _counts(judged), _ways(judged), _inventory(judged))),
+            Section("Provenance", (_provenance(),)),
+        ),
+        notes=(_WORDS, f"Each square leads to its equations. All of them, whole, stand in {DATA} beside this report."),
+        date=datetime.now(UTC).date().isoformat(),
+    )
+
+
+def _counts(judged: Mapping[str, Sequence[Judged]]) -> Table:
+    rows = [[source, *map(str, counts(each).values()), str(len(each))] for source, each in judged.items()]
+    total = counts([each for source in judged.values() for each in source])
+    rows.append(["all", *map(str, total.values()), str(sum(total.values()))])
+    return Table(
+        "Equations of each source by verdict.",
+        ["source", *VERDICTS, "all"],
+        rows,
+        tuple(range(1, len(VERDICTS) + 2)),
+        Origin(command=COMMAND),
+    )
+
+
+def _reading() -> str:
+    return (
+        "A form is judged as it stands wherever it can be read, even where the text is more likely to be at fault "
+        "than the author: we have the text of the three works as a machine read it, not their pages. It is repaired "
+        "only where it cannot be read, or where a line is plainly damaged, and then the repair is stated and keeps "
+        "every other sign; a wrong label, too, is judged as it stands unless those around it are plainly "
+        "misread. Verdicts are worked out, not written down: the printed form, the repaired and the "
+        "corrected one are evaluated at the same configurations and compared with the truth, once from Pinocchio's "
+        "model or the like and once in a way that shares nothing with it but the arm's measures. The largest error is "
+        "over all configurations and elements, the typical one the median over configurations of the largest "
+        "element's."
+    )
+
+
+def _inventory(judged: Mapping[str, Sequence[Judged]]) -> Table:
+    rows = []
+    for source, each in judged.items():
+        audited = [one.entry.place for one in each]
+        for place in inventory(source).places:
+            lost = ", ".join(place.lost) or "–"
+            rows.append([source, place.place, str(len(place.equations)), str(audited.count(place.place)), lost])
+    return Table(
+        "Equations printed in each place of the text, and equations audited there; the last column names those that "
+        "must have stood there and are missing from the text.",
+        ["source", "place", "printed", "audited", "lost in the text"],
+        [literals(line) for line in rows],
+        (2, 3),
+    )
+
+
+def _ways(judged: Mapping[str, Sequence[Judged]]) -> Table:
+    found: dict[tuple[str, str], dict[str, None]] = {}
+    for source, each in judged.items():
+        for one, another in sorted({one.ways for one in each if one.entry.truth}):
+            found.setdefault((source, one), {})[another] = None
+    lines = [[source, one, "; ".join(others)] for (source, one), others in found.items()]
+    return Table("Ways to what the equations claim to equal.", ["source", "one way", "another"], lines)
+
+
+def _source(source: str, judged: Sequence[Judged]) -> Section:
+    blocks: list[Block] = [
+        Notice("finding", "What is wrong, and why", inventory(source).found),
+        Equations(f"Equations of the {source} source.", rows(judged), source=source, data=DATA),
+    ]
+    names = _rollouts(judged)
+    return Section(inventory(source).title, blocks, (_runs(source, names),) if names else ())
+
+
+def _rollouts(judged: Sequence[Judged]) -> Sequence[str]:
+    """Return the names of what a robot does that believes wrong formulas, each once."""
+    return list(dict.fromkeys(each.entry.rollout for each in judged if each.entry.rollout))
+
+
+def rows(judged: Sequence[Judged]) -> list[Equation]:
+    """Return the equations of a source for a report, in the order of the text."""
+    likeness = Likeness(judged)
+    return [
+        Equation(
+            each.entry.number,
+            each.entry.title,
+            each.entry.place,
+            each.verdict,
+            _error(each),
+            forms_of(each.entry, likeness),
+            each.entry.finding,
+        )
+        for each in judged
+    ]
+
+
+def _error(judged: Judged) -> str:
+    measured, entry = judged.measured, judged.entry
+    if measured is None:
+        return ""
+    if judged.verdict != "wrong as printed":
+        return f"within {quantity(entry.tolerance, entry.unit, 2)}"
+    if math.isinf(measured.largest):
+        return f"without bound, typically {quantity(measured.typical, entry.unit)}"
+    return f"up to {quantity(measured.largest, entry.unit)}, typically {quantity(measured.typical, entry.unit)}"
+
+
+def _runs(source: str, names: Iterable[str]) -> Section:
+    """Return what a robot does that believes the wrong formulas: a sentence and a panel for each run."""
+    found = []
+    for name in names:
+        found.append(run_rollout(source, name))
+        progress.step()
+    told = [f"{marked(words.title, 'emphasis')}: {words.text}" for words, _ in found]
+    panels = [
+        Panel(
+            words.title,
+            words.x_label,
+            words.y_label,
+            [Series(name, run.x, values) for name, values in run.curves.items()],
+            y_log=words.logarithmic,
+        )
+        for words, run in found
+    ]
+    caption = f"What becomes of a robot that uses a wrong formula of {source}, beside one that uses the corrected one."
+    figures = [Curves(caption, panels[first : first + _PANELS]) for first in range(0, len(panels), _PANELS)]
+    return Section("What a robot does when it uses the wrong formulas", (Items(told), *figures))
+
+
+def _provenance() -> Provenance:
+    return Provenance(
+        (
+            ("commit", provenance.commit() or "none (installed package)"),
+            ("configurations", f"{SAMPLES}, seed 0"),
+            ("machine", provenance.machine()),
+            *provenance.versions().items(),
+        )
+    )

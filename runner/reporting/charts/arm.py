@@ -1,0 +1,140 @@
+"""An arm in motion as one still picture, and the path of its tip seen from above."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+
+from runner.base.arrays import FloatArray
+from runner.base.quantities import quantity
+from runner.reporting.charts import palette
+from runner.reporting.charts.canvas import GREY, INK, PALE, Camera, drawing, pair, scene, triad
+from runner.robots.model import RobotModel
+
+_LONG = 5.2  # long side of the view from above, in inches
+_PATH, _GOAL = palette.LIGHT[1], palette.LIGHT[2]
+_SHADES = LinearSegmentedColormap.from_list("instants", ["#b9cfe8", palette.LIGHT[0], "#0c2b52"])
+
+
+@drawing
+def arm_motion(
+    model: RobotModel,
+    q: FloatArray,
+    times: Sequence[float],
+    path: FloatArray | None = None,
+    desired: FloatArray | None = None,
+    goal: FloatArray | None = None,
+    camera: Camera | None = None,
+) -> Figure:
+    """Draw an arm at several instants in one picture, light at first and dark at last.
+
+    Args:
+        model: The robot.
+        q: Joint positions at each instant, shape (K, nq), in rad; up to eight can be told apart.
+        times: The instants, length K, in s.
+        path: Path of the tip, shape (N, 3), in m.
+        desired: Desired path, shape (M, 3), in m.
+        goal: Goal of the tip, shape (3,), in m.
+        camera: The view.
+    """
+    camera = camera or Camera(32.0, 18.0)
+    chains = np.array([[*model.frame_poses(row, model.joint_names)[:, :3, 3], model.tip_position(row)] for row in q])
+    figure, axes = scene(5.4, 3.8)
+    points = np.vstack([chains.reshape(-1, 3), *(p for p in (path, desired) if p is not None)])
+    floor = min(0.0, float(points[:, 2].min())) - 0.05 * model.reach
+    _draw_floor(axes, camera, points, floor)
+    _draw_base(axes, camera, model, floor)
+    for number, chain in enumerate(chains):
+        color = _SHADES(number / max(1, len(chains) - 1))
+        flat = camera.project(chain)
+        axes.plot(*flat.T, color=color, lw=3, solid_capstyle="round", solid_joinstyle="round", zorder=2 + 0.1 * number,
+                  label=f"{times[number]:.3g} s" if len(chains) > 1 else None)  # fmt: skip
+        axes.plot(*flat.T, "o", ms=4, mfc="white", mec=color, mew=1.1, zorder=2.05 + 0.1 * number)
+    if path is not None:
+        shadow = np.column_stack([path[:, :2], np.full(len(path), floor)])
+        axes.plot(*camera.project(shadow).T, color=PALE, lw=1.6, zorder=1)
+        axes.plot(*camera.project(path).T, color=_PATH, lw=1.4, zorder=5, label="path of the tip")
+    if desired is not None:
+        axes.plot(*camera.project(desired).T, color=INK, lw=1.0, ls=(0, (4, 2)), zorder=5.5, label="desired path")
+    if goal is not None:
+        axes.plot(*camera.project(goal), "*", ms=11, mfc=_GOAL, mec="white", mew=0.7, zorder=6, label="goal", ls="none")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=7.5, handlelength=1.8)
+    return figure
+
+
+def _draw_floor(axes: Axes, camera: Camera, points: FloatArray, floor: float) -> None:
+    """Draw a grid on the floor with lines a round distance apart, and say which."""
+    span = float(np.ptp(points[:, :2], axis=0).max())
+    cell = 10.0 ** np.floor(np.log10(max(span, 1e-9)))
+    cell = cell / 2.0 if span / cell >= 2.0 else cell / 5.0
+    low = np.floor(np.minimum(points[:, :2].min(axis=0), 0.0) / cell - 0.2) * cell
+    high = np.ceil(np.maximum(points[:, :2].max(axis=0), 0.0) / cell + 0.2) * cell
+    for x in np.arange(low[0], high[0] + cell / 2.0, cell):
+        axes.plot(*camera.project(np.array([[x, low[1], floor], [x, high[1], floor]])).T, color=PALE, lw=0.5, zorder=0)
+    for y in np.arange(low[1], high[1] + cell / 2.0, cell):
+        axes.plot(*camera.project(np.array([[low[0], y, floor], [high[0], y, floor]])).T, color=PALE, lw=0.5, zorder=0)
+    corner = camera.project(np.array([high[0], low[1], floor]))
+    axes.annotate(f"grid: {cell:g} m", pair(corner), (0, -4), textcoords="offset points", va="top", ha="center",
+                  fontsize=7.5, color=GREY)  # fmt: skip
+
+
+def _draw_base(axes: Axes, camera: Camera, model: RobotModel, floor: float) -> None:
+    shoulder = model.shoulder
+    foot = np.array([shoulder[0], shoulder[1], floor])
+    top = shoulder + np.array([0.0, 0.0, 0.6 * model.reach])
+    axes.plot(*camera.project(np.array([foot, top])).T, color=GREY, lw=0.8, ls=(0, (9, 2, 2, 2)), zorder=1.2)
+    axes.annotate("base axis", pair(camera.project(top)), (0, 3), textcoords="offset points", ha="center", fontsize=7.5,
+                  color=GREY)  # fmt: skip
+    triad(axes, camera, np.eye(4), camera.project(foot), 0.2 * model.reach, "", 0.05 * model.reach)
+
+
+@drawing
+def top_view(model: RobotModel, path: FloatArray, desired: FloatArray | None = None) -> Figure:
+    """Draw the path of the tip seen from above, with the place where it passes closest to the base axis.
+
+    Args:
+        model: The robot; its base axis is the vertical through its shoulder.
+        path: Path of the tip, shape (N, 3), in m.
+        desired: Desired path, shape (M, 3), in m.
+    """
+    centre = model.shoulder[:2]
+    flat = path[:, :2]
+    low, high = np.vstack([flat, centre]).min(axis=0), np.vstack([flat, centre]).max(axis=0)
+    middle, half = (low + high) / 2.0, (high - low) / 2.0 + 0.1 * model.reach
+    half = np.maximum(half, 0.35 * half.max())
+    width, height = _LONG * half[[1, 0]] / half.max()
+    figure = Figure(figsize=(width, height))
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set(xlim=(middle[1] - half[1], middle[1] + half[1]), ylim=(middle[0] + half[0], middle[0] - half[0]))
+    # y to the right and x downwards: what an observer above the arm sees after a quarter turn.
+    axes.plot(flat[:, 1], flat[:, 0], color=_PATH, lw=1.4, label="path of the tip", zorder=3)
+    if desired is not None:
+        axes.plot(desired[:, 1], desired[:, 0], color=INK, lw=1.0, ls=(0, (4, 2)), label="desired path", zorder=4)
+    for point, word, shift in ((flat[0], "start", (4, 5)), (flat[-1], "end", (4, 5))):
+        axes.plot(point[1], point[0], "o", ms=4.5, color=_PATH, zorder=4)
+        axes.annotate(word, (point[1], point[0]), shift, textcoords="offset points", fontsize=7.5)
+    axes.plot(centre[1], centre[0], "o", ms=7, mfc="white", mec=INK, zorder=5)
+    axes.plot(centre[1], centre[0], "o", ms=2, color=INK, zorder=5, label="base axis")
+    nearest, distance = _nearest(flat, centre)
+    axes.plot([centre[1], nearest[1]], [centre[0], nearest[0]], color=INK, lw=0.9, zorder=4)
+    axes.annotate(quantity(distance, "m"), (nearest[1], nearest[0]), (-12, -14), textcoords="offset points", ha="right",
+                  va="top", arrowprops={"arrowstyle": "-", "color": GREY, "lw": 0.6})  # fmt: skip
+    axes.grid(color="#e3e6ea", lw=0.5)
+    axes.set_xlabel("$y$ (m)")
+    axes.set_ylabel("$x$ (m)")
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=7.5, frameon=False)
+    return figure
+
+
+def _nearest(path: FloatArray, point: FloatArray) -> tuple[FloatArray, float]:
+    """Return the point of a polyline in the plane that lies closest to a point, and its distance in m."""
+    start, step = path[:-1], np.diff(path, axis=0)
+    squared = np.maximum(np.einsum("ij,ij->i", step, step), 1e-300)
+    share = np.clip(np.einsum("ij,ij->i", point - start, step) / squared, 0.0, 1.0)
+    feet = start + share[:, None] * step
+    distances = np.linalg.norm(feet - point, axis=1)
+    index = int(np.argmin(distances))
+    return feet[index], float(distances[index])

@@ -1,0 +1,156 @@
+"""What two sweeps, or two runs, differ in: the thing that is compared, and all else that could be the cause."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from runner.reporting.comparison.cells import Matched, label_text
+from runner.reporting.comparison.side import Side
+from runner.store import simulated_part
+from runner.sweeps.differing import entries, is_of_option
+from runner.sweeps.measurements import Measurements
+from runner.sweeps.resolved import DISTANCE
+
+# How many values there are and which noise they have is no part of what a cell is.
+_OF_REPETITIONS = ("seed", "repetitions")
+_OPTION = ("kind", "name")
+# Of what made the runs these tell nothing about the physics.
+_NO_PHYSICS = ("seed", "machine", "made on", "plant")
+_FOLLOWING = ("plant.step", DISTANCE)  # from other values, which stand before them
+ABSENT = "(absent)"
+
+
+@dataclass(frozen=True)
+class Value:
+    """A value that differs between two sweeps.
+
+    Attributes:
+        key: Its dotted key, or what it is in words.
+        a: The value in the first, as text.
+        b: The value in the second.
+        cells: The matched cells at which it has these two values, as text; empty for all of them.
+    """
+
+    key: str
+    a: str
+    b: str
+    cells: str = ""
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """What two sweeps differ in where their cells are matched.
+
+    Attributes:
+        options: Groups of which they take other options, such as `controller`.
+        values: Resolved values that differ beside these.
+        provenance: What made the runs, where that differs: commit and versions.
+    """
+
+    options: Sequence[Value]
+    values: Sequence[Value]
+    provenance: Sequence[Value]
+
+    @property
+    def names(self) -> list[str]:
+        """All that they differ in, each once; options first."""
+        return list(dict.fromkeys(value.key for value in (*self.options, *self.values)))
+
+    def in_words(self, a: str, b: str) -> str:
+        """Return in a sentence whether one thing alone differs, and what else does.
+
+        Args:
+            a: What the first is called.
+            b: What the second is called.
+        """
+        if not self.names:
+            return f"{a} and {b} differ in no value."
+        first = self.options or self.values
+        heads = list(dict.fromkeys(value.key for value in self.options)) or self.names[:1]
+        told = ", ".join(f"{key} ({_both(first, key)})" for key in heads)
+        rest = [name for name in self.names if name not in heads]
+        if len(heads) == 1 and not rest:
+            return f"{a} and {b} differ in {heads[0]} alone: {_both(first, heads[0])}."
+        beside = f", and beside it in {', '.join(rest)}" if rest else ""
+        return f"{a} and {b} differ in {told}{beside}. What follows may be due to any of these."
+
+
+def beyond(a: Side, b: Side, matched: Matched) -> Beyond:
+    """Return all resolved values that differ between the matched cells of two sweeps.
+
+    Of a group of which they take other options only those values count that both options have, such as their gains; of
+    a robot not what it is made of.
+    """
+    found = _differing(a, b, matched)
+    groups = {key.partition(".")[0] for key in found if key.partition(".")[2] in _OPTION}
+    options, values = [], []
+    for key, texts in found.items():
+        group, _, rest = key.partition(".")
+        if group not in groups:
+            values += _values(key, texts, matched)
+        elif rest in _OPTION:
+            if (group, rest) == (group, _called(group, found)):
+                options += _values(key, texts, matched, group)
+        elif not is_of_option(key):
+            values += _values(key, {both: pairs for both, pairs in texts.items() if None not in both}, matched)
+    values.sort(key=lambda value: value.key in _FOLLOWING)
+    return Beyond(options, values, list(_provenance(a.measurements, b.measurements)))
+
+
+Texts = dict[tuple[str | None, str | None], list[int]]
+
+
+def _differing(a: Side, b: Side, matched: Matched) -> dict[str, Texts]:
+    """Return the keys that differ, with the values of both sides and the pairs that have these."""
+    places = np.stack([a.config_of_cells()[matched.pairs.a], b.config_of_cells()[matched.pairs.b]], axis=1)
+    distinct, which = np.unique(places, axis=0, return_inverse=True)
+    order = np.argsort(which.ravel(), kind="stable")
+    members = np.split(order, np.flatnonzero(np.diff(which.ravel()[order])) + 1)
+    found: dict[str, Texts] = {}
+    for (of_a, of_b), pairs in zip(distinct.tolist(), members, strict=True):
+        one, other = _part(a, of_a), _part(b, of_b)
+        changed = [name for name in {**one, **other} if one.get(name) != other.get(name)]
+        flat = [dict(entries({name: config[name] for name in changed if name in config})) for config in (one, other)]
+        for key in {**flat[0], **flat[1]}:
+            both = (flat[0].get(key), flat[1].get(key))
+            if both[0] != both[1]:
+                found.setdefault(key, {}).setdefault(both, []).extend(pairs.tolist())
+    return found
+
+
+def _part(side: Side, place: int) -> Mapping[str, Any]:
+    config = simulated_part(side.measurements.configs[place][0])
+    return {key: value for key, value in config.items() if key not in _OF_REPETITIONS}
+
+
+def _called(group: str, found: Mapping[str, Texts]) -> str:
+    """Return the key by which an option of a group is told: its name where that differs, else its kind."""
+    return "name" if f"{group}.name" in found else "kind"
+
+
+def _values(key: str, texts: Texts, matched: Matched, name: str = "") -> list[Value]:
+    values = []
+    for (of_a, of_b), pairs in texts.items():
+        everywhere = len(pairs) == len(matched.labels)
+        more = f" and {len(pairs) - 1} more" if len(pairs) > 1 else ""
+        where = "" if everywhere else label_text(matched.labels[min(pairs)]) + more
+        values.append(Value(name or key, ABSENT if of_a is None else of_a, ABSENT if of_b is None else of_b, where))
+    return values
+
+
+def _provenance(a: Measurements, b: Measurements) -> Iterator[Value]:
+    for name in dict.fromkeys([*a.provenance, *b.provenance]):
+        of_a, of_b = (", ".join(side.provenance.get(name, [])) for side in (a, b))
+        if name not in _NO_PHYSICS and of_a != of_b:
+            yield Value(name, of_a or ABSENT, of_b or ABSENT)
+
+
+def _both(values: Sequence[Value], key: str) -> str:
+    """Return the values of a key in both, as "computed_torque against operational_space"."""
+    return "; ".join(
+        f"{value.a} against {value.b}{f' at {value.cells}' if value.cells else ''}"
+        for value in values
+        if value.key == key
+    )

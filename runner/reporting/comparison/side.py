@@ -1,0 +1,88 @@
+"""One of several sweeps that are compared, as far as it is stored."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from runner.base.errors import StoreError
+from runner.reporting.comparison.pairs import Cells
+from runner.store import Finished, Run, Sweep, open_sweep
+from runner.sweeps.measurements import Measurements, measure, measure_sweep, with_finer
+
+
+@dataclass(frozen=True)
+class Side:
+    """A sweep, or a run as a sweep of one cell.
+
+    Attributes:
+        name: What it is called in the comparison, such as "A".
+        folder: Its folder.
+        command: The command that makes it.
+        measurements: Its stored cells.
+        missing: Number of cells that are not stored.
+        damage: What is damaged of what is stored, a text for each file.
+    """
+
+    name: str
+    folder: Path
+    command: str
+    measurements: Measurements
+    missing: int = 0
+    damage: Sequence[str] = ()
+
+    @property
+    def failed(self) -> int:
+        """Number of cells that failed."""
+        return sum(status != "ok" for status in self.measurements.statuses)
+
+    def config_of_cells(self) -> Cells:
+        """Return the place in `measurements.configs` of the config of each cell, shape (cells,)."""
+        places = np.zeros(len(self.measurements.hashes), dtype=np.intp)
+        for place, (_, cells) in enumerate(self.measurements.configs):
+            places[cells] = place
+        return places
+
+    def resolved(self, key: str) -> list[Any]:
+        """Return the resolved value of a dotted key in each config; a mapping of a group, None where there is none."""
+        values = []
+        for config, _ in self.measurements.configs:
+            value: Any = config
+            for part in key.split("."):
+                value = value.get(part) if isinstance(value, dict) else None
+            values.append(value)
+        return values
+
+
+def open_side(name: str, folder: Path) -> Side:
+    """Open what is stored of a sweep, ended or not.
+
+    Raises:
+        StoreError: If the folder is no sweep, or none of its cells is stored.
+        DamagedError: If it is damaged.
+    """
+    sweep = open_sweep(folder)
+    part, damage = stored_part(sweep)
+    if not len(part.hashes):
+        raise StoreError(f"{folder}: none of its {len(sweep.hashes)} cells is stored; continue with: {sweep.command}")
+    missing = len(sweep.hashes) - len(part.hashes)
+    return Side(name, folder, sweep.command, measure_sweep(part), missing, damage)
+
+
+def side_of_run(name: str, run: Run) -> Side:
+    """Return a run as a sweep of one cell."""
+    measured = with_finer(measure([()], [run]), run.folder.parent.parent)
+    return Side(name, run.folder, str(run.provenance["command"]), measured)
+
+
+def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:
+    """Return a sweep with those of its cells that are stored, and what is damaged."""
+    finished = Finished(sweep.outputs)
+    ends = {name: finished.outcome(name) is not None for name in set(sweep.hashes)}
+    if all(ends.values()):
+        return sweep, finished.damage
+    kept = [cell for cell, name in enumerate(sweep.hashes) if ends[name]]
+    hashes = [sweep.hashes[cell] for cell in kept]
+    return replace(sweep, overrides=[sweep.overrides[cell] for cell in kept], hashes=hashes), finished.damage

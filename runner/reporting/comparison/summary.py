@@ -1,0 +1,43 @@
+"""What is told of two sweeps before any number: how large they are, and which cells are compared."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from runner.reporting.comparison.cells import label_text
+from runner.reporting.comparison.side import Side
+from runner.reporting.comparison.sweeps import SweepComparison
+from runner.reporting.comparison.words import counted
+
+_NAMED = 3  # cells of one sweep alone
+
+
+def size_told(side: Side) -> str:
+    """Return how many cells a sweep has, and repetitions in each."""
+    failed = f", {side.failed} of them failed" if side.failed else ""
+    cells = counted(len(side.measurements.hashes), "cell", "cells")
+    return f"{cells}{failed}; repetitions in each: {side.measurements.repetitions}"
+
+
+def cells_told(found: SweepComparison) -> Iterator[str]:
+    """Yield which cells are compared, and which are not and why."""
+    matched = found.matched
+    by = f", matched by {', '.join(matched.keys)}" if matched.keys else ""
+    repetitions = min(side.measurements.repetitions for side in (found.a, found.b))
+    both = counted(len(matched.labels), "cell is", "cells are")
+    yield (f"{both} in both{by}; up to {repetitions} repetitions of each are compared")
+    if matched.other_seeds:
+        more = counted(matched.other_seeds, "more cell is", "more cells are")
+        yield f"{more} in both with different seeds, and not compared"
+    for side, alone in zip((found.a, found.b), matched.alone, strict=True):
+        if alone:
+            yield (f"{counted(len(alone), 'cell is', 'cells are')} in {side.name} alone: {_some(alone)}")
+        if side.missing:
+            left = counted(side.missing, "cell", "cells")
+            yield (f"{left} of {side.name} not stored; continue with: {side.command}")
+        if side.failed:
+            failed = counted(side.failed, "cell", "cells")
+            yield f"{failed} of {side.name} failed; a failed repetition counts as beyond every number"
+
+
+def _some(labels: Sequence[Mapping[str, str]]) -> str:
+    more = f"; and {len(labels) - _NAMED} more" if len(labels) > _NAMED else ""
+    return "; ".join(map(label_text, labels[:_NAMED])) + more

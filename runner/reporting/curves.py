@@ -1,0 +1,187 @@
+"""A figure of curves as data for Plotly: one plot per panel, arrays as base64, texts without markup."""
+
+import base64
+import html
+import math
+import re
+import textwrap
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from runner.base.arrays import FloatArray
+from runner.base.texts import plain
+from runner.reporting.charts import palette
+from runner.reporting.charts.figure import shares_legend, upright
+from runner.reporting.charts.thinning import band, thin, usable
+from runner.reporting.charts.ticks import marks
+from runner.reporting.charts.units import in_readable_units
+from runner.reporting.document import Curves, Panel, Series
+
+Json = dict[str, Any]
+
+_SYMBOLS = ("diamond", "square")  # of points beyond the palette
+_MODES = {"line": "lines", "dashed": "lines", "dotted": "lines", "points": "markers", "points_line": "lines+markers"}
+_DASHES = {"dashed": "dash", "dotted": "dot"}
+_LEGEND_WIDTH, _TITLE_WIDTH = 40, 45
+_MOST_NAMES = 16
+_FEW_DECADES = 2
+_LARGEST = float(np.finfo("<f4").max)
+_UNIT = re.compile(r"\(([^(),]+)\)$")
+
+
+def plotly_spec(curves: Curves) -> list[Json]:
+    """Return what the page's script hands to Plotly: for each panel traces, palette indices and layout.
+
+    Where one legend serves all panels, it stands below the first of the last row, and what it hides is hidden in all.
+    """
+    shared, panels = shares_legend(curves.panels), in_readable_units(curves.panels, curves.columns)
+    below = (len(panels) - 1) // curves.columns * curves.columns
+    return [
+        _panel(panel) | {"together": shared, "legend": not shared or at == below} for at, panel in enumerate(panels)
+    ]
+
+
+def neutral(text: str) -> str:
+    """Return a text that Plotly shows literally: it reads tags, entities and formulas in all its texts."""
+    return html.escape(plain(text), quote=False).replace("$", "&#36;")
+
+
+def _panel(panel: Panel) -> Json:
+    chosen = palette.indices([series.color for series in panel.series])
+    traces: list[Json] = []
+    colors: list[int] = []
+    for number, (series, color) in enumerate(zip(panel.series, chosen, strict=True)):
+        drawn = [*_band(series, number), _trace(series, number, palette.rounds(color)) | _hover(panel, series)]
+        traces += drawn
+        colors += [color] * len(drawn)
+    edges = [edge for series in panel.series for edge in (series.low, series.high) if edge is not None]
+    heights = [series.y for series in panel.series] + edges
+    across = _axis(panel.x_label, panel.x_log, panel.x_range, [series.x for series in panel.series])
+    layout = {
+        "xaxis": across | named_places(panel.x_names) if panel.x_names else across,
+        "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, heights),
+        "showlegend": any(plain(series.name).strip() for series in panel.series),
+        "hovermode": "x unified" if all(map(_compared, panel.series)) else "closest",
+    }
+    return {"traces": traces, "colors": colors, "layout": layout}
+
+
+def named_places(names: Sequence[str]) -> Json:
+    """Return an axis with names at the places 0, 1, ...; of many, every other one and so on."""
+    step = -(-len(names) // _MOST_NAMES) or 1
+    return {
+        "tickmode": "array",
+        "tickvals": list(range(0, len(names), step)),
+        "ticktext": [neutral(name) for name in names[::step]],
+        "autotickangles": [0, -35, -90],  # names that are turned end at their place, so that the last one has room
+        "range": [-0.5, len(names) - 0.5],
+    }
+
+
+def _trace(series: Series, number: int, rounds: int) -> Json:
+    thinned = thin(series)
+    name = plain(series.name).strip()
+    pointed: Json = {"zorder": 1} if series.style in _DASHES else {}  # so that it is seen on a curve without breaks
+    if series.label:
+        texts = [*[""] * (thinned.x.size - 1), neutral(series.label)]
+        pointed |= {
+            "mode": "lines+text",
+            "cliponaxis": False,
+            "text": texts,
+            "textposition": "top right" if upright(series) else "top left",
+            "textfont": {"size": 10},
+        }
+    if series.hints:
+        pointed |= {"text": [neutral(hint) for hint in thinned.hints], "hoverinfo": "text"}
+    if series.runs:
+        pointed["customdata"] = list(thinned.runs)
+    return {
+        "type": "scatter",
+        "mode": _MODES[series.style],
+        "name": _lines(name, _LEGEND_WIDTH),
+        "showlegend": bool(name),
+        "legendgroup": str(number),
+        "line": {"dash": _DASHES.get(series.style, "solid"), "width": 1.7},
+        "marker": {"size": 6} | ({"symbol": _SYMBOLS[min(rounds, len(_SYMBOLS)) - 1]} if rounds else {}),
+        "x": _typed(thinned.x),
+        "y": _typed(thinned.y),
+        **pointed,
+    }
+
+
+def _hover(panel: Panel, series: Series) -> Json:
+    """Return what the pointer tells of a point without a hint: its numbers with their units."""
+    if series.hints:
+        return {}
+    y = f"%{{y:.4~g}}{_unit(panel.y_label)}"
+    if _compared(series):
+        return {"hovertemplate": y}  # x stands above all curves
+    return {"hovertemplate": f"%{{x:.4~g}}{_unit(panel.x_label)}, {y}"}
+
+
+def _unit(label: str) -> str:
+    """Return the unit at the end of an axis' label, after a space; nothing where there is none."""
+    found = _UNIT.search(plain(label))
+    return f" {neutral(found[1])}" if found else ""
+
+
+def _band(series: Series, number: int) -> list[Json]:
+    outline = band(thin(series))
+    if outline is None:
+        return []
+    return [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "fill": "toself",
+            "hoverinfo": "skip",
+            "showlegend": False,
+            "legendgroup": str(number),
+            "line": {"width": 0},
+            "x": _typed(outline[0]),
+            "y": _typed(outline[1]),
+        }
+    ]
+
+
+def _axis(label: str, log: bool, limits: tuple[float, float] | None, values: list[FloatArray]) -> Json:
+    title = {"text": _lines(label, _TITLE_WIDTH)}
+    axis: Json = {"title": title, "type": "log" if log else "linear", "hoverformat": ".5~g"}
+    shown = limits if limits is not None and usable(limits, log) else None
+    if shown is not None:
+        axis["range"] = [math.log10(limit) if log else float(limit) for limit in shown]
+    return axis | _marks(shown, values) if log else axis
+
+
+def _marks(shown: tuple[float, float] | None, values: list[FloatArray]) -> Json:
+    """Return the marks of a logarithmic axis: powers of ten, at most about ten; 2 and 5 between few of them."""
+    everything = np.concatenate(
+        [np.ravel(given) for given in (values if shown is None else [np.array(shown)])] or [np.zeros(0)]
+    )
+    positive = everything[np.isfinite(everything) & (everything > 0)]
+    if not positive.size:
+        return {}
+    first, last = math.floor(np.log10(positive.min())), math.ceil(np.log10(positive.max()))
+    between = (1, 2, 5) if last - first <= _FEW_DECADES else (1,)
+    places = [step * 10.0**power for power in range(first, last + 1, math.ceil((last - first) / 10) or 1)
+              for step in between]  # fmt: skip
+    write = marks(places[0], places[-1], log=True)
+    return {"tickmode": "array", "tickvals": places, "ticktext": [write(place) for place in places]}
+
+
+def _lines(text: str, characters: int) -> str:
+    """Return a text broken into lines, which Plotly does not do by itself."""
+    return "<br>".join(neutral(line) for line in textwrap.wrap(plain(text), characters))
+
+
+def _compared(series: Series) -> bool:
+    """Return whether curves are read at one x: the abscissae never go back, and no point has a hint of its own."""
+    return not series.hints and not np.any(np.diff(series.x[np.isfinite(series.x)]) < 0)
+
+
+def _typed(values: FloatArray) -> Json:
+    # What single precision cannot hold overflows the autorange; NaN is a gap.
+    finite = np.where(np.abs(values) <= _LARGEST, values, np.nan).astype("<f4")
+    return {"dtype": "f4", "bdata": base64.b64encode(finite.tobytes()).decode("ascii")}

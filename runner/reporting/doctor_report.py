@@ -1,0 +1,77 @@
+"""The doctor's examination of a robot as a report, with the robot drawn."""
+
+import numpy as np
+
+from runner.base.arrays import FloatArray
+from runner.base.quantities import number
+from runner.doctor.examination import Examination
+from runner.doctor.finding import GRADES
+from runner.reporting.bodies import playback_bodies
+from runner.reporting.charts import arm_motion
+from runner.reporting.document import Document, Notice, Playback, Provenance, Section, Table
+from runner.reporting.markup import literal, literals
+from runner.robots.model import RobotModel
+from runner.store.provenance import versions
+
+_SWING = 0.3  # rad, or share of the travel, by which each joint is shown
+_FRAMES = 24  # for each joint
+_SECONDS = 1.5  # for each joint
+
+
+def doctor_document(found: Examination) -> Document:
+    """Return the report on an examination."""
+    counts = {grade: sum(f.grade == grade for f in found.findings) for grade in GRADES}
+    if found.arm is not None:
+        verdict = "fits" if found.arm.has_mass else "fits, as joints that go where they are told"
+        drawn = _swings(found, found.arm.model, found.arm.start.home)
+        sections = [Section("The robot", (drawn,)), Section("Findings", (_findings(found),))]
+        sections.append(Section("Its joints", (_joints(found.arm.model),)))
+    else:
+        verdict = "is refused"
+        notice = Notice("failure", "No model", "The robot cannot be taken until what is refused below is corrected.")
+        sections = [Section("The robot", (notice,)), Section("Findings", (_findings(found),))]
+    rows = [("file", found.source.name), *versions().items()]
+    return Document(
+        title=f"Robot {found.name}",
+        subtitle=f"{found.source.name}, tip frame: {found.tip}",
+        abstract=f"The robot {verdict}.",
+        key_numbers=[
+            ("that bar the robot", str(counts["refused"]), "refused"),
+            ("changed in the copy", str(counts["fixed"]), "fixed"),
+            ("good to know", str(counts["note"]), "notes"),
+        ],
+        sections=[*sections, Section("Made with", (Provenance(rows),))],
+        date="",
+        figures_float=False,
+    )
+
+
+def _findings(found: Examination) -> Table:
+    rows = [[each.grade, *literals((each.place, each.text, each.remedy))] for each in found.findings]
+    return Table("What was found, and what was done or can be.", ["grade", "where", "what", "done"], rows, badges=(0,))
+
+
+def _swings(found: Examination, model: RobotModel, home: FloatArray) -> Playback:
+    """Return each joint in turn, swung about home."""
+    swing = np.where(model.slides, _SWING * np.ptp(model.usual_range, axis=0), _SWING)
+    wave = np.sin(np.linspace(0.0, 2.0 * np.pi, _FRAMES, endpoint=False))
+    q = np.concatenate([home + np.outer(wave, row) for row in np.diag(swing)])
+    q = np.clip(q, *model.position_limits)
+    times = np.arange(len(q)) * _SECONDS / _FRAMES
+    bodies = playback_bodies(found.urdf, model, q)
+    still = arm_motion(model, home[None], [0.0])
+    caption = (
+        "At the home proposed, and each joint in turn, swung about it; links without simple shapes are drawn as bones."
+    )
+    return Playback(caption, times, bodies, model.tip_positions(q), None, still)
+
+
+def _joints(model: RobotModel) -> Table:
+    lower, upper = model.position_limits
+    limits = zip(lower, upper, model.velocity_limits, model.effort_limits, strict=True)
+    rows = []
+    for name, unit, values in zip(model.joint_names, model.joint_units, limits, strict=True):
+        cells = [number(value) if np.isfinite(value) else "none" for value in values]
+        rows.append([literal(name), "slides" if unit == "m" else "turns", *cells])
+    header = ["joint", "motion", "lower (rad, m)", "upper (rad, m)", "speed (rad/s, m/s)", "effort (N m, N)"]
+    return Table("Joints and their limits.", header, rows, (2, 3, 4, 5))

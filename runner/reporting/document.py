@@ -1,0 +1,362 @@
+"""A report as plain data: sections of typed blocks, made once and rendered by two templates (HTML and Typst).
+
+Blocks hold values, never markup. Text may carry inline mathematics between dollar signs, written as Typst
+mathematics (`"the sag is $g / omega_n^2$"`); everything else is shown literally, so that a name from a config
+or a file can never become markup. A dollar sign is written as two. `§2.1` is a link to that section, and
+"claim 3", "figure 3.5" and "table 2.1" lead to these where the report has them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.base.arrays import FloatArray as FloatArray
+from runner.reporting.charts.figure import Map as Map
+from runner.reporting.charts.figure import Panel as Panel
+from runner.reporting.charts.figure import Series as Series
+from runner.reporting.claim import Claim
+from runner.reporting.equation import Equation as Equation
+from runner.reporting.equation import EquationForm as EquationForm
+from runner.reporting.equation import Matrix as Matrix
+
+
+@dataclass(frozen=True)
+class Text:
+    """A paragraph; inline mathematics stands between dollar signs."""
+
+    block: ClassVar[str] = "text"
+    text: str
+
+
+@dataclass(frozen=True)
+class Items:
+    """A list of short texts; inline mathematics as in Text."""
+
+    block: ClassVar[str] = "items"
+    items: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Code:
+    """A text that is shown as it is typed, and can be copied."""
+
+    block: ClassVar[str] = "code"
+    text: str
+
+
+@dataclass(frozen=True)
+class Notice:
+    """A paragraph set apart: a failed run, a limit of the comparison, a finding that contradicts the source."""
+
+    block: ClassVar[str] = "notice"
+    kind: Literal["finding", "warning", "failure"]
+    title: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Formula:
+    """A displayed equation.
+
+    Attributes:
+        typst: The equation in Typst mathematics; written by us, never taken from a config or a file.
+        spoken: The equation in words, for screen readers.
+        number: Its number in the source, such as "3.33", or "" where it is ours.
+    """
+
+    block: ClassVar[str] = "formula"
+    typst: str
+    spoken: str
+    number: str = ""
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a figure or table comes from: its number in the source, the command that makes it, the commit."""
+
+    number: str = ""
+    command: str = ""
+    commit: str = ""
+
+
+@dataclass(frozen=True)
+class Curves:
+    """A figure of curves: interactive in HTML (zoom, hover, legend toggles), a still in the PDF.
+
+    Attributes:
+        caption: What is seen, in a sentence; inline mathematics as in Text.
+        panels: The axes, in reading order.
+        columns: How many panels stand beside each other.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "curves"
+    caption: str
+    panels: Sequence[Panel]
+    columns: int = 2
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class Maps:
+    """Heat maps with one scale of colours: interactive in HTML, a still in the PDF.
+
+    Attributes:
+        caption: What is seen, in a sentence; inline mathematics as in Text.
+        value_label: What the colours mean, with unit.
+        panels: The maps, in reading order.
+        log: Whether the colours follow the logarithm.
+        columns: How many maps stand beside each other.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "maps"
+    caption: str
+    value_label: str
+    panels: Sequence[Map]
+    log: bool = False
+    columns: int = 2
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class RunList:
+    """The runs of a sweep: filtered, sorted and plotted against each other in HTML, a short table in the PDF.
+
+    Attributes:
+        caption: What it lists; inline mathematics as in Text.
+        axes: Name of each swept axis with the names of its values.
+        levels: Index of each run's value on each axis, shape (runs, axes).
+        metrics: Name of each metric with its unit; those listed first are shown first.
+        values: Median of each metric, shape (runs, metrics); NaN where there is none.
+        hashes: Hash of each run.
+        failures: Why each run failed, empty for a good one.
+        commands: The command that makes each run.
+        folders: Address of each run's folder, seen from the report; empty where it has none.
+    """
+
+    block: ClassVar[str] = "runlist"
+    caption: str
+    axes: Sequence[tuple[str, Sequence[str]]]
+    levels: NDArray[np.intp]
+    metrics: Sequence[tuple[str, str]]
+    values: FloatArray
+    hashes: Sequence[str]
+    failures: Sequence[str]
+    commands: Sequence[str]
+    folders: Sequence[str]
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A still image, drawn from the model or from a stored run.
+
+    Attributes:
+        caption: What is seen; inline mathematics as in Text.
+        svg: The image as SVG text.
+        alt: The image in words, for screen readers.
+        width: Share of the text width, 0 to 1.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "picture"
+    caption: str
+    svg: str
+    alt: str
+    width: float = 0.7
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of texts; inline mathematics as in Text, in header and cells.
+
+    Attributes:
+        caption: What it lists.
+        header: Column titles, with units.
+        rows: Cells, one sequence per row, each as long as the header.
+        numeric: Indices of the columns that hold numbers, set flush right.
+        origin: Its number in the source, command and commit.
+        code: Indices of the columns that hold what is typed on the command line, set in monospace.
+        folded: Whether HTML shows it only on a click, and paper not at all.
+        badges: Indices of the columns that hold a verdict or a grade, set as badges.
+    """
+
+    block: ClassVar[str] = "table"
+    caption: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    numeric: Sequence[int] = ()
+    origin: Origin = field(default_factory=Origin)
+    code: Sequence[int] = ()
+    folded: bool = False
+    badges: Sequence[int] = ()
+
+
+@dataclass(frozen=True)
+class Verdicts:
+    """What a source claims, each claim with its verdicts and their reason.
+
+    Attributes:
+        caption: What is listed; inline mathematics as in Text.
+        rows: The claims, in the order of the source; each with as many findings.
+        legend: What the words of the verdicts mean, in a few sentences; inline mathematics likewise.
+        origin: Command and commit.
+    """
+
+    block: ClassVar[str] = "verdicts"
+    caption: str
+    rows: Sequence[Claim]
+    legend: str = ""
+    origin: Origin = field(default_factory=Origin)
+
+    @property
+    def ways(self) -> list[str]:
+        """What the ways are called in which each claim was simulated."""
+        return [found.words or "simulated" for found in self.rows[0].findings] if self.rows else []
+
+
+@dataclass(frozen=True)
+class Equations:
+    """Audited equations, those that are wrong first; the HTML page can be searched, and folds those that are right.
+
+    Attributes:
+        caption: What it lists; inline mathematics as in Text.
+        rows: The equations, in the order of the text.
+        origin: Its number in the source, command and commit.
+        source: What the source of the equations is called.
+        data: Address of a file beside the report that has all of them whole, or "".
+    """
+
+    block: ClassVar[str] = "equations"
+    caption: str
+    rows: Sequence[Equation]
+    origin: Origin = field(default_factory=Origin)
+    source: str = ""
+    data: str = ""
+
+
+@dataclass(frozen=True)
+class Body:
+    """One rigid body of a playback: a polyline of the arm, drawn as cylinders and balls in its own frame.
+
+    Attributes:
+        name: Name of the link.
+        segments: Cylinders as (start, end, radius) in the body frame, in m.
+        balls: Spheres as (centre, radius) in the body frame, in m.
+        positions: Position of the body frame at each instant, shape (T, 3), in m.
+        rotations: Rotation of the body frame as quaternion w, x, y, z at each instant, shape (T, 4).
+        color: Index into the palette.
+    """
+
+    name: str
+    segments: Sequence[tuple[tuple[float, float, float], tuple[float, float, float], float]]
+    balls: Sequence[tuple[tuple[float, float, float], float]]
+    positions: FloatArray
+    rotations: FloatArray
+    color: int = 0
+
+
+@dataclass(frozen=True)
+class Playback:
+    """The motion in three dimensions: played, paused and scrubbed in HTML, a still picture in the PDF.
+
+    Attributes:
+        caption: What moves.
+        times: Instants of the frames, shape (T,), in s.
+        bodies: The moving bodies.
+        path: Path of the tip, shape (N, 3), in m.
+        desired: Desired path, shape (M, 3), or None.
+        still: The motion as a still SVG picture (several instants in one), for the PDF.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "playback"
+    caption: str
+    times: FloatArray
+    bodies: Sequence[Body]
+    path: FloatArray
+    desired: FloatArray | None
+    still: str
+    origin: Origin = field(default_factory=Origin)
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """What made the results: names and values, such as plant, step, versions, machine, commit."""
+
+    block: ClassVar[str] = "provenance"
+    rows: Sequence[tuple[str, str]]
+
+
+Block = (
+    Text
+    | Items
+    | Code
+    | Notice
+    | Formula
+    | Curves
+    | Maps
+    | RunList
+    | Picture
+    | Table
+    | Verdicts
+    | Equations
+    | Playback
+    | Provenance
+)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A titled sequence of blocks, with sections below it."""
+
+    title: str
+    blocks: Sequence[Block] = ()
+    sections: Sequence["Section"] = ()
+
+
+@dataclass(frozen=True)
+class Cover:
+    """The picture of a report's first screen.
+
+    Attributes:
+        caption: What is seen.
+        moving: It as an SVG that moves, for HTML.
+        still: It as an SVG that does not, for paper and for readers who want no motion.
+    """
+
+    caption: str
+    moving: str
+    still: str
+
+
+@dataclass(frozen=True)
+class Document:
+    """A whole report.
+
+    Attributes:
+        title: Title.
+        subtitle: One line below it.
+        abstract: The report in a few sentences; inline mathematics as in Text.
+        sections: The chapters.
+        date: Date of the newest run behind it, ISO format, so that a report remade is the same; empty where none is.
+        cover: The picture of the first screen.
+        key_numbers: Numbers of the first screen: what each is, its value with unit, and what is to be said of it.
+        figures_float: Whether figures move on paper to where they leave no blank, which text between them makes up for.
+        notes: Lines below the count of verdicts there: what their words mean, caveats; inline mathematics as in Text.
+    """
+
+    title: str
+    subtitle: str
+    abstract: str
+    sections: Sequence[Section]
+    date: str
+    cover: Cover | None = None
+    notes: Sequence[str] = ()
+    key_numbers: Sequence[tuple[str, str, str]] = ()
+    figures_float: bool = True

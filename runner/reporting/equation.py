@@ -1,0 +1,101 @@
+"""What a report shows of a printed equation: its forms, its verdict, and the order in which equations are read."""
+
+from collections.abc import Iterable, Sequence, Set
+from dataclasses import dataclass, replace
+
+from runner.base.expressions.tree import Node, size
+from runner.reporting.claim import EquationVerdict
+
+SHOWN: tuple[EquationVerdict, ...] = ("wrong as printed", "unreadable", "correct after repair")
+"""Verdicts that need a look, in the order of reading."""
+FOLDED: tuple[EquationVerdict, ...] = ("correct", "definition")
+"""Verdicts that need none: the page folds their equations, paper lists their names."""
+
+
+@dataclass(frozen=True)
+class Matrix:
+    """Elements in rows and columns; a column vector has rows of one."""
+
+    rows: Sequence[Sequence[Node]]
+
+    @property
+    def symbols(self) -> int:
+        """How many symbols its longest row has."""
+        return max(sum(map(size, row)) for row in self.rows)
+
+
+@dataclass(frozen=True)
+class EquationForm:
+    """One form of an equation: as printed, after repair, corrected. It has expressions, or mathematics, or neither.
+
+    Attributes:
+        label: Which form it is.
+        expressions: Left side with its expression, or with the matrix of its elements; dots stand for what is left out.
+        marked: What of the expressions is not as in the form beside it.
+        math: The equation in Typst mathematics.
+        raw: The text as it stands, where it cannot be read, in pieces; the flag says whether a piece is marked.
+        note: Why it was mended, or what it is; inline mathematics as in Text.
+        whole: All of it on one line, where the rest shows a part; the page folds it.
+    """
+
+    label: str
+    expressions: Sequence[tuple[Node, Node | Matrix]] = ()
+    marked: Set[Node] = frozenset()
+    math: str = ""
+    raw: Sequence[tuple[bool, str]] = ()
+    note: str = ""
+    whole: str = ""
+
+
+@dataclass(frozen=True)
+class Equation:
+    """A printed equation with its verdict.
+
+    Attributes:
+        number: Its number or name in the source.
+        title: What it is.
+        place: Section or page.
+        verdict: What the samples say.
+        error: Largest and typical error, formatted with unit, or "".
+        forms: As printed first, then repaired and corrected.
+        finding: What is wrong, in words; inline mathematics as in Text.
+    """
+
+    number: str
+    title: str
+    place: str
+    verdict: EquationVerdict
+    error: str
+    forms: Sequence[EquationForm]
+    finding: str = ""
+
+
+def of_verdict(rows: Iterable[Equation], verdict: EquationVerdict) -> list[Equation]:
+    """Return the equations that have a verdict, in the order of the text."""
+    return [row for row in rows if row.verdict == verdict]
+
+
+def by_finding(rows: Iterable[Equation]) -> list[tuple[str, list[Equation]]]:
+    """Return equations with what was found, or mended: those of which the same is told stand together, and lose it."""
+    found: dict[str, list[Equation]] = {}
+    for place, row in enumerate(rows):
+        found.setdefault(row.finding or _note(row) or f"none {place}", []).append(row)
+    return [(each[0].finding or _note(each[0]), [_without_words(row) for row in each]) for each in found.values()]
+
+
+def _note(row: Equation) -> str:
+    return " ".join(form.note for form in row.forms if form.note and len(row.forms) == 2)
+
+
+def _without_words(row: Equation) -> Equation:
+    if row.finding or not _note(row):
+        return replace(row, finding="")
+    return replace(row, forms=[replace(form, note="") for form in row.forms])
+
+
+def by_place(rows: Iterable[Equation]) -> list[tuple[str, list[Equation]]]:
+    """Return each place of the source with its equations."""
+    found: dict[str, list[Equation]] = {}
+    for row in rows:
+        found.setdefault(row.place, []).append(row)
+    return list(found.items())

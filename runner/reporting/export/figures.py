@@ -1,0 +1,114 @@
+"""Each figure of a report as files of its own: SVG and PDF in the width of a column, and its points as CSV."""
+
+import re
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import typst
+
+from runner.base.errors import RunnerError, nearest
+from runner.reporting.charts import map_stills, stills
+from runner.reporting.charts.sheet import Sheet
+from runner.reporting.document import Curves, Document, Maps, Picture, Playback
+from runner.reporting.export.points import Figure, as_csv
+from runner.reporting.markup import Literal, spans
+from runner.reporting.outline import blocks
+from runner.reporting.places import Places
+from runner.reporting.series_colors import colored
+from runner.store.atomic import write_atomically
+
+_WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')
+_POINTS = 72.0  # in an inch
+_WORDS = 6  # of the caption in the name of a file
+
+
+def figures_of(document: Document) -> dict[str, Figure]:
+    """Return the figures of a report by name, in reading order.
+
+    A name is the figure's address in the HTML report, such as figure-3-5 where it has a number and s1-figure-2 where it
+    has none, and the first words of its caption.
+    """
+    document = colored(document)
+    places = Places(document)
+    return {
+        f"{places.of(block)}-{_slug(block.caption)}".strip("-"): block
+        for block in blocks(document)
+        if isinstance(block, Curves | Maps | Picture | Playback)
+    }
+
+
+def chosen(figures: Mapping[str, Figure], only: str | None) -> dict[str, Figure]:
+    """Return the figures that are asked for: by a whole name, or by how names begin.
+
+    Raises:
+        RunnerError: If none is; names those that there are.
+    """
+    if not figures:
+        raise RunnerError("the report has no figures")
+    found = {name: figure for name, figure in figures.items() if _is_asked(name, only)}
+    if not found:
+        known = "\n  ".join(figures)
+        raise RunnerError(f"--only: no figure '{only}'{nearest(str(only), figures)}; there are:\n  {known}")
+    return found
+
+
+def _is_asked(name: str, only: str | None) -> bool:
+    return only is None or name == only or name.startswith(f"{only}-")
+
+
+def write_figures(figures: Mapping[str, Figure], folder: Path, sheet: Sheet) -> Iterator[str]:
+    """Write each figure as NAME.svg, NAME.pdf and, where it has points, NAME.csv; yield the names one by one.
+
+    Raises:
+        StoreError: If the disk does not take them.
+    """
+    for name, figure in figures.items():
+        svg, pdf = _drawn(figure, sheet)
+        write_atomically(folder / f"{name}.svg", svg.encode("utf-8", errors="replace"))
+        write_atomically(folder / f"{name}.pdf", pdf)
+        points = as_csv(figure)
+        if points is not None:
+            write_atomically(folder / f"{name}.csv", points)
+        yield name
+
+
+def _drawn(figure: Figure, sheet: Sheet) -> tuple[str, bytes]:
+    match figure:
+        case Curves():
+            return stills.draw(figure, sheet), stills.draw_pdf(figure, sheet)
+        case Maps():
+            return map_stills.draw(figure, sheet), map_stills.draw_pdf(figure, sheet)
+        case Picture():
+            svg = _fitted(figure.svg, sheet)
+        case Playback():
+            svg = _fitted(figure.still, sheet)
+    return svg, _as_pdf(svg)
+
+
+def _fitted(svg: str, sheet: Sheet) -> str:
+    """Return a drawing that is no wider than the sheet: of its own size, or made smaller as a whole."""
+    head, end, rest = svg.partition("<g ")
+    width, height = _WIDTH.search(head), _HEIGHT.search(head)
+    if width is None or height is None:
+        return svg
+    shrunk = min(1.0, sheet.width * _POINTS / float(width[1]))
+    for size, found in (("width", width), ("height", height)):
+        head = head.replace(found[0], f'{size}="{shrunk * float(found[1]):.6g}pt"')
+    return head + end + rest
+
+
+def _as_pdf(svg: str) -> bytes:
+    """Return a drawing as PDF, a page of its size; its letters are outlines, as in the SVG."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "drawing.svg").write_text(svg, encoding="utf-8", errors="replace")
+        source = '#set page(width: auto, height: auto, margin: 0pt)\n#image("drawing.svg")\n'
+        (folder / "page.typ").write_text(source, encoding="utf-8")
+        return typst.compile(folder / "page.typ", root=folder, format="pdf", ignore_system_fonts=True, timestamp=0)
+
+
+def _slug(caption: str) -> str:
+    """Return the first words of a caption as a part of a file's name; its numbers may be results, and are left out."""
+    text = " ".join(span.text for span in spans(caption) if isinstance(span, Literal))
+    return "-".join(re.findall(r"(?<![\w.])[a-z]+(?!\w)", text.partition(". ")[0].lower())[:_WORDS])

@@ -1,0 +1,138 @@
+"""The cells of a sweep put together row by row for a table: what differs in the seed alone is one sample."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.base.arrays import FloatArray
+from runner.base.errors import RunnerError, nearest
+from runner.reporting.sweep.subject import value_names
+from runner.sweeps.measurements import Axis, Measurements
+
+SEED = "seed"
+
+
+@dataclass(frozen=True)
+class Pooled:
+    """The rows of a table.
+
+    Attributes:
+        measurements: A sweep with one cell for each row, whose repetitions are those of all cells behind it.
+        cells: Which cells of the whole sweep are behind each row.
+        seeds: Number of seeds behind each row; 1 where the seed was not swept.
+    """
+
+    measurements: Measurements
+    cells: Sequence[NDArray[np.intp]]
+    seeds: Sequence[int]
+
+
+def pool(measurements: Measurements, by: Sequence[str] | None = None, where: Sequence[str] = ()) -> Pooled:
+    """Put the cells of a sweep together that have the same values on some axes, and differ in the seed alone.
+
+    Args:
+        measurements: The sweep.
+        by: The axes that tell the rows apart; None takes all that were swept but the seed.
+        where: Values to which cells are limited, each as KEY=VALUE.
+
+    Raises:
+        RunnerError: If there is no such axis or value, or cells of one row would differ in more than their seed.
+    """
+    kept = _limited(measurements, where)
+    axes = {axis.name: axis for axis in measurements.axes}
+    varying = [axis.name for axis in measurements.axes if len(np.unique(axis.level[kept])) > 1]
+    names = [name for name in varying if name != SEED] if by is None else list(dict.fromkeys(by))
+    for name in names:
+        _axis(axes, name, "--by")
+    _refuse_mixtures([name for name in varying if name not in names and name != SEED], names, axes, kept)
+    levels = np.column_stack([axes[name].level[kept] for name in names] or [np.zeros((len(kept), 1), dtype=np.intp)])
+    rows, row_of = np.unique(levels, axis=0, return_inverse=True)
+    groups = [_distinct(measurements, kept[row_of.ravel() == row]) for row in range(len(rows))]
+    pooled = replace(
+        measurements,
+        axes=[Axis(name, axes[name].values, rows[:, column]) for column, name in enumerate(names)],
+        fixed=[*measurements.fixed, *where],
+        hashes=[measurements.hashes[cells[0]] if len(cells) == 1 else "" for cells in groups],
+        statuses=["ok" if _failed(measurements, cells) == 0 else "failed" for cells in groups],
+        failures=[next((measurements.failures[cell] for cell in cells if measurements.failures[cell]), "")
+                  for cells in groups],
+        values={name: _together(values, groups) for name, values in measurements.values.items()},
+        caveats=[[caveat for cell in cells for caveat in measurements.caveats[cell]] for cells in groups]
+        if measurements.caveats else (),
+        seeds=(),
+    )  # fmt: skip
+    seeds = [len(np.unique(axes[SEED].level[cells])) if SEED in axes else 1 for cells in groups]
+    return Pooled(pooled, groups, seeds)
+
+
+def failed_cells(measurements: Measurements, pooled: Pooled) -> list[int]:
+    """Return how many of the cells behind each row failed."""
+    return [_failed(measurements, cells) for cells in pooled.cells]
+
+
+def _failed(measurements: Measurements, cells: NDArray[np.intp]) -> int:
+    return sum(measurements.statuses[cell] != "ok" for cell in cells)
+
+
+def _limited(measurements: Measurements, where: Sequence[str]) -> NDArray[np.intp]:
+    """Return the cells that have all these values."""
+    axes = {axis.name: axis for axis in measurements.axes}
+    kept = np.ones(len(measurements.hashes), dtype=bool)
+    for text in where:
+        name, equals, value = text.partition("=")
+        axis = _axis(axes, name, "--where")
+        names = value_names(axis)
+        level = next((level for level, known in enumerate(names) if _same(known, value)), None)
+        if not equals or level is None:
+            raise RunnerError(
+                f"--where {text}: {name} has no value '{value}'{nearest(value, names)}; allowed: {', '.join(names)}"
+            )
+        kept &= axis.level == level
+    if not kept.any():
+        raise RunnerError(f"no cell of the sweep has {' and '.join(where)}")
+    return np.flatnonzero(kept)
+
+
+def _same(known: str, value: str) -> bool:
+    try:
+        return float(known) == float(value)
+    except ValueError:
+        return known == value.strip("'\"")
+
+
+def _axis(axes: Mapping[str, Axis], name: str, option: str) -> Axis:
+    if name not in axes:
+        known = ", ".join(axes) or "none"
+        raise RunnerError(f"{option}: '{name}' was not swept{nearest(name, axes)}; swept were: {known}")
+    return axes[name]
+
+
+def _refuse_mixtures(
+    others: Sequence[str], names: Sequence[str], axes: Mapping[str, Axis], kept: NDArray[np.intp]
+) -> None:
+    if not others:
+        return
+    values = " ".join(f"--where {name}={axes[name].text(int(axes[name].level[kept[0]]))}" for name in others)
+    raise RunnerError(
+        f"a row would mix cells that differ in {', '.join(others)}; only seeds are put together: write "
+        f"--by {','.join([*names, *others])} for a row each, or fix a value, as in {values}"
+    )
+
+
+def _distinct(measurements: Measurements, cells: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Return the cells without those that a run before them stands for already."""
+    first: dict[str, int] = {}
+    for cell in cells.tolist():
+        first.setdefault(measurements.hashes[cell], cell)
+    return np.array(list(first.values()), dtype=np.intp)
+
+
+def _together(values: FloatArray, groups: Sequence[NDArray[np.intp]]) -> FloatArray:
+    """Return the values of the cells of each group in one row, NaN behind them, shape (groups, most values)."""
+    rows = [values[cells].ravel() for cells in groups]
+    found = np.full((len(rows), max(map(len, rows), default=0)), np.nan)
+    for row, own in enumerate(rows):
+        found[row, : len(own)] = own
+    return found

@@ -1,0 +1,116 @@
+"""A report as one HTML file that needs no other file and no network."""
+
+import base64
+import gzip
+import hashlib
+import json
+import re
+from collections.abc import Sequence
+from functools import cache, lru_cache
+from importlib import resources
+from urllib.parse import quote
+
+from runner.base import progress
+from runner.base.paths import templates_dir
+from runner.base.progress.stages import HTML
+from runner.reporting import formulas, outline, playback
+from runner.reporting.charts import palette
+from runner.reporting.curves import plotly_spec
+from runner.reporting.document import Curves, Document, Maps, Playback, RunList
+from runner.reporting.formula_sheet import FormulaSheet
+from runner.reporting.maps import maps_spec
+from runner.reporting.places import Places
+from runner.reporting.run_list import run_list_spec
+from runner.reporting.tally import tallies
+from runner.reporting.templating import Code, html_environment
+
+_SCRIPT = re.compile(r"<script\b[^>]*>(.*?)</script>", re.DOTALL)
+_OF_PLAYER = ("blob:", "'wasm-unsafe-eval'")  # it unpacks its code by WebAssembly, and runs it from an address
+_OF_PLOTS = ("plot_keys", "curves")
+_SCRIPTS = ("report", *_OF_PLOTS, "figure_tools")
+
+
+def render(document: Document) -> str:
+    """Return a document as an HTML page."""
+    progress.begin(HTML)
+    displayed, inline = outline.formulas(document)
+    images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
+    sheet = FormulaSheet()
+    has_plots, has_run_list, has_playback = (
+        any(isinstance(block, kinds) for block in outline.blocks(document))
+        for kinds in ((Curves, Maps, RunList), RunList, Playback)
+    )
+    library, player = _plotly() if has_plots else "", playback.player() if has_playback else ""
+    return (
+        html_environment()
+        .get_template("report.html.j2")
+        .render(
+            document=document,
+            chapters=outline.chapters(document),
+            formula_image=lambda text, is_displayed: images[is_displayed].get(text.strip()),
+            formula_name=sheet.name,
+            formula_definitions=lambda: Code(sheet.definitions()),
+            plotly_spec=plotly_spec,
+            maps_spec=maps_spec,
+            run_list_spec=run_list_spec,
+            data_uri=data_uri,
+            tallies=tallies(document),
+            places=Places(document),
+            plots=_Pack(),
+            pictures=_Pack(),
+            scene=playback.record,
+            player=packed(player) if player else "",
+            plotly=packed(library) if library else "",
+            script_sources=lambda own: _script_sources([*own, *([library] if library else [])], player),
+            palette={"light": palette.LIGHT, "dark": palette.DARK},
+            style=_asset("style.css"),
+            scripts=[_asset(f"{name}.js") for name in _SCRIPTS if has_plots or name not in _OF_PLOTS],
+            run_list_script=_asset("run_list.js") if has_run_list else "",
+        )
+    )
+
+
+def data_uri(svg: str) -> str:
+    """Return an SVG as the address of an image; images share no ids and run no scripts."""
+    return "data:image/svg+xml," + quote(svg, safe=" /:=;()+*!@?", encoding="utf-8", errors="replace")
+
+
+class _Pack:
+    """What the page's script unpacks: data of plots, or pictures, which its figures name by their places."""
+
+    def __init__(self) -> None:
+        self._items: list[object] = []
+
+    def put(self, item: object) -> int:
+        """Take an item, and return its place."""
+        self._items.append(item)
+        return len(self._items) - 1
+
+    def packed(self) -> str:
+        """Return all items as the page holds them."""
+        return packed(json.dumps(self._items, separators=(",", ":"))) if self._items else ""
+
+
+@lru_cache(maxsize=16)
+def packed(text: str) -> str:
+    """Return a text as base64 of its gzip, the same each time; `inflate` in report.js undoes it."""
+    return base64.b64encode(gzip.compress(text.encode("utf-8"), compresslevel=9, mtime=0)).decode("ascii")
+
+
+@cache
+def _plotly() -> str:
+    return resources.files("plotly").joinpath("package_data", "plotly.min.js").read_text(encoding="utf-8")
+
+
+def _script_sources(scripts: Sequence[str], player: str) -> Code:
+    """Return what a policy calls some scripts, and those of a player's page, which unpacks its code itself."""
+    known = [f"'sha256-{_sha256(script)}'" for script in (*scripts, *_SCRIPT.findall(player))]
+    return Code(" ".join([*known, *(_OF_PLAYER if player else ())]))
+
+
+def _sha256(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
+
+
+def _asset(name: str) -> Code:
+    return Code((templates_dir() / name).read_text(encoding="utf-8"))

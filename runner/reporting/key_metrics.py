@@ -1,0 +1,79 @@
+"""The metrics that say most of a run's task, as its report's first screen and the command line show them."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from runner.base.quantities import quantity, spread
+from runner.reporting.metric_titles import title
+from runner.store import Run
+
+_SETTLING = "settling_time"
+_OF_TASK = {
+    "goal": (_SETTLING, "steady_state_error", "peak_torque", "saturation_fraction", "overshoot"),
+    "contact": ("steady_force", "peak_force", "max_tracking_error", "peak_torque"),
+}
+_OF_MOTION = (
+    "max_tracking_error",
+    "steady_state_error",
+    "peak_torque",
+    "saturation_fraction",
+    "rms_tracking_error",
+)
+
+
+class KeyMetric(NamedTuple):
+    """A metric in words.
+
+    Attributes:
+        title: What it is.
+        value: Its median with the range over the repetitions, in a unit that spares powers of ten.
+        remark: What a reader must know beside it; empty for nothing.
+    """
+
+    title: str
+    value: str
+    remark: str
+
+
+def key_metrics(run: Run, most: int) -> Sequence[KeyMetric]:
+    """Return the metrics that say most of a run's task: of a goal, of a motion along a path, of a contact.
+
+    Args:
+        run: The run; a failed one may have none.
+        most: How many.
+    """
+    return [_in_words(name, run) for name in key_names(run)[:most]]
+
+
+def shared_range(runs: Sequence[Run]) -> tuple[str, str] | None:
+    """Return the title of the first metric of the task that some runs share, and the range of its medians.
+
+    None where their tasks are told by different metrics, or no run has a value of it.
+    """
+    names = {name for run in runs for name in key_names(run)[:1]}
+    if len(names) != 1:
+        return None
+    (name,) = names
+    values = [found[name]["median"] for run in runs if name in (found := run.metrics)]
+    ends = [value for value in values if value is not None]
+    unit = next(run.metrics[name]["unit"] for run in runs if name in run.metrics)
+    return (title(name), f"{quantity(min(ends), unit)} to {quantity(max(ends), unit)}") if ends else None
+
+
+def key_names(run: Run) -> Sequence[str]:
+    """Return the names of the metrics that say most of a run's task, of those of which it has a value."""
+    task = "contact" if "steady_force" in run.metrics else run.config["trajectory"]["kind"]
+    names = dict.fromkeys((*_OF_TASK.get(task, ()), *_OF_MOTION))
+    return [name for name in names if _says_something(name, run)]
+
+
+def _says_something(name: str, run: Run) -> bool:
+    """Tell whether a run has a value of a metric; that it never settles is one."""
+    return name in run.metrics and (name == _SETTLING or run.metrics[name]["median"] is not None)
+
+
+def _in_words(name: str, run: Run) -> KeyMetric:
+    if run.metrics[name]["median"] is None:
+        return KeyMetric(title(name), "–", "not reached in half of the repetitions or more")
+    count = run.record["repetitions"]
+    return KeyMetric(title(name), spread(run.metrics[name]), f"median of {count}" if count > 1 else "")

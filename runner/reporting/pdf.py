@@ -1,0 +1,81 @@
+"""A report as PDF, set by Typst from a folder that holds the report's own files and nothing else."""
+
+import tempfile
+from datetime import UTC, datetime
+from pathlib import Path
+
+import typst
+
+from runner.base import progress
+from runner.base.progress.stages import FIGURES, PDF
+from runner.reporting import formulas, outline
+from runner.reporting.charts import map_stills, stills
+from runner.reporting.document import Curves, Document, Maps
+from runner.reporting.places import Places
+from runner.reporting.run_list import table_header, table_rows
+from runner.reporting.tally import tallies
+from runner.reporting.templating import typst_environment
+
+
+def render(document: Document) -> bytes:
+    """Return a document as PDF; the same document gives the same bytes."""
+    progress.begin(FIGURES, None, outline.count_figures(document), "figures")
+    displayed, inline = outline.formulas(document)
+    images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
+    with tempfile.TemporaryDirectory() as name:
+        folder = _Folder(Path(name))
+        source = (
+            typst_environment()
+            .get_template("report.typ.j2")
+            .render(
+                document=document,
+                chapters=outline.chapters(document),
+                formula_valid=lambda text, is_displayed: images[is_displayed].get(text) is not None,
+                curves_file=folder.curves,
+                maps_file=folder.maps,
+                run_list_header=table_header,
+                run_list_rows=table_rows,
+                image_file=folder.image,
+                places=Places(document),
+                tallies=tallies(document),
+            )
+        )
+        path = folder.root / "report.typ"
+        path.write_text(source, encoding="utf-8")
+        progress.begin(PDF)
+        return typst.compile(
+            path, root=folder.root, format="pdf", ignore_system_fonts=True, timestamp=_timestamp(document.date)
+        )
+
+
+class _Folder:
+    """The images of one report, as files beside it."""
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self._count = 0
+
+    def curves(self, block: Curves) -> str:
+        return self._figure(stills.draw(block))
+
+    def maps(self, block: Maps) -> str:
+        return self._figure(map_stills.draw(block))
+
+    def _figure(self, svg: str) -> str:
+        progress.step()
+        return self.image(svg)
+
+    def image(self, svg: str) -> str:
+        self._count += 1
+        name = f"image-{self._count}.svg"
+        (self.root / name).write_text(svg, encoding="utf-8", errors="replace")
+        return name
+
+
+def _timestamp(date: str) -> int:
+    """Return a date in seconds since 1970; the epoch itself where it is none, so that no clock enters the report."""
+    try:
+        moment = datetime.fromisoformat(date)
+    except ValueError:
+        return 0
+    return int((moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp())

@@ -1,0 +1,143 @@
+"""The report on a recording beside a run: both signals, residuals, time offset, friction and metrics."""
+
+import hashlib
+from pathlib import Path
+
+from runner.base.quantities import above_rounding, quantity
+from runner.config.compose.user_settings import outputs_dir
+from runner.metrics import unit_of
+from runner.recordings import files_of, words
+from runner.recordings.compare import RecordingComparison
+from runner.recordings.recording import Recording
+from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
+from runner.reporting.markup import literal, literals
+from runner.reporting.metric_titles import title
+from runner.reporting.recording import figures
+from runner.reporting.run_report import provenance
+
+
+def recording_document(found: RecordingComparison) -> Document:
+    """Return the report on a recording beside a run."""
+    robot = str(found.run.config["robot"]["name"]).replace("_", " ")
+    return Document(
+        title=f"{robot[:1].upper()}{robot[1:]}: a recording beside a run",
+        subtitle=literal(f"{found.recording.path.name} against run {found.run.hash}"),
+        abstract=literal(_abstract(found)),
+        sections=[
+            Section("Both signals", [figures.both(found)]),
+            Section("Residuals", [_residuals(found), figures.residuals(found), Text(f"The {words.FIT}.")]),
+            Section("Time offset", [Text(literal(f"{_sentence(words.aligned_text(found))}.")), figures.lags(found)]),
+            Section("Friction", _friction(found)),
+            Section("Metrics of both", _metrics(found)),
+            Section("Provenance", _made(found)),
+        ],
+        date=str(found.run.provenance["date"]),
+        key_numbers=_key_numbers(found),
+        figures_float=False,
+    )
+
+
+def report_folder(found: RecordingComparison) -> Path:
+    """Return the folder of the report, which follows from the run and the content of the recording."""
+    place = found.run.folder.resolve().parent
+    outputs = found.run.folder.parent.parent if place.name == "runs" else outputs_dir()
+    recording = found.recording
+    said = (found.run.hash, found.offset.start, recording.torque_shift, recording.filled, dict(recording.units))
+    content = hashlib.sha256(f"recording {said!r} ".encode())
+    content.update(_bytes_of(recording))
+    return outputs / "reports" / content.hexdigest()[:24]
+
+
+def _abstract(found: RecordingComparison) -> str:
+    text = f"The recording is held against repetition 0 of the run, at the run's ticks; {words.aligned_text(found)}."
+    if found.friction is None:
+        return f"{text} {next(words.friction_lines(found))}"
+    return text
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _bytes_of(recording: Recording) -> bytes:
+    return b"".join(file.read_bytes() for file in files_of(recording.path))
+
+
+def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
+    """Return the offset, the worst fit of a position and the largest Coulomb friction that was identified."""
+    recording = found.recording
+    offset = quantity(found.offset.start, "s", digits=4)
+    rows = f"after the recording's first row; rows {quantity(recording.period, 's')} apart"
+    numbers = [("the run begins at", offset, rows)]
+    moved = [(one.fit, one) for one in found.residuals if one.signal.kind != "torque" and one.fit is not None]
+    if moved:
+        fit, worst = min(moved, key=lambda pair: pair[0])
+        told = f"{worst.signal.words}; rms of the residual {quantity(worst.rms, worst.unit)}"
+        numbers.append(("worst fit of a position", f"{fit:.3f}", told))
+    for joint in () if found.friction is None else sorted(found.friction.joints, key=lambda one: -one.coulomb)[:1]:
+        unit = "N m" if joint.unit == "rad" else "N"
+        told = f"{joint.joint}; 95 % interval ± {quantity(joint.coulomb_half, unit)}"
+        numbers.append(("largest Coulomb friction", quantity(joint.coulomb, unit), told))
+    return numbers
+
+
+def _number(value: float | None) -> str:
+    return above_rounding(value)
+
+
+def _residuals(found: RecordingComparison) -> Table:
+    rows = [literals(row) for row in words.residual_rows(found, _number)]
+    return Table("Recorded less simulated, at the run's ticks.", words.RESIDUAL_HEADER, rows, (2, 3, 4, 5))
+
+
+def _friction(found: RecordingComparison) -> list[Block]:
+    blocks: list[Block] = [Text(literal(text)) for text in words.friction_lines(found)]
+    if found.friction is None or not found.friction.joints:
+        return [Notice("warning", "No friction was identified", literal(" ".join(words.friction_lines(found))))]
+    rows = [literals(row) for row in words.friction_rows(found, _number)]
+    caption = "Friction of the recorded arm; beside it what the run simulates."
+    method = (
+        "Residual torque $tau - (M dot.double(q) + V + G)$ with the run's model, regressed on $dot(q)$, "
+        '$upright("sgn") dot(q)$, a constant of each joint, and the linear model of the masses; all behind a low-pass '
+        f"of {quantity(found.friction.frequency, 'Hz')} without delay, rows near standstill left out. The intervals "
+        "allow for what these terms leave over to be correlated within half a second."
+    )
+    return [*blocks, Table(caption, words.FRICTION_HEADER, rows, (3, 4, 5)), figures.friction(found), Text(method)]
+
+
+def _metrics(found: RecordingComparison) -> list[Block]:
+    if not found.metrics:
+        return [Text("The recording has too few signals for any metric: neither all joints nor the tip.")]
+    rows = [
+        literals([title(name), name, *(above_rounding(value, unit_of(name) or "1") for value in both)])
+        for name, both in found.metrics.items()
+    ]
+    first, last = found.span
+    text = (
+        f"Both are worked out by the same code, from {quantity(first, 's')} to {quantity(last, 's')}. Speeds of the "
+        "recording are differences of its positions behind the low-pass. Its tip, where it is not recorded, "
+        "follows from the joints by the run's model. A constant delay of the arm is part of the time offset and not "
+        "of the tracking errors."
+    )
+    header = ["metric", "name on the command line", "run", "recording"]
+    return [Text(text), Table("Metrics of both.", header, rows, (2, 3), code=(1,))]
+
+
+def _made(found: RecordingComparison) -> list[Block]:
+    recording = found.recording
+    rows = [
+        ("recording", recording.path.name),
+        ("rows", str(len(recording.t))),
+        ("time between rows", quantity(recording.period, "s", digits=4)),
+        ("SHA-256", hashlib.sha256(_bytes_of(recording)).hexdigest()),
+    ]
+    columns = [
+        literals([column, signal.words, f"{recording.units[column].factor:.6g}", recording.units[column].unit])
+        for signal, column in recording.columns.items()
+    ]
+    caption = "Columns of the recording, and what makes their numbers SI."
+    return [
+        Provenance(rows),
+        Table(caption, ["column", "signal", "factor", "unit"], columns, (2,), code=(0,)),
+        provenance([found.run]),
+    ]

@@ -1,0 +1,44 @@
+"""A report written to its folder: one offline HTML file and one PDF."""
+
+from collections.abc import Callable, Collection
+from pathlib import Path
+
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.progress.stages import of_report
+from runner.reporting import html, outline, pdf
+from runner.reporting.column_units import in_readable_units
+from runner.reporting.document import Document
+from runner.reporting.series_colors import colored
+from runner.store.atomic import write_atomically
+
+_RENDERERS: dict[str, Callable[[Document], bytes]] = {
+    "html": lambda document: html.render(document).encode("utf-8", errors="replace"),
+    "pdf": pdf.render,
+}
+
+
+def write_report(document: Document, folder: Path, formats: Collection[str] = ("html", "pdf")) -> list[Path]:
+    """Render a document and write `report.html` and `report.pdf`, each complete or not at all.
+
+    Args:
+        document: The report.
+        folder: Where to write; made when missing.
+        formats: What to write: "html", "pdf" or both.
+
+    Returns:
+        The files written, in the order of `formats`.
+
+    Raises:
+        RunnerError: If a format is unknown, or the disk does not take a file.
+    """
+    unknown = sorted(set(formats) - set(_RENDERERS))
+    if unknown:
+        raise RunnerError(f"unknown report format {', '.join(unknown)}; allowed: {', '.join(_RENDERERS)}")
+    folder.mkdir(parents=True, exist_ok=True)
+    progress.plan(of_report(formats, outline.count_figures(document)))
+    shown = in_readable_units(colored(document))
+    written = [folder / f"report.{name}" for name in formats]
+    for name, path in zip(formats, written, strict=True):
+        write_atomically(path, _RENDERERS[name](shown))
+    return written

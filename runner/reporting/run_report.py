@@ -1,0 +1,299 @@
+"""A report on any stored runs: what was run, what came out, and where it comes from."""
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from runner.base.errors import RunnerError
+from runner.base.quantities import above_rounding, number, quantity, with_powers
+from runner.metrics.caveats import changes_since
+from runner.reporting.changed_keys import changed_keys, flatten
+from runner.reporting.cover import cover
+from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text
+from runner.reporting.figures import desired_motion, playback, torque_and_error
+from runner.reporting.key_metrics import key_metrics, shared_range
+from runner.reporting.markup import literal, literals
+from runner.reporting.metric_titles import title
+from runner.reporting.plant_step import describe_plant, percent
+from runner.reporting.spec_blocks import spec_abstract, spec_blocks, spec_of_several
+from runner.reporting.words import PLANT, in_words
+from runner.store import Run
+from runner.store.references import check_run, find_shipped
+
+_KEY_METRICS = 4
+_AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
+_LEVELS = {"0.01": "1 %", "0.99": "99 %"}  # quantiles that a table has room for
+_HEADLINE = ("settling_time", "steady_state_error", "max_tracking_error", "peak_torque", "saturation_fraction")
+
+
+def run_document(runs: Sequence[Run]) -> Document:
+    """Return the report on some stored runs."""
+    date = max(str(run.provenance["date"]) for run in runs)
+    if len(runs) == 1:
+        return _of_one(runs[0], date)
+    failed = sum(run.status == "failed" for run in runs)
+    ends = f"{failed} of them failed" if failed else "all of them finished"
+    return Document(
+        title=f"{len(runs)} runs compared",
+        subtitle=", ".join(dict.fromkeys(str(run.config["robot"]["name"]) for run in runs)),
+        abstract=f"{len(runs)} runs, {ends}.",
+        sections=[
+            Section("Overview", (_overview(runs), *spec_of_several(runs))),
+            *map(_section, runs, range(1, len(runs) + 1)),
+        ],
+        date=date,
+        key_numbers=_numbers_of_several(runs),
+        figures_float=False,
+    )
+
+
+def _numbers_of_several(runs: Sequence[Run]) -> list[tuple[str, str, str]]:
+    """Return how many runs there are and failed, and the range of medians where one metric tells of all tasks."""
+    failed = [f"run {number}" for number, run in enumerate(runs, start=1) if run.status == "failed"]
+    numbers = [("runs", str(len(runs)), ""), ("failed", str(len(failed)), ", ".join(failed))]
+    found = shared_range(runs)
+    return numbers if found is None else [*numbers, (*found, "medians of the runs")]
+
+
+def _of_one(run: Run, date: str) -> Document:
+    """Return the report on a single run: its name, the moving arm and four numbers first."""
+    shown = run.trace[[f"q{joint + 1}" for joint in range(len(run.provenance["joints"]))]]
+    return Document(
+        title=_name(run),
+        subtitle=_subtitle(run),
+        abstract=literal(_abstract(run)),
+        sections=[
+            Section("The run", _blocks(run)),
+            Section("Config", _config(run)),
+            Section("Provenance", (provenance([run]),)),
+        ],
+        date=date,
+        cover=_cover(run) if shown.notna().all(axis=1).sum() > 1 else None,
+        notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]
+        if run.caveats
+        else [],
+        key_numbers=[*key_metrics(run, _KEY_METRICS)],
+        figures_float=False,
+    )
+
+
+def _name(run: Run) -> str:
+    """Return robot, law, task and plant in words, such as "Macro, operational space, quintic, PyBullet"."""
+    config = run.config
+    kinds = (config["controller"]["kind"], config["trajectory"]["kind"], config["plant"]["kind"])
+    name = _spaced(config["robot"]["name"])
+    return ", ".join([name[:1].upper() + name[1:], *(_spaced(in_words(str(kind))) for kind in kinds)])
+
+
+def _spaced(name: object) -> str:
+    return str(name).replace("_", " ")
+
+
+def _abstract(run: Run) -> str:
+    """Return how the run ended, how often it keeps its spec, and whether it lies in the bands of its reference."""
+    count = run.record["repetitions"]
+    if run.status == "failed":
+        ended = f"The run {run.failure_text}."
+    else:
+        ended = (
+            "One repetition, which finished."
+            if count == 1
+            else f"{count} repetitions, all of them finished; smallest to largest in brackets."
+        )
+    if run.spec is not None:
+        ended += f" {spec_abstract(run.spec)}"
+    try:
+        reference = find_shipped(run)
+    except RunnerError:
+        return ended
+    found = check_run(run, reference)
+    wrong = [title(finding.metric) for finding in found if not finding.good]
+    where = f"; outside are: {', '.join(wrong)}" if wrong else ""
+    return f"{ended} {len(found) - len(wrong)} of {len(found)} metrics lie in the bands of {reference.name}{where}."
+
+
+def _cover(run: Run) -> Cover:
+    """Return the arm in motion; a move that settles early is shown until it rests."""
+    settled = run.metrics.get("settling_time", {}).get("median")
+    until = _AT_REST * settled if settled and run.config["trajectory"]["kind"] == "goal" else None
+    if until is None or until >= run.config["duration"]:
+        return cover(run, "The motion of repetition 0.")
+    return cover(run, f"The first {quantity(until, 's')} of repetition 0.", until)
+
+
+def _subtitle(run: Run) -> str:
+    """Return what limits and disturbs the arm, and the experiment that was asked for."""
+    chosen = run.provenance["choices"]
+    named = f"torque limits {_spaced(chosen['torque_limits'])}" if "torque_limits" in chosen else "torque limits"
+    limits = "no torque limits" if run.config["torque_limits"]["max"] is None else named
+    texts = [f"noise {_spaced(chosen['noise'])}"] if "noise" in chosen else []
+    texts += [f"input shaper {run.config['input_shaper']['kind'].upper()}"] if "input_shaper" in run.config else []
+    texts += ["a notch in the torques"] if "notch" in run.config else []
+    texts += [f"experiment {chosen['experiment']}"] if "experiment" in chosen else []
+    return ", ".join([limits, *texts])
+
+
+def _overview(runs: Sequence[Run]) -> Table:
+    names = [name for name in _HEADLINE if any(name in run.metrics for run in runs)]
+    varying = _varying(runs)
+    rows = []
+    for index, run in enumerate(runs, start=1):
+        config = flatten(run.config)
+        values = [
+            above_rounding(run.metrics[name]["median"], run.metrics[name]["unit"]) if name in run.metrics else "–"
+            for name in names
+        ]
+        keys = (literal(str(config.get(key, "–"))) for key in varying)
+        rows.append([str(index), *keys, run.status, str(len(run.caveats)), *values])
+    header = ["run", *varying, "status", "caveats", *(literal(title(name)) for name in names)]
+    first = len(varying) + 2
+    return Table("Runs, with what distinguishes them; medians.", header, rows, tuple(range(first, len(header))))
+
+
+def _section(run: Run, index: int) -> Section:
+    return Section(f"Run {index}: {_name(run)}", [*_blocks(run), *_config(run), provenance([run])])
+
+
+def _blocks(run: Run) -> list[Block]:
+    config = run.config
+    blocks: list[Block] = []
+    if run.failure is not None:
+        joint = f", joint {run.failure['joint']}" if run.failure["joint"] else ""
+        blocks.append(
+            Notice(
+                "failure",
+                "This run failed",
+                f"In repetition {run.failure['repetition']} at t = {number(run.failure['time'])} s{joint}: "
+                f"{with_powers(str(run.failure['reason']))}. The curves end there.",
+            )
+        )
+    blocks += caveat_notices(run)
+    blocks.append(torque_and_error(run, "Torque of each joint and tip position error, repetition 0."))
+    if config["trajectory"]["kind"] != "goal":
+        blocks.append(desired_motion(run, "Desired motion of the tip."))
+    blocks.append(playback(run, "The motion of repetition 0."))
+    blocks += spec_blocks(run)
+    if run.metrics:
+        blocks.append(_metrics(run))
+    return [*blocks, Text(describe_plant(run))]
+
+
+def caveat_notices(run: Run) -> list[Block]:
+    """Return a notice for each reason why a run's result may not be what it seems, and of how these were looked for."""
+    notices: list[Block] = [
+        Notice("warning", f"Caveat: {caveat['rule']}", literal(f"{_sentence(str(caveat['text']))}."))
+        for caveat in run.caveats
+    ]
+    changes = changes_since(run.caveat_rules)
+    if changes:
+        text = f"This run's caveats were looked for by {'; '.join(changes)}. The same command would not look again."
+        notices.append(Notice("warning", "Caveats by other rules than today's", literal(text)))
+    return notices
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _metrics(run: Run) -> Table:
+    many = all("quantiles" in metric for metric in run.metrics.values())
+    levels, worth = _LEVELS if many else {}, (run.plant_error or {}).get("metrics", {})
+    rows = []
+    for name, m in run.metrics.items():
+        found = [m["median"], m["min"], *(m["quantiles"][level] for level in levels), m["max"]]
+        rows.append([title(name), name, *(above_rounding(value, m["unit"]) for value in found), *_of_step(worth, name)])
+    count = run.record["repetitions"]
+    told = "; levels are quantiles, a repetition without a value counting as beyond every number" if many else ""
+    header = ["metric", "name on the command line", "median", "smallest", *levels.values(), "largest"]
+    header += ["the plant's step"] if worth else []
+    return Table(
+        "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions{told}.",
+        header,
+        [literals(row) for row in rows],
+        tuple(range(2, len(header))),
+        code=(1,),
+    )
+
+
+def _of_step(worth: Mapping[str, Any], metric: str) -> list[str]:
+    """Return the cell of what the plant's step is worth in a metric; none where it is known of no metric."""
+    if not worth:
+        return []
+    share = worth.get(metric, {}).get("share")
+    return ["not comparable" if share is None else percent(share)]
+
+
+def _config(run: Run) -> list[Block]:
+    """Return the keys that were changed, and then all of them; of a config that no group here makes all alone."""
+    changed = changed_keys(run)
+    rows = [literals([key, _yaml(value)]) for key, value in flatten(run.config).items() if key != "outputs"]
+    everything = Table("All keys and their values.", ["key", "value"], rows, code=(0, 1), folded=changed is not None)
+    if changed is None:
+        return [everything]
+    own = [literals([key, _yaml(value), _yaml(before)]) for key, (before, value) in changed.items()]
+    if not own:
+        return [Text("Every key has the value that its group gives it."), everything]
+    header = ["key", "value", "in its group"]
+    return [Table("Keys that were changed against the groups chosen.", header, own, code=(0, 1, 2)), everything]
+
+
+def provenance(runs: Sequence[Run]) -> Provenance:
+    """Return what made some runs: plants, versions, machine, commits, dates; values that differ are listed."""
+    record = [run.provenance for run in runs]
+
+    def join(values: Sequence[Any]) -> str:
+        return ", ".join(dict.fromkeys(str(value) for value in values))
+
+    versions = (f"{name} {join([r['versions'][name] for r in record])}" for name in record[0]["versions"])
+    rows = [
+        ("plant", _plants(runs)),
+        ("commit", join([r["commit"] or "none (installed package)" for r in record])),
+        ("seed", _seeds({int(r["seed"]) for r in record})),
+        ("machine", join([r["machine"] for r in record])),
+        ("software", ", ".join(versions)),
+        ("made on", join(sorted(str(r["date"]) for r in record))),
+    ]
+    if len(runs) == 1:
+        rows += [("command", str(record[0]["command"])), ("run", runs[0].hash)]
+    return Provenance(rows)
+
+
+def _plants(runs: Sequence[Run]) -> str:
+    """Return each plant once with its steps, such as "PyBullet in steps of 0.5 ms, 1 ms; MuJoCo in steps of 1 ms"."""
+    steps: dict[str, set[float]] = {}
+    for run in runs:
+        steps.setdefault(str(run.config["plant"]["kind"]), set()).add(float(run.provenance["plant_step"]))
+    return "; ".join(
+        f"{PLANT.get(kind, kind)} in steps of {', '.join(quantity(step, 's') for step in sorted(own))}"
+        for kind, own in steps.items()
+    )
+
+
+def _seeds(seeds: set[int]) -> str:
+    """Return some seeds, those that follow each other as a range, such as "0 to 99, 200"."""
+    told: list[list[int]] = []
+    for seed in sorted(seeds):
+        if told and seed == told[-1][-1] + 1:
+            told[-1].append(seed)
+        else:
+            told.append([seed])
+    return ", ".join(str(own[0]) if len(own) == 1 else f"{own[0]} to {own[-1]}" for own in told)
+
+
+def _varying(runs: Sequence[Run]) -> list[str]:
+    flat = [flatten(run.config) for run in runs]
+    keys = dict.fromkeys(
+        key for config in flat for key in config if key != "outputs" and not key.startswith(("caveats.", "spec."))
+    )
+    return [
+        key
+        for key in keys
+        if key == "robot.name" or (not key.startswith("robot.") and len({str(config.get(key)) for config in flat}) > 1)
+    ]
+
+
+def _yaml(value: Any) -> str:
+    """Return a value as it is given in YAML or on the command line."""
+    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return re.sub(r"\b(\d)0{6,}\.0\b", lambda found: f"{float(found[0]):.0e}".replace("e+0", "e"), text)

@@ -1,0 +1,87 @@
+"""What was swept: axes, what stood fixed, and how many runs failed."""
+
+import math
+
+from runner.base.quantities import labelled
+from runner.config.compose.key_units import key_unit
+from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
+from runner.reporting.markup import literal, literals
+from runner.reporting.sweep.subject import Subject, axis_label, value_names
+from runner.statistics import SMALLEST_SAMPLE
+from runner.sweeps.resolved import UNITS
+
+_MOST_VALUES = 12
+_MOST_ROWS, _MOST_PLACES, _LONGEST = 16, 6, 60  # of the table of what also differs, and characters of a value
+
+
+def section(subject: Subject, command: str) -> Section:
+    """Return the summary of the axes.
+
+    Args:
+        subject: The sweep.
+        command: The command that makes it.
+    """
+    origin = Origin(command=command)
+    measurements = subject.measurements
+    rows = []
+    for axis in subject.axes:
+        names = value_names(axis)
+        shown = names if len(names) <= _MOST_VALUES else [*names[: _MOST_VALUES - 2], "...", names[-1]]
+        rows.append([axis_label(axis), str(len(names)), ", ".join(shown)])
+    blocks: list[Block] = []
+    cells = len(measurements.hashes)
+    if rows:
+        blocks.append(Table("Swept axes.", ["axis", "number", "values"], [literals(row) for row in rows], (1,), origin))
+    blocks += _also_differs(subject)
+    grid = math.prod(len(axis.values) for axis in subject.axes)
+    whole = "every combination of their values" if grid == cells else f"not all of the {grid} combinations"
+    fixed = ", ".join(measurements.fixed)
+    blocks.append(
+        Text(
+            f"{cells} cells, {whole}; repetitions in a cell: {measurements.repetitions}. "
+            + (literal(f"The same in all: {fixed}.") if fixed else "")
+        )
+    )
+    failed = sum(status != "ok" for status in measurements.statuses)
+    if failed:
+        blocks.append(
+            Notice(
+                "failure",
+                f"{failed} of {cells} runs failed",
+                "They stand in the figures as crosses and in a section of their own. A failed repetition counts as "
+                "beyond every number, as one does that never settles.",
+            )
+        )
+    if measurements.repetitions < SMALLEST_SAMPLE:
+        blocks.append(
+            Notice(
+                "warning",
+                f"Too few repetitions for intervals: {measurements.repetitions} of {SMALLEST_SAMPLE}",
+                "Of so few values even the whole range may miss the true median in more than 5 of 100 cases. Cells "
+                f"are compared by their medians alone; repetitions={SMALLEST_SAMPLE} or more gives intervals.",
+            )
+        )
+    return Section("Axes", blocks)
+
+
+def _also_differs(subject: Subject) -> list[Block]:
+    """Return the table of config values that are not the same in all cells, though nobody swept them."""
+    rows = []
+    for difference in subject.measurements.differences[:_MOST_ROWS]:
+        values = [f"{levels}: {_short(text)}" if levels else _short(text) for levels, text in difference.values]
+        shown = values if len(values) <= _MOST_PLACES else [*values[: _MOST_PLACES - 2], "...", values[-1]]
+        label = labelled(difference.key, UNITS.get(difference.key) or key_unit(difference.key))
+        rows.append([label, ", ".join(difference.axes) or "none", "; ".join(shown)])
+    left = [difference.key for difference in subject.measurements.differences[_MOST_ROWS:]]
+    if not rows:
+        return []
+    more = literal(f" {len(left)} more: {', '.join(left)}.") if left else ""
+    caption = (
+        "Also differs: config values that are not the same in all cells, though they were not swept. What an axis "
+        f"seems to do may be done by what goes with it.{more}"
+    )
+    return [Table(caption, ["key", "goes with", "values"], [literals(row) for row in rows])]
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."

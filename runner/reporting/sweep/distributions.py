@@ -1,0 +1,73 @@
+"""How the values are spread: shares of all runs by axis, and the cells in order."""
+
+import numpy as np
+
+from runner.base.arrays import FloatArray
+from runner.reporting.charts.thinning import POINTS, spaced
+from runner.reporting.document import Block, Curves, Panel, Section, Series
+from runner.reporting.metric_titles import title
+from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, grouped, spans_decades
+from runner.sweeps.measurements import Axis
+
+_MOST_LINES = 8
+
+
+def section(subject: Subject) -> Section:
+    """Return the distributions of the first metric."""
+    metric = subject.metrics[0]
+    panels = [_shares(subject, metric, axis) for axis in subject.axes]
+    blocks: list[Block] = []
+    if panels:
+        caption = (
+            f"Share of all repetitions in which the {title(metric)} is at most the value below, by axis; a curve that "
+            "ends below 1 leaves repetitions that failed or never settled."
+        )
+        blocks.append(Curves(caption, panels, columns=min(2, len(panels))))
+    blocks.append(_in_order(subject, metric))
+    return Section("Distributions", blocks)
+
+
+def _shares(subject: Subject, metric: str, axis: Axis) -> Panel:
+    values = subject.measurements.values[metric]
+    groups = grouped(axis)
+    series = []
+    for group in spaced(int(groups.max()) + 1, _MOST_LINES):
+        chosen = groups == group
+        pooled = values[chosen]
+        x, y = _distribution(pooled[~np.isnan(pooled)])
+        first, last = int(axis.level[chosen].min()), int(axis.level[chosen].max())
+        name = axis.text(first) + (f" to {axis.text(last)}" if last > first else "")
+        series.append(Series(name, x, y))
+    title = f"by {axis.name}"
+    return Panel(title, subject.label(metric), "share", series, x_log=spans_decades(values.ravel()), y_range=(0, 1.02))
+
+
+def _distribution(values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the corners of the empirical distribution of some values, as far as they are finite."""
+    finite = np.sort(values[np.isfinite(values)])
+    steps = np.arange(len(finite) + 1) / max(len(values), 1)
+    x = np.repeat(finite, 2)
+    y = np.repeat(steps, 2)[1:-1]
+    return x, y
+
+
+def _in_order(subject: Subject, metric: str) -> Curves:
+    ranked = subject.ranked
+    rank = np.array(spaced(len(ranked), POINTS), dtype=float) + 1.0
+    ranked = [ranked[place] for place in spaced(len(ranked), POINTS)]
+    values = subject.measurements.values[metric]
+    low, high = np.full(len(ranked), np.nan), np.full(len(ranked), np.nan)
+    for place, cell in enumerate(ranked):
+        present = values[cell][~np.isnan(values[cell])]
+        low[place], high[place] = np.quantile(present, (0.05, 0.95), method="inverted_cdf")
+    low, high = (np.where(np.isfinite(edge), edge, np.nan) for edge in (low, high))
+    medians = subject.medians[metric][ranked]
+    hints, runs = subject.hints(ranked), subject.hashes(ranked)
+    series = Series("", rank, medians, "points_line", low, high, hints=hints, runs=runs)
+    panel = Panel("", "cells in order", subject.label(metric), [series], y_log=spans_decades(values.ravel()))
+    return Curves(
+        "Median of each cell in order; shaded the range of its repetitions, from their 5 % to their 95 % quantile. "
+        + QUANTILE_RULE,
+        [panel],
+        columns=1,
+    )

@@ -1,0 +1,39 @@
+"""The runs that failed: where on the axes, when and why."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.reporting.charts.thinning import spaced
+from runner.reporting.document import Block, Section, Table
+from runner.reporting.markup import literals
+from runner.reporting.sweep.subject import Subject
+from runner.sweeps.measurements import Axis
+
+_MOST_ROWS = 40
+
+
+def section(subject: Subject) -> Section:
+    """Return the failed runs."""
+    measurements = subject.measurements
+    failed = np.array([status != "ok" for status in measurements.statuses])
+    blocks: list[Block] = []
+    if subject.axes:
+        rows = [row for axis in subject.axes for row in _by_level(axis, failed)]
+        blocks.append(Table("Failed runs by axis.", ["axis", "value", "failed"], [literals(row) for row in rows], (2,)))
+    cells = np.flatnonzero(failed).tolist()
+    rows = [
+        [measurements.hashes[cell][:8], subject.cell_name(cell), measurements.failures[cell]]
+        for cell in cells[:_MOST_ROWS]
+    ]
+    left = len(cells) - len(rows)
+    more = f" {left} more stand in the list of runs and in the table of the sweep." if left else ""
+    blocks.append(Table(f"Failed runs.{more}", ["run", "cell", "failure"], [literals(row) for row in rows]))
+    return Section("Failed runs", blocks)
+
+
+def _by_level(axis: Axis, failed: NDArray[np.bool_]) -> list[list[str]]:
+    """Return how many cells failed at each value of an axis at which any did; of many values some, spread evenly."""
+    count, lost = (np.bincount(axis.level[chosen], minlength=len(axis.values)) for chosen in (slice(None), failed))
+    levels = np.flatnonzero(lost)
+    chosen = levels[spaced(len(levels), _MOST_ROWS)].tolist()
+    return [[axis.name, axis.text(level), f"{lost[level]} of {count[level]}"] for level in chosen]

@@ -1,0 +1,139 @@
+"""What a sweep asks first: how the values of one axis compare, over all else and at each value of another axis."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from runner.base.quantities import quantity
+from runner.reporting.answers import Answer, Asked, judge
+from runner.reporting.comparison.cells import label_text
+from runner.reporting.comparison.levels import SEED, LevelPair, level_pairs
+from runner.reporting.comparison.pairs import compare
+from runner.reporting.metric_titles import title
+from runner.reporting.sweep.subject import Subject, first_screen
+from runner.statistics import SMALLEST_SAMPLE
+from runner.sweeps.measurements import Axis
+
+_MOST_TOLD = 3  # pairs of values of an axis, and keys that go with it, that sentences tell
+
+
+@dataclass(frozen=True)
+class Question:
+    """How the values of one axis compare in the metrics of the first screen.
+
+    Attributes:
+        axis: The axis that is asked about.
+        within: The other axis at each of whose values it is asked again; empty where nothing else was swept.
+        overall: Each pair of values with its answers, over all else.
+        at: Each pair of values at one value of the other axis, likewise.
+    """
+
+    axis: str
+    within: str
+    overall: Sequence[tuple[LevelPair, Sequence[Answer]]]
+    at: Sequence[tuple[LevelPair, Sequence[Answer]]]
+
+
+def ask(subject: Subject) -> Question | None:
+    """Return what a sweep asks and the answers; None where no two cells differ in one axis and share their seeds.
+
+    Asked about is the first axis whose values are choices, such as controllers, else the first one. Its values are
+    compared with its first one: over all else, a value for each draw; and at each value of the axis, of the others,
+    over whose values the medians of the first metric spread most.
+    """
+    axes = [axis for axis in subject.axes if axis.name != SEED]
+    if not subject.metrics or not axes:
+        return None
+    axis, *others = sorted(axes, key=lambda each: each.numbers is not None)
+    measurements, metrics = subject.measurements, first_screen(subject.metrics)
+    overall = level_pairs(measurements, axis.name, ())
+    within = max(others, key=lambda each: _spread(subject, each)).name if others else ""
+    at = level_pairs(measurements, axis.name, [within]) if within else []
+    asked, places = [], []
+    for pair in (*overall, *at):
+        for metric in metrics:
+            found = compare(measurements, measurements, metric, pair.cells)
+            if found is not None:
+                asked.append(Asked(metric, measurements.units[metric], found))
+                places.append(id(pair))
+    answers = judge(asked, metrics)
+
+    def of(pairs: Sequence[LevelPair]) -> list[tuple[LevelPair, Sequence[Answer]]]:
+        return [
+            (pair, [answer for answer, place in zip(answers, places, strict=True) if place == id(pair)])
+            for pair in pairs
+        ]
+
+    return Question(axis.name, within, of(overall), of(at)) if asked else None
+
+
+def sentences(question: Question, subject: Subject) -> list[str]:
+    """Return the answers in words, with where values of the other axis tell more and what else may be the cause."""
+    told = []
+    for pair, answers in question.overall[:_MOST_TOLD]:
+        for answer in answers:
+            told.append(answer.sentence(pair.first, pair.second, _at(question, pair, answer.metric)))
+    left = len(question.overall) - _MOST_TOLD
+    if left > 0:
+        told.append(f"{left} more values of {question.axis} are in the tables of pairs.")
+    along = [found.key for found in subject.measurements.differences if question.axis in found.axes]
+    if along and any(answer.sign for _, answers in (*question.overall, *question.at) for answer in answers):
+        more = f" and {len(along) - _MOST_TOLD} more" if len(along) > _MOST_TOLD else ""
+        named = f"{', '.join(along[:_MOST_TOLD])}{more}"
+        told.append(f"With {question.axis} go {named}, which may be the cause: see Also differs.")
+    return told
+
+
+def in_short(subject: Subject) -> str:
+    """Return the first answer, as a command that made a sweep ends with it; else the range of medians, and why."""
+    few = too_few(subject)
+    question = None if few else ask(subject)
+    if question is not None and len(question.overall) == 1:
+        ((pair, answers),) = question.overall
+        return answers[0].sentence(pair.first, pair.second, _at(question, pair, answers[0].metric))
+    found = range_told(subject)
+    return f"{found[0]}: medians from {found[1]}. {few}".rstrip() if found else ""
+
+
+def range_told(subject: Subject) -> tuple[str, str] | None:
+    """Return the first metric and the range of its medians over the cells, in words; None where nothing is ranked."""
+    if not (subject.ranked and subject.axes):
+        return None
+    metric = subject.metrics[0]
+    ends = [float(subject.medians[metric][cell]) for cell in (subject.ranked[0], subject.ranked[-1])]
+    low, high = (quantity(end, subject.measurements.units[metric]) for end in ends)
+    return title(metric), f"{low} to {high}"
+
+
+def too_few(subject: Subject) -> str:
+    """Return that a sweep has too few draws for any difference to be shown; empty where it has enough."""
+    draws = np.unique(subject.measurements.draws).size
+    if draws >= SMALLEST_SAMPLE:
+        return ""
+    return (
+        f"With {draws} pair{'s' if draws > 1 else ''} no difference can be shown: {SMALLEST_SAMPLE} are the fewest, as "
+        f"by repetitions={SMALLEST_SAMPLE}."
+    )
+
+
+def _at(question: Question, overall: LevelPair, metric: str) -> str:
+    """Return at which values of the other axis the same two values of the axis differ; empty where at none."""
+    same = [
+        (pair, answers) for pair, answers in question.at if (pair.first, pair.second) == (overall.first, overall.second)
+    ]
+    found = [(pair, answer) for pair, answers in same for answer in answers if answer.metric == metric and answer.sign]
+    if not found:
+        return ""
+    told = ", ".join(f"{answer.word} by {answer.amount} at {label_text(pair.at)}" for pair, answer in found)
+    rest = len(same) - len(found)
+    others = f"; at {rest} other value{'s' if rest > 1 else ''} no difference is shown" if rest else ""
+    return f" {overall.second} is {told}{others}."
+
+
+def _spread(subject: Subject, axis: Axis) -> float:
+    """Return the variance of the first metric between the values of an axis, over the medians of their cells."""
+    medians = subject.medians[subject.metrics[0]]
+    finite = np.isfinite(medians)
+    means = [medians[finite & (axis.level == level)] for level in np.unique(axis.level)]
+    return float(np.var([some.mean() for some in means if some.size])) if finite.any() else 0.0

@@ -1,0 +1,161 @@
+"""The report on a sweep: the answers, axes, effects, maps, trade-off, distributions, failures, all runs."""
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from runner.reporting.document import Document, Provenance, RunList, Section, Text
+from runner.reporting.markup import literal
+from runner.reporting.sweep import (
+    axes,
+    caveats,
+    distributions,
+    effects,
+    extremes,
+    failures,
+    maps,
+    pairs,
+    spec,
+    tradeoff,
+)
+from runner.reporting.sweep.question import ask, range_told, sentences, too_few
+from runner.reporting.sweep.subject import Subject, choose
+from runner.store import Sweep
+from runner.sweeps.measurements import measure_sweep
+
+MOST_RUNS = 5000
+"""Runs that the list of a report holds; of more, those at both ends of the order."""
+
+_MOST_VALUES = 100  # of what made the runs
+_NAMED = 3  # cells that failed, on the first screen
+
+
+def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str = "") -> Document:
+    """Return the report on a stored sweep.
+
+    Args:
+        sweep: The sweep.
+        metrics: Metrics that it compares, the first of which ranks the cells; empty chooses those that differ.
+        runs_address: Address of the folder of runs, seen from the report, ending in a slash.
+
+    Raises:
+        RunnerError: If a metric is none of the sweep's.
+        StoreError: If a run is missing or damaged.
+    """
+    subject = choose(measure_sweep(sweep), metrics)
+    measurements = subject.measurements
+    doubts = [caveats.section(subject)] if caveats.is_needed(subject) else []
+    sections = [*doubts, axes.section(subject, sweep.command)]
+    if sweep.spec:
+        sections.append(spec.section(subject, sweep))
+    ranked = subject.ranked
+    if subject.metrics and subject.axes:
+        sections.append(effects.section(subject))
+        compared = pairs.section(subject)
+        sections += [compared] if compared is not None else []
+    if subject.metrics and maps.is_readable(subject):
+        sections.append(maps.section(subject))
+    traded = tradeoff.pair(subject) if subject.metrics else None
+    if traded is not None:
+        sections.append(tradeoff.section(subject, traded))
+    if ranked:
+        sections.append(distributions.section(subject))
+        low, high = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
+        sections.append(extremes.section(subject, low, high))
+    if any(status != "ok" for status in measurements.statuses):
+        sections.append(failures.section(subject))
+    sections.append(_all_runs(subject, sweep, runs_address))
+    sections.append(Section("Provenance", (Provenance(_made_by(subject, sweep)),)))
+    return Document(
+        title="Sweep over " + (" × ".join(axis.name for axis in subject.axes) or "nothing"),
+        subtitle=", ".join(measurements.fixed),
+        abstract=literal(_abstract(subject, sweep)),
+        sections=sections,
+        date=max(measurements.provenance["made on"]),
+        key_numbers=_key_numbers(subject),
+        figures_float=False,
+    )
+
+
+def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
+    """Return how many cells there are and failed, and the range of the medians of the first metric."""
+    failed = [cell for cell, status in enumerate(subject.measurements.statuses) if status != "ok"]
+    count = len(subject.measurements.hashes)
+    numbers = [("cells", str(count), f"repetitions in each: {subject.measurements.repetitions}")]
+    names = "; ".join(subject.cell_name(cell) for cell in failed[:_NAMED])
+    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+    numbers.append(("failed", str(len(failed)), names + more))
+    found = range_told(subject)
+    return numbers if found is None else [*numbers, (found[0], found[1], "medians of the cells")]
+
+
+def _abstract(subject: Subject, sweep: Sweep) -> str:
+    measurements = subject.measurements
+    cells, failed = len(measurements.hashes), sum(status != "ok" for status in measurements.statuses)
+    sizes = " × ".join(f"{axis.name} ({len(axis.values)})" for axis in subject.axes)
+    ends = f"{failed} of them failed" if failed else "all of them finished"
+    over = f" over {sizes}" if sizes else ""
+    texts = [f"{cells} cells{over}, {ends}; repetitions in each: {measurements.repetitions}."]
+    doubted = sum(bool(found) for found in measurements.caveats)
+    if doubted:
+        texts.append(f"{doubted} of {cells} cells have caveats.")
+    if sweep.spec:
+        texts.append(spec.summary(subject, sweep))
+    if subject.ranked and subject.axes:
+        few = too_few(subject)
+        question = None if few else ask(subject)
+        texts += [few] if few else [] if question is None else sentences(question, subject)
+        texts += effects.shared(subject)
+    return " ".join(texts)
+
+
+def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
+    measurements = subject.measurements
+    order = subject.order
+    caption = "All runs, in the order of the first metric; medians of each."
+    if len(order) > MOST_RUNS:
+        order = np.concatenate([order[: MOST_RUNS // 2], order[-MOST_RUNS // 2 :]])
+        caption = f"The first and the last {MOST_RUNS // 2} of {len(measurements.hashes)} runs by the first metric."
+    names = list(dict.fromkeys([*subject.metrics, *measurements.values]))
+    medians = [subject.medians[name][order] for name in names]
+    shown = [(name, measurements.units[name]) for name in names]
+    if any(measurements.caveats):  # behind the metrics that are compared
+        counts = np.array([len(found) for found in measurements.caveats], dtype=float)
+        medians.insert(len(subject.metrics), counts[order])
+        shown.insert(len(subject.metrics), ("caveats", "1"))
+    values = np.column_stack(medians) if medians else np.zeros((len(order), 0))
+    cells = order.tolist()
+    named = [(axis, *np.unique(axis.level[order], return_inverse=True)) for axis in subject.axes]
+    levels = np.column_stack([level for *_, level in named] or [np.zeros((len(order), 0), dtype=np.intp)])
+    listing = RunList(
+        caption,
+        [(axis.name, [axis.text(level) for level in some.tolist()]) for axis, some, _ in named],
+        levels,
+        shown,
+        np.where(np.isfinite(values), values, np.nan),
+        subject.hashes(cells),
+        [measurements.failures[cell] for cell in cells],
+        [_command(sweep.overrides[cell]) for cell in cells],
+        [f"{address}{name}/" if (sweep.outputs / "runs" / name).is_dir() else "" for name in subject.hashes(cells)],
+    )
+    text = Text(
+        "In the HTML report: filter by value, plot any two quantities against each other, sort by a column; a click on "
+        "a point, here or in any figure, shows its run. The command runner table writes all numbers as Parquet and CSV."
+    )
+    return Section("All runs", (text, listing))
+
+
+def _made_by(subject: Subject, sweep: Sweep) -> list[tuple[str, str]]:
+    rows = [(name, ", ".join(_some(values))) for name, values in subject.measurements.provenance.items()]
+    return [*rows, ("sweep", sweep.folder.name)]
+
+
+def _some(values: Sequence[str]) -> Sequence[str]:
+    """Return values, of very many the first and the last."""
+    return values if len(values) <= _MOST_VALUES else [*values[:3], f"... ({len(values)} values)", values[-1]]
+
+
+def _command(overrides: Sequence[str]) -> str:
+    return shlex.join(["runner", *(text for text in overrides if text.partition("=")[0] != "outputs")])

@@ -1,0 +1,213 @@
+"""The spec of a sweep over its axes: the probability of failing each bound, its interval, and where it tells little."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.base.arrays import FloatArray
+from runner.config.spec import Bound
+from runner.reporting.charts.thinning import spaced
+from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
+from runner.reporting.markup import literal
+from runner.reporting.spec_blocks import RULE
+from runner.reporting.spec_words import bound_text, late_text, probability
+from runner.reporting.sweep import maps
+from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
+from runner.statistics.spec import bounds_of
+from runner.statistics.spec.history import merged, settings
+from runner.statistics.spec.kept import within
+from runner.store import Sweep
+from runner.sweeps.measurements import Axis
+
+_WIDE = 10.0  # times the lower end: of a probability with a higher upper end not even the magnitude is known
+_FEW = "too few repetitions to tell"
+_TOLD = (
+    f"Repetitions are too few to tell where the upper end of the interval is more than {_WIDE:g} times the lower one: "
+    "not even the magnitude of the probability is known. Where no repetition failed, the upper end alone is telling."
+)
+_LABEL = "probability of failing"
+_MOST_ROWS = 60
+_MOST_MULTIPLES = 4
+_ALL = "all bounds"
+
+
+@dataclass(frozen=True)
+class Failing:
+    """How many repetitions of each of some cells do not keep a bound.
+
+    Attributes:
+        name: The bound in words.
+        failed: Their number, shape (n,).
+        of: Number of repetitions, shape (n,); 0 for cells without the metric.
+    """
+
+    name: str
+    failed: NDArray[np.intp]
+    of: NDArray[np.intp]
+
+    @property
+    def share(self) -> FloatArray:
+        """The share of them, shape (n,); NaN for none."""
+        return np.where(self.of > 0, self.failed / np.maximum(self.of, 1), np.nan)
+
+    @property
+    def ends(self) -> tuple[FloatArray, FloatArray]:
+        """The ends of the intervals of the probability, shape (n,) each; NaN for none."""
+        from runner.statistics.share import share_ends
+
+        low, high = share_ends(self.failed, np.maximum(self.of, 1))
+        return np.where(self.of > 0, low, np.nan), np.where(self.of > 0, high, np.nan)
+
+    @property
+    def few(self) -> NDArray[np.bool_]:
+        """Where repetitions are too few to tell, shape (n,)."""
+        low, high = self.ends
+        return high > _WIDE * low
+
+    def pooled(self, members: Sequence[Sequence[int]]) -> "Failing":
+        """Return the same of groups of cells, which differ in their seed alone."""
+        failed, of = (
+            np.array([int(counts[list(some)].sum()) for some in members]) for counts in (self.failed, self.of)
+        )
+        return Failing(self.name, failed, of)
+
+
+def find_failing(subject: Subject, spec: Mapping[str, Bound]) -> list[Failing]:
+    """Return how many repetitions of each cell fail each bound, and of several bounds any of them."""
+    values = subject.measurements.values
+    shape = (len(subject.measurements.hashes), subject.measurements.repetitions)
+    found, any_failed, all_there = [], np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool)
+    for metric, bound in spec.items():
+        measured = values.get(metric, np.full(shape, np.nan))
+        there = ~np.isnan(measured)
+        failed = there & ~within(bound, measured)
+        found.append(Failing(bound_text(metric, bound), failed.sum(axis=1), there.sum(axis=1)))
+        any_failed, all_there = any_failed | failed, all_there & there
+    if len(found) > 1:
+        found.append(Failing(_ALL, (any_failed & all_there).sum(axis=1), all_there.sum(axis=1)))
+    return found
+
+
+def section(subject: Subject, sweep: Sweep) -> Section:
+    """Return what a sweep says of its spec, one or more bounds."""
+    failing = find_failing(subject, sweep.spec)
+    axes = [axis for axis in subject.axes if axis.name != maps.POOLED]
+    blocks: list[Block] = [Text(literal(f"{RULE} {_TOLD}"))]
+    late = _late(subject, sweep)
+    if late:
+        blocks.append(Notice("warning", "Bounds that were set after the result was known", literal(late)))
+    for one in failing:
+        if not one.of.any():
+            blocks.append(Text(literal(f"No run of the sweep has the metric of the bound: {one.name}.")))
+        elif len(axes) == 1:
+            blocks.append(_curve(one, axes[0]))
+        elif maps.is_readable(subject):
+            blocks.append(_maps(subject, one))
+    return Section("Spec", [*blocks, _table(subject, failing)])
+
+
+def summary(subject: Subject, sweep: Sweep) -> str:
+    """Return how many cells keep the whole spec in every repetition, and which bounds were set late."""
+    whole = find_failing(subject, sweep.spec)[-1]
+    kept = int(np.count_nonzero((whole.failed == 0) & (whole.of > 0)))
+    return f"{kept} of {len(whole.of)} cells keep the spec in every repetition.{_late(subject, sweep)}"
+
+
+def _late(subject: Subject, sweep: Sweep) -> str:
+    """Return in sentences which bounds were set after the result of some cells was known."""
+    texts: Counter[str] = Counter()
+    for config, cells in subject.measurements.configs:
+        history = merged(settings({**dict.fromkeys(sweep.spec), **bounds_of(config)}, ""), sweep.history)
+        for metric, bound in sweep.spec.items():
+            late = late_text(metric, bound, history[metric])
+            texts.update({bound_text(metric, bound) + late: len(cells)} if late else {})
+    cells_in_all = len(subject.measurements.hashes)
+    return "".join(f" {text}: {count} of {cells_in_all} cells." for text, count in texts.items())
+
+
+def _curve(one: Failing, axis: Axis) -> Curves:
+    """Return the probability over one axis, with its interval as a band."""
+    members = [np.flatnonzero(axis.level == level).tolist() for level in range(len(axis.values))]
+    pooled = one.pooled(members)
+    low, high = pooled.ends
+    numbers = axis.numbers
+    x = np.arange(len(members), dtype=float) if numbers is None else numbers
+    few = pooled.few
+    series = [Series("share that failed, with the 95 % interval", x, pooled.share, "points_line", low, high)]
+    if few.any():
+        series.append(Series(_FEW, x[few], pooled.share[few], "points"))
+    panel = Panel(
+        "",
+        axis_label(axis),
+        _LABEL,
+        series,
+        numbers is not None and spans_decades(numbers),
+        spans_decades(pooled.share) and not few.any(),
+        x_names=value_names(axis) if numbers is None else (),
+    )
+    return Curves(literal(f"Probability of failing over {axis.name}: {one.name}."), [panel], columns=1)
+
+
+def _maps(subject: Subject, one: Failing) -> Maps:
+    """Return maps of the share that failed and of the upper end of the interval, a row for each value of more axes."""
+    x, y, *others = maps.chosen(subject)
+    levels = np.column_stack([axis.level for axis in others] or [np.zeros((len(one.of), 0), dtype=np.intp)])
+    combinations = np.unique(levels, axis=0)
+    shown = combinations[spaced(len(combinations), _MOST_MULTIPLES)]
+    panels: list[Map] = []
+    for some in shown:
+        named = ", ".join(f"{axis.name} = {axis.text(int(level))}" for axis, level in zip(others, some, strict=True))
+        panels += _row(one, x, y, np.flatnonzero((levels == some).all(axis=1)), f"{named}: " if named else "")
+    values = np.concatenate([panel.values.ravel() for panel in panels])
+    log = spans_decades(values[values > 0])
+    texts = [f"Probability of failing: {one.name}."]
+    if any(panel.failed.any() for panel in panels):
+        texts.append(f"A cross marks {_FEW}.")
+    if log and (values == 0).any():
+        texts.append("Cells without a colour are 0.")
+    if len(shown) < len(combinations):
+        texts.append(f"{len(shown)} of {len(combinations)} values of the other axes, evenly chosen.")
+    return Maps(literal(" ".join(texts)), _LABEL, panels, log, columns=2)
+
+
+def _row(one: Failing, x: Axis, y: Axis, cells: NDArray[np.intp], start: str) -> list[Map]:
+    shape = (len(y.values), len(x.values))
+    places = y.level[cells] * shape[1] + x.level[cells]
+    pooled = one.pooled([cells[places == place].tolist() for place in range(shape[0] * shape[1])])
+    _, high = pooled.ends
+    few = pooled.few.reshape(shape)
+    hints = [
+        f"{y.name}={y.text(place // shape[1])}, {x.name}={x.text(place % shape[1])}: {text}"
+        for place, text in enumerate(_texts(pooled))
+    ]
+    unmarked = np.zeros(shape, dtype=bool)
+    drawn = (("share that failed", pooled.share, few), ("upper end of the 95 % interval", high, unmarked))
+    names = (axis_label(x), axis_label(y), value_names(x), value_names(y))
+    return [Map(start + title, *names, values.reshape(shape), marks, hints=hints) for title, values, marks in drawn]
+
+
+def _texts(failing: Failing) -> list[str]:
+    """Return for each cell what it says of a bound, in words."""
+    columns = zip(failing.failed, failing.of, failing.share, *failing.ends, failing.few, strict=True)
+    return [
+        f"{failed} of {of} failed, {probability(share)} ({probability(low)} to {probability(high)})"
+        + ("; too few" if few else "")
+        if of
+        else "no such metric"
+        for failed, of, share, low, high, few in columns
+    ]
+
+
+def _table(subject: Subject, failing: Sequence[Failing]) -> Table:
+    """Return each cell with the probability of failing each bound, those that fail most often first."""
+    order = np.argsort(-np.nan_to_num(failing[-1].share), kind="stable")
+    shown = [int(order[place]) for place in spaced(len(order), _MOST_ROWS)]
+    texts = [_texts(one) for one in failing]
+    rows = [[literal(subject.cell_name(cell)), *(literal(own[cell]) for own in texts)] for cell in shown]
+    caption = "Repetitions that failed, with the probability of failing and its 95 % interval."
+    if len(shown) < len(order):
+        caption += f" {len(shown)} of {len(order)} cells, evenly chosen by how often they fail."
+    return Table(caption, ["cell", *(literal(one.name) for one in failing)], rows)

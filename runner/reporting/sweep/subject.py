@@ -1,0 +1,192 @@
+"""What a report on a sweep is about: its cells, the metrics that it compares, and their order."""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.base.arrays import FloatArray
+from runner.base.quantities import labelled, quantity
+from runner.config.compose.key_units import key_unit
+from runner.reporting.metric_titles import metric_label, title
+from runner.sweeps.measurements import Axis, Measurements
+from runner.sweeps.metric_names import is_part
+
+if TYPE_CHECKING:
+    from runner.statistics import EffectAnalysis
+
+MOST_METRICS = 4
+"""Metrics that a report compares when nobody has named any."""
+
+MOST_GROUPS = 64
+"""An axis with more values is taken in so many groups of neighbours where effects are worked out."""
+
+QUANTILE_RULE = (
+    "A quantile is the smallest value that so large a share of the repetitions does not exceed: the value of one of "
+    "them, never one between two (NumPy's inverted_cdf)."
+)
+"""What reports say of their quantiles."""
+
+_PREFERRED = (
+    "max_tracking_error",
+    "settling_time",
+    "steady_state_error",
+    "peak_torque",
+    "cross_track_error",
+    "saturation_fraction",
+    "control_effort",
+)
+COSTS = ("peak_torque", "rms_torque", "control_effort", "energy")
+"""Metrics of what a motion costs."""
+
+_DECADE = 10.0
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A sweep as its report looks at it; of every metric less is better.
+
+    Attributes:
+        measurements: Its cells.
+        metrics: The metrics compared; the first one ranks the cells.
+    """
+
+    measurements: Measurements
+    metrics: Sequence[str]
+
+    @property
+    def axes(self) -> Sequence[Axis]:
+        """The swept axes."""
+        return self.measurements.axes
+
+    @cached_property
+    def medians(self) -> dict[str, FloatArray]:
+        """Median of every metric in each cell, shape (cells,): infinite where it is beyond every number."""
+        return {name: self.measurements.medians(name) for name in self.measurements.values}
+
+    @cached_property
+    def effects(self) -> "dict[str, EffectAnalysis]":
+        """What the axes do to each metric compared, over all repetitions of all cells."""
+        return {metric: self._analyse(self.measurements.values[metric]) for metric in self.metrics}
+
+    def ends(self, metric: str) -> tuple[FloatArray, FloatArray]:
+        """Return the ends of the 95 % interval of each cell's median, shape (cells,); NaN where repetitions are few."""
+        from runner.statistics import SMALLEST_SAMPLE, median_intervals
+
+        ordered = np.sort(self.measurements.values[metric], axis=1)  # NaN, which is no repetition, comes last
+        counts = np.sum(~np.isnan(ordered), axis=1)
+        low, high = np.full((2, len(ordered)), np.nan)
+        for count in np.unique(counts[counts >= SMALLEST_SAMPLE]):
+            cells = counts == count
+            low[cells], high[cells] = median_intervals(ordered[cells, :count])
+        return low, high
+
+    def _analyse(self, values: FloatArray) -> "EffectAnalysis":
+        from runner.statistics import axis_effects  # SciPy, a second, which the end of a sweep does without
+
+        present = ~np.isnan(values).ravel()
+        levels = {axis.name: np.repeat(grouped(axis), values.shape[1])[present] for axis in self.axes}
+        return axis_effects(levels, values.ravel()[present], self.measurements.draws.ravel()[present])
+
+    @cached_property
+    def order(self) -> NDArray[np.intp]:
+        """The cells by ascending median of the first metric, failed ones last."""
+        failed = np.array([status != "ok" for status in self.measurements.statuses])
+        if not self.metrics:
+            return np.argsort(failed, kind="stable")
+        return np.lexsort((self.medians[self.metrics[0]], failed))
+
+    @property
+    def ranked(self) -> list[int]:
+        """The cells that did not fail and have a number for the first metric, by ascending median."""
+        if not self.metrics:
+            return []
+        medians, statuses = self.medians[self.metrics[0]], self.measurements.statuses
+        return [cell for cell in self.order.tolist() if np.isfinite(medians[cell]) and statuses[cell] == "ok"]
+
+    def label(self, metric: str) -> str:
+        """Return the title of a metric with its unit, as on the axis of a figure."""
+        return metric_label(metric, self.measurements.units[metric])
+
+    def cell_name(self, cell: int, separator: str = ", ") -> str:
+        """Return the values of a cell on all axes, such as "noise.position=0.001, torque_limits.max=20"."""
+        return separator.join(f"{axis.name}={axis.text(int(axis.level[cell]))}" for axis in self.axes)
+
+    def hint(self, cell: int) -> str:
+        """Return what a reader is told of a cell when pointing at it."""
+        units = self.measurements.units
+        found = [f"{title(name)} {_text(self.medians[name][cell], units[name])}" for name in self.metrics]
+        failure = [self.measurements.failures[cell]] if self.measurements.failures[cell] else []
+        return "; ".join([self.cell_name(cell), *found, *failure])
+
+    def hints(self, cells: Sequence[int]) -> list[str]:
+        """Return what a reader is told of some cells."""
+        return [self.hint(cell) for cell in cells]
+
+    def hashes(self, cells: Sequence[int]) -> list[str]:
+        """Return the hashes of some cells' runs."""
+        return [self.measurements.hashes[cell] for cell in cells]
+
+
+def grouped(axis: Axis) -> NDArray[np.intp]:
+    """Return the level of each cell on an axis, shape (cells,): neighbours together where there are very many."""
+    count = len(axis.values)
+    return axis.level * MOST_GROUPS // count if count > MOST_GROUPS else axis.level
+
+
+def axis_label(axis: Axis) -> str:
+    """Return the key of an axis with its unit, as on the axis of a figure."""
+    return labelled(axis.name, key_unit(axis.name))
+
+
+def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:
+    """Return what a report is about: the metrics asked for, or those that differ between the cells.
+
+    Raises:
+        RunnerError: If a metric asked for is none of the sweep's.
+    """
+    if wanted:
+        return Subject(measurements, tuple(measurements.named(wanted)))
+    whole = whole_metrics(measurements.values)
+    varying = [name for name in whole if _varies(measurements.medians(name))]
+    chosen = (varying or whole)[:MOST_METRICS]
+    cost = next((name for name in COSTS if name in varying), None)
+    if cost is not None and cost not in chosen:
+        chosen[-1] = cost  # what the others are traded off against
+    return Subject(measurements, tuple(chosen))
+
+
+def whole_metrics(known: Collection[str]) -> list[str]:
+    """Return metrics without those of one direction or joint, errors first, as they are compared."""
+    return [name for name in dict.fromkeys([*_PREFERRED, *known]) if name in known and not is_part(name)]
+
+
+def first_screen(metrics: Sequence[str]) -> list[str]:
+    """Return the metrics of a first screen, of some in order: the first, and what it costs or else the second."""
+    costs = [name for name in COSTS if name in metrics[1:]] or metrics[1:]
+    return [*metrics[:1], *costs[:1]]
+
+
+def value_names(axis: Axis) -> list[str]:
+    """Return all values of an axis as texts."""
+    return [axis.text(level) for level in range(len(axis.values))]
+
+
+def spans_decades(values: FloatArray) -> bool:
+    """Return whether values are seen better on a logarithmic scale: all positive, over a decade or more."""
+    finite = values[np.isfinite(values)]
+    return bool(finite.size and finite.min() > 0 and finite.max() >= _DECADE * finite.min())
+
+
+def _varies(medians: FloatArray) -> bool:
+    finite = medians[np.isfinite(medians)]
+    return bool(finite.size and np.any(finite != finite[0]))
+
+
+def _text(median: float, unit: str) -> str:
+    if np.isnan(median):
+        return "–"
+    return quantity(float(median), unit) if np.isfinite(median) else "never"

@@ -1,0 +1,144 @@
+"""The two Jinja2 environments: HTML with autoescape, and Typst where every text becomes a quoted string by itself."""
+
+import re
+from functools import cache
+
+import jinja2
+
+from runner.base.expressions.typesetting import matrix, symbol, typeset
+from runner.base.paths import templates_dir
+from runner.base.texts import plain
+from runner.reporting.document import Origin
+from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, of_verdict
+from runner.reporting.markup import spans
+from runner.reporting.places import verdict_place
+from runner.reporting.spoken import spoken
+from runner.reporting.symbols import symbols_in
+
+VERDICT_SIGNS = {
+    "matches": "=",
+    "differs": "≠",
+    "smaller than printed": "<",
+    "larger than printed": ">",
+    "source contradicts itself": "!",
+    "undecided": "?",
+    "correct": "✓",
+    "correct after repair": "✓",
+    "wrong as printed": "✕",
+    "unreadable": "?",
+    "definition": "–",
+    "refused": "✕",
+    "fixed": "!",
+    "note": "–",
+}
+"""A sign beside each verdict, for readers who see no colours."""
+
+
+_SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
+
+
+class Code(str):
+    """Text that is code of the target language already, and is inserted as it is."""
+
+    __slots__ = ()
+
+    def __html__(self) -> str:
+        return self
+
+
+@cache
+def html_environment() -> jinja2.Environment:
+    """Return the environment of the HTML templates: autoescape on, an unknown name is an error."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
+        autoescape=jinja2.select_autoescape(enabled_extensions=("html", "html.j2")),
+        undefined=jinja2.StrictUndefined,
+        finalize=html_value,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return _equip(environment)
+
+
+@cache
+def typst_environment() -> jinja2.Environment:
+    """Return the environment of the Typst templates.
+
+    Its delimiters are `<% %>`, `<< >>` and `<# #>`. Whatever a template inserts becomes a Typst string or number, so
+    that no text can become markup or code, not even where a template forgets a filter.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=typst_value,
+        block_start_string="<%",
+        block_end_string="%>",
+        variable_start_string="<<",
+        variable_end_string=">>",
+        comment_start_string="<#",
+        comment_end_string="#>",
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return _equip(environment)
+
+
+def html_value(value: object) -> object:
+    """Return a text without the characters that no page can hold; autoescape does the rest."""
+    return plain(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
+
+
+def typst_value(value: object) -> str:
+    """Return a value as Typst code: a number, true or false, or a quoted string; the output of a macro stays as it is.
+
+    Raises:
+        TypeError: If the value is anything else.
+    """
+    if isinstance(value, str):
+        return value if hasattr(value, "__html__") else Code(quoted(value))
+    if isinstance(value, bool):
+        return Code(str(value).lower())
+    if isinstance(value, int | float):
+        return Code(repr(value))
+    raise TypeError(f"a Typst template can insert texts and numbers, not {type(value).__name__}")
+
+
+def quoted(text: str) -> str:
+    """Return a text as a Typst string in quotes."""
+    escaped = plain(text).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+def origin_label(origin: Origin, kind: str) -> str:
+    """Return a figure's or table's number in the source with the word before it, or an empty text."""
+    number = plain(origin.number).strip()
+    if not number:
+        return ""
+    return f"{kind} {number}" if number[0].isdigit() else number[0].upper() + number[1:]
+
+
+def aspect(svg: str) -> str:
+    """Return width and height of a drawing as the style `aspect-ratio` has them."""
+    size = _SIZE.search(svg)
+    return f"{size[1]} / {size[2]}" if size else "auto"
+
+
+def _equip(environment: jinja2.Environment) -> jinja2.Environment:
+    environment.filters |= {
+        "spans": spans,
+        "origin_label": origin_label,
+        "kind": lambda node: type(node).__name__,
+        "symbol": symbol,
+        "typeset": typeset,
+        "matrix": matrix,
+        "aspect": aspect,
+        "in_words": spoken,
+        "symbols_in": symbols_in,
+        "of_verdict": of_verdict,
+        "by_finding": by_finding,
+        "by_place": by_place,
+        "verdict_place": verdict_place,
+    }
+    environment.globals |= {"verdict_signs": VERDICT_SIGNS, "shown_verdicts": SHOWN, "folded_verdicts": FOLDED}
+    return environment
