@@ -12,7 +12,8 @@ NUMBERS = (
     float("nan"),
 )  # fmt: skip
 TEXTS = (
-    "", " ", "x", "null", "true", "1e400", "macro", "sound", "bullet", "quintic", "../../etc/passwd", "/etc/passwd",
+    "", " ", "x", "null", "true", "1e400", "macro", "full_equations", "bullet", "quintic", "../../etc/passwd",
+    "/etc/passwd",
     "~", "a b", "ä°中", "\x1b]0;pwn\x07", "\x1b[2J", "\x9b", "\u202e", "line\nbreak", "\r\t", '=HYPERLINK("http://x")',
     "@SUM(1)", "-2+3", "<script>alert(1)</script>", "'\"`;$(touch pwned)", "%s%n", "{}", "[]", "${", "$}", "\\",
     "\\${x}", "#read(\"/etc/passwd\")", "__class__", "_target_", "NaN", "x" * 201, "x" * 5000, "[" * 300, "{a:" * 90,

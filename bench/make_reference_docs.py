@@ -88,7 +88,7 @@ _PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
     "disturbance_observer": (DisturbanceObserverConfig, "none"),
     "input_shaper": (InputShaperConfig, "zv"),
     "notch": (NotchConfig, "torques"),
-    "preset": (PresetConfig, "sound"),
+    "preset": (PresetConfig, "full_equations"),
 }
 
 

@@ -23,7 +23,7 @@ from runner.store.references.shipped import reference_path
 
 SEEDS = range(5)
 MARGIN = 0.02
-PRESETS = ("sound", "as_reported")
+PRESETS = ("full_equations", "as_reported")
 
 _POSITIONING = ("settling_time", "steady_state_error", "peak_torque", "saturation_fraction")
 _WHOLE_MOVE = ("overshoot", "cross_track_error", "energy", "control_effort")
@@ -74,30 +74,34 @@ _SUM = "a sum over the whole move, in which single noise draws hardly show"
 
 _BASE_ENCODERS = "the Macro's encoders, seen through the Mini's base"
 _STAGED = {
-    ("figure_5_8", "sound", "steady_state_error"): _BASE_ENCODERS,
+    ("figure_5_8", "full_equations", "steady_state_error"): _BASE_ENCODERS,
     ("figure_5_8", "as_reported", "steady_state_error"): _BASE_ENCODERS,
-    ("figure_5_10", "sound", "steady_state_error"): f"{_BASE_ENCODERS}, and more once the Mini is stretched",
+    ("figure_5_10", "full_equations", "steady_state_error"): f"{_BASE_ENCODERS}, and more once the Mini is stretched",
     ("figure_5_10", "as_reported", "steady_state_error"): "the Macro's sag once the Mini is stretched",
-    ("figure_5_12", "sound", "max_axis_error"): _BASE_ENCODERS,
-    ("figure_5_12", "sound", "rms_tracking_error"): _BASE_ENCODERS,
-    ("figure_5_12", "sound", "steady_state_error"): _BASE_ENCODERS,
+    ("figure_5_12", "full_equations", "max_axis_error"): _BASE_ENCODERS,
+    ("figure_5_12", "full_equations", "rms_tracking_error"): _BASE_ENCODERS,
+    ("figure_5_12", "full_equations", "steady_state_error"): _BASE_ENCODERS,
     ("figure_5_12", "as_reported", "max_axis_error"): "the Mini's lag behind a series of goals",
     ("figure_5_12", "as_reported", "rms_tracking_error"): "the Mini's lag behind a series of goals",
     ("figure_5_12", "as_reported", "steady_state_error"): _BASE_ENCODERS,
-    ("figure_5_13", "sound", "max_axis_error"): "what is left where the Mini is stretched, late in the motion",
-    ("figure_5_13", "sound", "rms_tracking_error"): _BASE_ENCODERS,
+    ("figure_5_13", "full_equations", "max_axis_error"): "what is left where the Mini is stretched, late in the motion",
+    ("figure_5_13", "full_equations", "rms_tracking_error"): _BASE_ENCODERS,
     ("figure_5_13", "as_reported", "max_axis_error"): "the Macro's lag, as the Mini is stretched",
     ("figure_5_13", "as_reported", "rms_tracking_error"): "the Macro's lag, as the Mini is stretched",
-    ("macro_alone", "sound", "macro_max_axis_error"): _BASE_AXIS,
+    ("macro_alone", "full_equations", "macro_max_axis_error"): _BASE_AXIS,
     ("macro_alone", "as_reported", "macro_max_axis_error"): _BASE_AXIS,
-    ("macro_alone", "sound", "macro_steady_state_error"): "the Mini's weight, which the Macro does not know, and noise",
+    (
+        "macro_alone",
+        "full_equations",
+        "macro_steady_state_error",
+    ): "the Mini's weight, which the Macro does not know, and noise",
     ("macro_alone", "as_reported", "macro_steady_state_error"): _SAG,
 }
 # Reasons of tracking errors on the xArm7's line: by three joints, which feed nothing back, and by seven.
 _LINE_ERRORS = {
-    ("three", "sound"): "what the motion's third derivative does within a period, as the first two are known",
+    ("three", "full_equations"): "what the motion's third derivative does within a period, as the first two are known",
     ("three", "as_reported"): "the way that the tip goes within a period: so late are joints without feedforward",
-    ("seven", "sound"): "what the integration over a period leaves",
+    ("seven", "full_equations"): "what the integration over a period leaves",
     ("seven", "as_reported"): "the lag behind the error feedback, the tip's speed over its gain",
 }
 
@@ -107,7 +111,7 @@ def explain_line(experiment: str, preset: str, metric: str) -> str:
     reasons = {
         "peak_joint_speed": "the line, its period and the inverse kinematics alone",
         "peak_torque": "the arm's weight on joint 2, by inverse dynamics",
-        "cross_track_error": _LINE_ERRORS["seven", "sound"],
+        "cross_track_error": _LINE_ERRORS["seven", "full_equations"],
     }
     joints = "seven" if experiment.startswith("xarm7/seven") else "three"
     return reasons.get(metric, _LINE_ERRORS[joints, preset])
@@ -147,23 +151,23 @@ def explain(experiment: str, preset: str, metric: str, zero: bool) -> str:
         return explain_touch(experiment, metric)
     if experiment.startswith("benchmark/"):
         return _WRONG[metric]
-    sound, limited = preset == "sound", experiment == "thesis/figure_3_9"
+    full, limited = preset == "full_equations", experiment == "thesis/figure_3_9"
     if zero:
         return "no error beyond the settling band" if metric == "settling_time" else "no joint at a limit"
     staged = _STAGED.get((experiment.rpartition("/")[2], preset, metric))
     if staged is not None:
         return staged
     reasons = {
-        "settling_time": "back in the settling band " + ("after the base axis" if sound else "as the lag fades"),
-        "steady_state_error": _NOISE if sound else _SAG,
+        "settling_time": "back in the settling band " + ("after the base axis" if full else "as the lag fades"),
+        "steady_state_error": _NOISE if full else _SAG,
         "peak_torque": "the limit, met beside the base axis" if limited else "joint 1 beside the base axis, and noise",
         "saturation_fraction": "joint 1 at its limit beside the base axis",
         "overshoot": "the part of the error at rest that lies along the path",
-        "cross_track_error": _BASE_AXIS if limited else _NOISE if sound else _SAG,
+        "cross_track_error": _BASE_AXIS if limited else _NOISE if full else _SAG,
         "energy": _SUM,
         "control_effort": _SUM,
-        "max_axis_error": _BASE_AXIS if limited else _NOISE if sound else _LAG,
-        "rms_tracking_error": _LAG if not sound else _BASE_AXIS if limited else _NOISE,
+        "max_axis_error": _BASE_AXIS if limited else _NOISE if full else _LAG,
+        "rms_tracking_error": _LAG if not full else _BASE_AXIS if limited else _NOISE,
     }
     if experiment == "thesis/figure_4_4":
         reasons["peak_torque"] = "gravity on joint 2, 0.196 N m at home, and the answer to noise, lag and sag"

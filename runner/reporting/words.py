@@ -2,7 +2,7 @@
 
 import re
 
-PRESET = {"as_reported": "as the thesis ran it", "sound": "with its full equations"}
+PRESET = {"as_reported": "as the thesis ran it", "full_equations": "with its full equations"}
 """The presets of the works, in the order of their columns."""
 
 PLANT = {
@@ -44,5 +44,5 @@ _CODE_NAME = re.compile(rf"\b({'|'.join(_WORDS)})\b")
 
 
 def in_words(name: str) -> str:
-    """Return a preset, plant, coupling, law or variant such as "sound, decoupled" in words; other names stay."""
+    """Return a preset, plant, coupling or variant such as "full_equations, decoupled" in words; other names stay."""
     return _CODE_NAME.sub(lambda found: _WORDS[found[0]], name)

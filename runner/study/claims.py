@@ -49,7 +49,7 @@ def judged_claims(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], pre
 
     Args:
         claims: All claims of a work: a bound of one names another.
-        runs: The stored runs of the work, by names such as "figure_3_5/sound"; see `run_name`.
+        runs: The stored runs of the work, by names such as "figure_3_5/full_equations"; see `run_name`.
         presets: Names of the presets under which they are judged, with their words; where there are none, once.
 
     Raises:

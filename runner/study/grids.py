@@ -5,7 +5,7 @@
         name: turns/{{ preset }}
         with: [experiment=thesis/figure_5_12, "duration={{ cycles * 4 }}"]
         over:
-          preset: [as_reported, sound]
+          preset: [as_reported, full_equations]
           schedule: {both: controller.schedule=both, turns: [controller.schedule=turns, plant=rk4]}
         values: {cycles: 5}
 

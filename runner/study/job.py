@@ -7,7 +7,7 @@ from typing import TypeVar
 from runner.base.errors import RunnerError, nearest
 from runner.store import Calibration, Run
 
-PRESETS = ("as_reported", "sound")
+PRESETS = ("as_reported", "full_equations")
 Thing = TypeVar("Thing")
 Stored = TypeVar("Stored", Run, Calibration)
 

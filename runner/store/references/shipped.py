@@ -47,6 +47,6 @@ def find_shipped(run: "Run") -> Reference:
 
 
 def reference_path(name: str) -> Path:
-    """Return the file of a reference, such as "thesis/figure_3_5.sound", whether it is there or not."""
+    """Return the file of a reference, such as "thesis/figure_3_5.full_equations", whether it is there or not."""
     work, _, file = name.partition("/")
     return works_dir() / work / _FOLDER / f"{file}.yaml"

@@ -18,7 +18,7 @@ from runner.study.prose.patterns import found
 
 _RUNS = "sure/{figure}/{preset}/{seeds}"
 _BESIDE = 0.12  # of a claim's place, so that the bars of both presets are seen
-_COLORS = {"as_reported": 1, "sound": 0}  # palette indices, as in all figures of the report
+_COLORS = {"as_reported": 1, "full_equations": 0}  # palette indices, as in all figures of the report
 
 
 def judged(runs: Mapping[str, Run]) -> list[Judged]:

@@ -96,7 +96,7 @@ def test_without_a_shipped_reference_the_way_out_is_named(cli, copy_run):
     assert f"`runner list references` tells the {len(shipped_references())} that come with it\n" in ending.err
     assert len(ending.err) < 400
     run = cli("experiment=thesis/lag", "duration=0.05").folder
-    assert "for 'thesis/lag.sound'" in cli("check", run).err
+    assert "for 'thesis/lag.full_equations'" in cli("check", run).err
 
 
 def test_a_copied_run_is_checked_elsewhere(cli, copy_run, reference, tmp_path):

@@ -56,10 +56,12 @@ def test_precedence_group_preset_robot_experiment_command_line():
 
 def test_a_preset_leaves_noise_limits_and_times_alone():
     for robot in ("macro", "combined"):
-        sound, as_reported = (resolve(f"preset={name}", f"robot={robot}") for name in ("sound", "as_reported"))
-        changed = {key for key in sound if sound[key] != as_reported[key]}
+        full_equations, as_reported = (
+            resolve(f"preset={name}", f"robot={robot}") for name in ("full_equations", "as_reported")
+        )
+        changed = {key for key in full_equations if full_equations[key] != as_reported[key]}
         assert changed == {"preset", "controller", "plant"}
-        assert {key for key, value in sound["plant"].items() if value != as_reported["plant"][key]} == {
+        assert {key for key, value in full_equations["plant"].items() if value != as_reported["plant"][key]} == {
             "dynamics",
             "wrist_rotation",
         }

@@ -7,7 +7,8 @@ from runner.study.work import load_work
 
 SOME = {
     "thesis": {
-        "figure_3_9/sound/2.0": ("experiment=thesis/figure_3_9", "preset=sound", "trajectory.duration=2.0",
+        "figure_3_9/full_equations/2.0": ("experiment=thesis/figure_3_9", "preset=full_equations",
+                                          "trajectory.duration=2.0",
                                  "repetitions=5"),
         "coupling/goal/whole_body/decoupled": ("experiment=thesis/whole_body", "trajectory=goal", "repetitions=1",
                                                "noise=none", "plant.dynamics=decoupled"),
@@ -50,13 +51,14 @@ SOME = {
             "plant.step=6.25e-05", "controller.period=6.25e-05"),
     },
     "xarm7": {
-        "servo/sound/0.00025": ("experiment=xarm7/three_joints", "duration=5", "preset=sound", "plant=default",
+        "servo/full_equations/0.00025": ("experiment=xarm7/three_joints", "duration=5", "preset=full_equations",
+                                          "plant=default",
                                 "plant.step=0.00025"),
         "printed/pose/angles alone/fed back": (
             "robot=xarm7", "controller=xarm7_as_printed", "controller.task=pose", "controller.feedforward=true",
             "controller.columns=right", "controller.angles=printed", "controller.inverse=right", "controller.gain=20"),
-        "rates/servos/sound/100": ("robot=xarm7", "plant=default", "plant.step=0.001", "plant_error=true",
-                                   "preset=sound", "controller.period=0.01", "duration=5"),
+        "rates/servos/full_equations/100": ("robot=xarm7", "plant=default", "plant.step=0.001", "plant_error=true",
+                                   "preset=full_equations", "controller.period=0.01", "duration=5"),
         "payload/0.6043/asked/5": ("robot=xarm7", "robot.start=[0.6043,-0.2,0.1508]",
                                    "robot.goal=[0.6043,0.2,0.1508]", "duration=5", "robot.payload.mass=5"),
     },

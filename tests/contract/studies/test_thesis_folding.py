@@ -10,7 +10,7 @@ from fixtures.studies import Made
 from runner.store import Run
 from runner.studies.thesis import figures, folding
 
-NAME = "folding/sound/tip_goal/quintic"
+NAME = "folding/full_equations/tip_goal/quintic"
 
 
 @pytest.fixture

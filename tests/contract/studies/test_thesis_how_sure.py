@@ -56,7 +56,7 @@ def judged_by(some: Run, number: int, values: list[float | None], **others: list
         stored.setdefault("figure_3_5", {})["settling_time"] = others["bound"]
     seeds = {name: with_values(some, **own) for name, own in stored.items()}
     own = {name: with_values(some, **{m: v[:OWN] for m, v in each.items()}) for name, each in stored.items()}
-    return judge_by_seeds(claim, CLAIMS, seeds, own, "sound")
+    return judge_by_seeds(claim, CLAIMS, seeds, own, "full_equations")
 
 
 def test_one_seed_turns_by_its_own_value_and_a_group_by_the_binomial(some: Run) -> None:
@@ -118,7 +118,7 @@ def test_the_full_profile_raises_the_seeds_alone() -> None:
 def test_every_claim_has_its_run_of_many_seeds(runs: Mapping[str, Run]) -> None:
     given = how_sure.judged(runs)
     assert [(each.claim.number, each.preset) for each in given] == [
-        (claim.number, preset) for claim in CLAIMS for preset in ("as_reported", "sound")
+        (claim.number, preset) for claim in CLAIMS for preset in ("as_reported", "full_equations")
     ]
     assert all(each.values.size for each in given)
 

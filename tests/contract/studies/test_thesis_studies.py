@@ -56,7 +56,7 @@ def test_the_dynamics_are_measured_once_and_read(
 
 
 def test_the_checklist_finds_its_places_and_names_what_is_missing(runs: Mapping[str, Run]) -> None:
-    figure = torque_and_error(runs["figure_5_8/sound"], "A figure.", "figure 5.8")
+    figure = torque_and_error(runs["figure_5_8/full_equations"], "A figure.", "figure 5.8")
     checklist = load_checklist("thesis")
     assert checklist is not None
     section = checklist.section([Section("Elsewhere"), Section("Here", sections=(Section("Below", (figure,)),))])

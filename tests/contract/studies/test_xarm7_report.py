@@ -89,7 +89,7 @@ def test_seven_joints_meet_what_is_asked_of_them(runs, preset):
     for name in ("seven_joints", "seven_joints_pose"):
         metrics = runs[f"{name}/{preset}"].metrics
         assert metrics["cross_track_error"]["median"] < 1e-4
-        if preset == "sound":
+        if preset == "full_equations":
             assert metrics["max_axis_error"]["median"] < 1e-5
 
 

@@ -9,11 +9,15 @@ from runner.sweeps.loading import Loader
 from runner.sweeps.plan import check
 
 ITEMS = {
-    "slow": Item(("experiment=thesis/figure_3_9", "preset=sound", "trajectory.duration=1.5", "repetitions=2")),
-    "slower": Item(("experiment=thesis/figure_3_9", "preset=sound", "trajectory.duration=2.0", "repetitions=2")),
-    "again": Item(("experiment=thesis/figure_3_9", "preset=sound", "trajectory.duration=1.5", "repetitions=2")),
+    "slow": Item(("experiment=thesis/figure_3_9", "preset=full_equations", "trajectory.duration=1.5", "repetitions=2")),
+    "slower": Item(
+        ("experiment=thesis/figure_3_9", "preset=full_equations", "trajectory.duration=2.0", "repetitions=2")
+    ),
+    "again": Item(
+        ("experiment=thesis/figure_3_9", "preset=full_equations", "trajectory.duration=1.5", "repetitions=2")
+    ),
     "other": Item(("experiment=thesis/figure_3_9", "preset=as_reported", "repetitions=1")),
-    "rk4": Item(("experiment=thesis/figure_3_9", "preset=sound", "plant=rk4", "repetitions=1")),
+    "rk4": Item(("experiment=thesis/figure_3_9", "preset=full_equations", "plant=rk4", "repetitions=1")),
     "mini": Item(("robot=mini", "noise.position=1e-4")),
     "tool": Item(("calibration=tool_direction", "repetitions=3"), "calibrate"),
 }

@@ -52,7 +52,7 @@ def test_what_is_stored_is_not_made_again(sweep, simulated_runs):
 
 
 def test_cells_of_one_config_are_one_run(sweep, simulated_runs):
-    ended = sweep("seed=1,1", "preset=sound")
+    ended = sweep("seed=1,1", "preset=full_equations")
     assert len(simulated_runs) == 1
     assert len(runs(ended)) == 2
 

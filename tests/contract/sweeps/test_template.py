@@ -11,7 +11,12 @@ from runner.sweeps.grid import plan_sweep
 INDEPENDENT = [
     ("robot=macro,mini", "noise.position=1e-4,1e-3", "controller.period=0.01,0.02"),
     ("experiment=thesis/figure_3_5,thesis/figure_3_9", "noise.position=0,1e-3,2e-3"),
-    ("robot=combined", "preset=sound,as_reported", "controller.period.macro=0.01,0.02", "robot.period.mini=1e-3,2e-3"),
+    (
+        "robot=combined",
+        "preset=full_equations,as_reported",
+        "controller.period.macro=0.01,0.02",
+        "robot.period.mini=1e-3,2e-3",
+    ),
     (
         "robot.period=0.01,0.02",
         "noise=none,thesis",

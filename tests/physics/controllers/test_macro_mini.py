@@ -241,7 +241,7 @@ def alone(goal, step, *overrides):
     )
 
 
-@pytest.mark.parametrize("preset", ["sound", "as_reported"])
+@pytest.mark.parametrize("preset", ["full_equations", "as_reported"])
 @pytest.mark.parametrize("plant", ["bullet", "rk4"])
 def test_with_the_mini_held_the_macro_is_the_macro_alone(simulated, checked_config, preset, plant):
     # Decoupled, and without singularity damping: it is scaled by the distance to x_d, and that is one rounding off.
@@ -299,7 +299,7 @@ def test_two_way_coupling_lets_the_mini_stretch(simulated):
 
 
 def test_end_points_of_the_trace_are_those_of_the_robot(simulated, combined):
-    for preset in ("sound", "as_reported"):
+    for preset in ("full_equations", "as_reported"):
         trace = simulated("robot=combined", f"preset={preset}", "duration=0.1")
         points = end_points(combined, trace.q, preset == "as_reported")
         np.testing.assert_allclose(trace.end_points, points, rtol=0.0, atol=1e-15)

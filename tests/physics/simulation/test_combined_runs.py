@@ -15,7 +15,7 @@ from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.store import open_run
 
-TRACKING = ("robot=combined", "preset=sound", "trajectory=quintic", "trajectory.duration=3", "duration=3")
+TRACKING = ("robot=combined", "preset=full_equations", "trajectory=quintic", "trajectory.duration=3", "duration=3")
 OPTIONS = {
     "controller.coupling": ("one_way", "two_way", "independent", "independent_base", "mini_held"),
     "controller.macro_target": ("minus_home", "tip_goal"),
@@ -34,7 +34,11 @@ OPTIONS = {
     "noise.bias.macro": ("-1e-3", "1e-3"),
     "noise.distribution": ("uniform", "gaussian", "none"),
     "torque_limits": ("none", "thesis"),
-    "preset": ("sound", "sound plant.dynamics=decoupled", "as_reported"),  # as_reported is decoupled, too
+    "preset": (
+        "full_equations",
+        "full_equations plant.dynamics=decoupled",
+        "as_reported",
+    ),  # as_reported is decoupled, too
     "gravity": ("0", "9.81"),
 }
 WHOLE_BODY = {
@@ -190,7 +194,7 @@ def test_the_same_config_and_seed_are_bit_identical(simulated, plant, controller
     assert fingerprint(simulated(*overrides, "seed=1")) != first
 
 
-@pytest.mark.parametrize("preset", ["sound", "as_reported"])
+@pytest.mark.parametrize("preset", ["full_equations", "as_reported"])
 def test_a_repetition_does_not_depend_on_those_before(cli, preset):
     base = ("robot=combined", f"preset={preset}", "noise=thesis", "torque_limits=thesis", "duration=0.2")
     base = (*base, "controller.schedule=turns", "controller.coupling=two_way")  # loops with a memory
@@ -205,7 +209,7 @@ def test_a_repetition_does_not_depend_on_those_before(cli, preset):
 
 # Singular situations.
 
-FOLDING = ("controller.macro_target=tip_goal", "preset=sound")
+FOLDING = ("controller.macro_target=tip_goal", "preset=full_equations")
 SINGULAR = {
     "Mini folded, tracking": (*FOLDING, "trajectory=quintic"),
     "Mini folded, goal": (*FOLDING, "trajectory=goal"),

@@ -12,7 +12,7 @@ OLD = {
     "thesis": {
         "title": "The thesis",
         "verdicts": [
-            {"claim": "1", "ours": [{"preset": "sound", "measured": "1.3 s", "verdict": "matches"}]},
+            {"claim": "1", "ours": [{"preset": "full_equations", "measured": "1.3 s", "verdict": "matches"}]},
             {"claim": "2", "ours": [{"preset": "", "measured": "2 mm", "verdict": "larger than printed"}]},
         ],
         "findings": [{"title": "It follows", "text": "By 2 mm.", "holds": True}],
@@ -46,18 +46,22 @@ def test_nothing_changed(new):
 
 def test_each_kind_is_told_with_what_it_was_and_is(new):
     thesis = new["thesis"]
-    thesis["verdicts"][0]["ours"][0] = {"preset": "sound", "measured": "2.6 s", "verdict": "larger than printed"}
+    thesis["verdicts"][0]["ours"][0] = {
+        "preset": "full_equations",
+        "measured": "2.6 s",
+        "verdict": "larger than printed",
+    }
     thesis["findings"][0]["holds"] = False
     thesis["equations"][0]["verdict"] = "wrong as printed"
     thesis["caveats"] = [{"run": "goal", "rule": "chatter", "text": "joint q1 jumps"}]
     told = [(change.kind, change.name, change.old, change.new) for change in changes(OLD, new)]
     assert told == [
-        ("verdict", "thesis: claim 1, sound", "matches", "larger than printed"),
+        ("verdict", "thesis: claim 1, full_equations", "matches", "larger than printed"),
         ("finding", "thesis: It follows", "holds", "no longer holds"),
         ("equation", "thesis: 3.4, page 3: Axis", "correct", "wrong as printed"),
         ("caveat", "thesis: goal: saturation", "joint q1 in 20 %", None),
         ("caveat", "thesis: goal: chatter", None, "joint q1 jumps"),
-        ("measured", "thesis: claim 1, sound", "1.3 s", "2.6 s"),
+        ("measured", "thesis: claim 1, full_equations", "1.3 s", "2.6 s"),
     ]
 
 

@@ -54,7 +54,7 @@ def told(block):
 
 
 def test_a_run_is_named_by_the_last_part_of_its_experiment():
-    assert run_name("work/macro", "sound") == "macro/sound"
+    assert run_name("work/macro", "full_equations") == "macro/full_equations"
 
 
 def test_a_number_is_judged_by_the_median_and_shown_with_its_range():
@@ -77,8 +77,8 @@ def test_a_run_that_failed_decides_nothing_and_says_why():
 def hanging(run, longer=None):
     """Return what the verdict on a printed 1.4 s hangs on, of a run and of one that lasts longer."""
     claim = PublishedClaim.model_validate(NUMBER | ({} if longer is None else {"longer": "longer"}))
-    runs = {"macro/sound": run, "longer/sound": longer}
-    (block,) = judged_claims([claim], runs, {"sound": "sound"})
+    runs = {"macro/full_equations": run, "longer/full_equations": longer}
+    (block,) = judged_claims([claim], runs, {"full_equations": "full_equations"})
     return dict(block.findings[0].hangs)
 
 

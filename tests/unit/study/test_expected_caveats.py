@@ -28,9 +28,9 @@ def run_with(*rules):
 
 
 RUNS = {
-    "fast/sound": run_with(("saturation", 0.4)),
+    "fast/full_equations": run_with(("saturation", 0.4)),
     "fast/as_reported": run_with(("saturation", 0.6), ("chatter", 0.2)),
-    "slow/sound": run_with(),
+    "slow/full_equations": run_with(),
 }
 CHATTERS = ExpectedCaveat("chatter", "*/as_reported", "Noise.")
 SATURATED = ExpectedCaveat("saturation", "fast/*", "The limit is what the section is about.")
@@ -40,7 +40,7 @@ def test_a_caveat_is_expected_of_the_runs_that_a_pattern_names():
     assert unexpected_caveats(RUNS, [SATURATED, CHATTERS]) == []
     lines = unexpected_caveats(RUNS, [SATURATED])
     assert lines == ["fast/as_reported: caveat chatter, which the work does not expect: chatter of 0.2 $"]
-    assert len(unexpected_caveats(RUNS, [ExpectedCaveat("saturation", "fast/sound", "Why.")])) == 2
+    assert len(unexpected_caveats(RUNS, [ExpectedCaveat("saturation", "fast/full_equations", "Why.")])) == 2
 
 
 def test_the_section_tells_how_many_and_the_worst_and_warns_of_others():
@@ -52,19 +52,19 @@ def test_the_section_tells_how_many_and_the_worst_and_warns_of_others():
 
 
 def test_a_run_of_two_names_is_counted_once():
-    (table,) = caveats_section({**RUNS, "fast/again": RUNS["fast/sound"]}, [SATURATED, CHATTERS]).blocks
+    (table,) = caveats_section({**RUNS, "fast/again": RUNS["fast/full_equations"]}, [SATURATED, CHATTERS]).blocks
     assert [row[:2] for row in table.rows] == [["saturation", "2"], ["chatter", "1"]]
 
 
 def test_a_work_without_caveats_says_so():
-    (text,) = caveats_section({"slow/sound": run_with()}, []).blocks
+    (text,) = caveats_section({"slow/full_equations": run_with()}, []).blocks
     assert text.text == "No rule found anything at the end of the runs."
 
 
 def test_programs_get_every_caveat_with_why_it_is_expected():
     told = caveats_as_data(RUNS, [SATURATED])
     assert [(each["run"], each["rule"], each["expected"]) for each in told] == [
-        ("fast/sound", "saturation", SATURATED.why),
+        ("fast/full_equations", "saturation", SATURATED.why),
         ("fast/as_reported", "saturation", SATURATED.why),
         ("fast/as_reported", "chatter", None),
     ]
@@ -82,11 +82,12 @@ def test_what_a_work_expects_is_of_known_rules_and_of_runs_that_it_has(work):
 
 
 def test_a_run_that_a_work_does_not_have_is_refused_with_the_nearest_name():
-    made = Made({"figure_3_5/sound": run_with()}, {"figure_3_6/sound": "not begun"})
+    made = Made({"figure_3_5/full_equations": run_with()}, {"figure_3_6/full_equations": "not begun"})
     with pytest.raises(
-        RunnerError, match=r"no run or calibration 'figure_3_5/soud' \(did you mean figure_3_5/sound\?\)"
+        RunnerError,
+        match=r"no run or calibration 'figure_3_5/full_equation' \(did you mean figure_3_5/full_equations\?\)",
     ):
-        made["figure_3_5/soud"]
+        made["figure_3_5/full_equation"]
 
 
 def test_a_metric_that_a_run_does_not_have_is_refused_with_the_nearest_name():

@@ -21,15 +21,15 @@ def test_a_grid_is_a_run_for_each_combination_in_the_order_of_its_axes(read):
 grids:
   turns:
     with: [experiment=thesis/figure_5_12]
-    over: {preset: [as_reported, sound], schedule: {both: controller.schedule=both, turns: [a=1, b=2]}}
+    over: {preset: [as_reported, full_equations], schedule: {both: controller.schedule=both, turns: [a=1, b=2]}}
   alone: {with: [robot=xarm7]}
 """)
     begin = "experiment=thesis/figure_5_12"
     assert list(grids.runs.items()) == [
         ("turns/as_reported/both", (begin, "preset=as_reported", "controller.schedule=both")),
         ("turns/as_reported/turns", (begin, "preset=as_reported", "a=1", "b=2")),
-        ("turns/sound/both", (begin, "preset=sound", "controller.schedule=both")),
-        ("turns/sound/turns", (begin, "preset=sound", "a=1", "b=2")),
+        ("turns/full_equations/both", (begin, "preset=full_equations", "controller.schedule=both")),
+        ("turns/full_equations/turns", (begin, "preset=full_equations", "a=1", "b=2")),
         ("alone", ("robot=xarm7",)),
     ]
     assert grids.runs["alone"] == ("robot=xarm7",)

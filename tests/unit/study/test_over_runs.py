@@ -23,26 +23,33 @@ def run_of(value, failed=False, ends=None, unit="m"):
 
 
 RUNS = {
-    f"gain/{gain}/{preset}": run_of(float(gain) * (1.0 if preset == "sound" else 2.0))
-    for preset in ("sound", "as_reported")
+    f"gain/{gain}/{preset}": run_of(float(gain) * (1.0 if preset == "full_equations" else 2.0))
+    for preset in ("full_equations", "as_reported")
     for gain in (1, 10, 5)
 } | {"held": run_of(7.0)}
 
 
 def test_a_pattern_names_runs_in_the_order_of_the_plan():
-    assert [one.name for one in found(RUNS, "gain/{gain}/sound")] == ["gain/1/sound", "gain/10/sound", "gain/5/sound"]
+    assert [one.name for one in found(RUNS, "gain/{gain}/full_equations")] == [
+        "gain/1/full_equations",
+        "gain/10/full_equations",
+        "gain/5/full_equations",
+    ]
     by = [one.levels for one in found(RUNS, "gain/{gain}/{preset}", ["preset"])]
-    assert by[:3] == [{"gain": gain, "preset": "sound"} for gain in ("1", "10", "5")]
-    assert [one.levels["preset"] for one in found(RUNS, "gain/{gain}/{preset}")][:2] == ["sound", "as_reported"]
+    assert by[:3] == [{"gain": gain, "preset": "full_equations"} for gain in ("1", "10", "5")]
+    assert [one.levels["preset"] for one in found(RUNS, "gain/{gain}/{preset}")][:2] == [
+        "full_equations",
+        "as_reported",
+    ]
 
 
 def test_a_pattern_that_names_nothing_is_refused():
-    with pytest.raises(RunnerError, match=r"no run is named like 'gian/\{gain\}/sound'"):
-        found(RUNS, "gian/{gain}/sound")
+    with pytest.raises(RunnerError, match=r"no run is named like 'gian/\{gain\}/full_equations'"):
+        found(RUNS, "gian/{gain}/full_equations")
     with pytest.raises(RunnerError, match=r"has no axis 'gian' \(did you mean gain\?\)"):
-        found(RUNS, "gain/{gain}/sound", ["gian"])
-    with pytest.raises(MissingError, match="gain/2/sound: cut short"):
-        found(Made(RUNS, {"gain/2/sound": "cut short"}), "gain/{gain}/sound")
+        found(RUNS, "gain/{gain}/full_equations", ["gian"])
+    with pytest.raises(MissingError, match="gain/2/full_equations: cut short"):
+        found(Made(RUNS, {"gain/2/full_equations": "cut short"}), "gain/{gain}/full_equations")
 
 
 def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
@@ -54,11 +61,13 @@ def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
         tables.level("gain", words={"10": "ten"}),
         tables.column("error", "error"),
         tables.column("settles", "settling_time"),
-        tables.column("of the sound one", signals.at_the_end("q1"), "gain/{gain}/sound", only={"gain": "5"}),
+        tables.column(
+            "of the full equations", signals.at_the_end("q1"), "gain/{gain}/full_equations", only={"gain": "5"}
+        ),
         by=["preset"],
         number="table 1",
     )
-    assert made.header == ["preset", "gain", "error (m)", "settles (s)", "of the sound one"]
+    assert made.header == ["preset", "gain", "error (m)", "settles (s)", "of the full equations"]
     assert [row[:2] for row in made.rows][:4] == [
         ["with its full equations", "1"],
         ["with its full equations", "ten"],
@@ -74,10 +83,10 @@ def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
 
 
 def test_a_failed_run_says_so():
-    runs = {**RUNS, "gain/10/sound": run_of(0.0, failed=True)}
-    made = tables.table(runs, "Errors.", "gain/{gain}/sound", tables.column("error", "error"))
+    runs = {**RUNS, "gain/10/full_equations": run_of(0.0, failed=True)}
+    made = tables.table(runs, "Errors.", "gain/{gain}/full_equations", tables.column("error", "error"))
     assert [row[0] for row in made.rows] == ["1", "failed", "5"]
-    (series,) = plots.over(runs, "gain/{gain}/sound", "gain", "error")
+    (series,) = plots.over(runs, "gain/{gain}/full_equations", "gain", "error")
     assert np.isnan(series.y[1])
 
 
@@ -90,28 +99,30 @@ def test_a_comparison_has_a_row_for_each_metric_and_a_column_for_each_level():
 
 
 def test_a_number_against_an_axis_has_the_band_of_its_repetitions():
-    runs = {**RUNS, "gain/10/sound": run_of(10.0, ends=(8.0, 13.0))}
-    sound, reported = plots.over(runs, "gain/{gain}/{preset}", "gain", "error", "{preset}", color=3)
-    assert (sound.name, reported.name, sound.color, reported.color) == (
+    runs = {**RUNS, "gain/10/full_equations": run_of(10.0, ends=(8.0, 13.0))}
+    full_equations, reported = plots.over(runs, "gain/{gain}/{preset}", "gain", "error", "{preset}", color=3)
+    assert (full_equations.name, reported.name, full_equations.color, reported.color) == (
         "with its full equations",
         "as the thesis ran it",
         3,
         4,
     )
-    np.testing.assert_array_equal(sound.x, [1.0, 10.0, 5.0])
-    np.testing.assert_array_equal(sound.y, [1.0, 10.0, 5.0])
-    np.testing.assert_array_equal(sound.low, [1.0, 8.0, 5.0])
-    np.testing.assert_array_equal(sound.high, [1.0, 13.0, 5.0])
+    np.testing.assert_array_equal(full_equations.x, [1.0, 10.0, 5.0])
+    np.testing.assert_array_equal(full_equations.y, [1.0, 10.0, 5.0])
+    np.testing.assert_array_equal(full_equations.low, [1.0, 8.0, 5.0])
+    np.testing.assert_array_equal(full_equations.high, [1.0, 13.0, 5.0])
     assert reported.low is None
     (named,) = plots.over(RUNS, "gain/5/{preset}", "preset", "error")
     np.testing.assert_array_equal(named.x, [0.0, 1.0])
 
 
 def test_signals_over_time():
-    sound, reported = plots.line(RUNS, "gain/5/{preset}", signals.norm("error"), "{preset}", factor=1e3, until=0.5)
-    np.testing.assert_allclose(sound.y, [0.0, 12.5e3])
+    full_equations, reported = plots.line(
+        RUNS, "gain/5/{preset}", signals.norm("error"), "{preset}", factor=1e3, until=0.5
+    )
+    np.testing.assert_allclose(full_equations.y, [0.0, 12.5e3])
     np.testing.assert_array_equal(reported.x, [0.0, 0.5])
-    (apart,) = plots.line(RUNS, "gain/5/sound", signals.apart("error"), "", "gain/5/as_reported")
+    (apart,) = plots.line(RUNS, "gain/5/full_equations", signals.apart("error"), "", "gain/5/as_reported")
     np.testing.assert_allclose(apart.y, [0.0, 12.5, 25.0])
     assert [series.name for series in plots.joints(RUNS, "held")] == ["q1", "q2"]
     assert [series.name for series in plots.axes(RUNS, "held")] == ["x", "y", "z"]
@@ -132,13 +143,13 @@ def test_panels_to_be_compared_share_the_range_of_y_that_shows_all_of_them():
 
 def test_a_figure_takes_panels_one_by_one_and_several_in_one():
     alone, *pair = (plots.panel(title, "t", "y", plots.limit(1, 0, 1)) for title in "abc")
-    figure = plots.curves(RUNS, "Caption.", "gain/5/sound", alone, pair)
+    figure = plots.curves(RUNS, "Caption.", "gain/5/full_equations", alone, pair)
     assert [each.title for each in figure.panels] == ["a", "b", "c"]
     assert figure.columns == 2
 
 
 def test_axes_of_a_vector_are_scaled():
-    lines = plots.axes(RUNS, "gain/5/sound", factor=1000)
+    lines = plots.axes(RUNS, "gain/5/full_equations", factor=1000)
     np.testing.assert_allclose([each.y[-1] for each in lines], [15e3, 20e3, 0.0])
 
 
@@ -162,16 +173,16 @@ def test_a_panel_of_powers_of_ten_leaves_zeros_out():
 
 
 def test_a_map_has_a_cell_for_each_run():
-    runs = {**RUNS, "gain/10/sound": run_of(0.0, failed=True)}
+    runs = {**RUNS, "gain/10/full_equations": run_of(0.0, failed=True)}
     made = plots.heat_map(runs, "Map.", "gain/{gain}/{preset}", "gain", "preset", "error", "error (m)")
     (panel,) = made.panels
-    assert (panel.x_names, panel.y_names) == (["1", "10", "5"], ["sound", "as_reported"])
+    assert (panel.x_names, panel.y_names) == (["1", "10", "5"], ["full_equations", "as_reported"])
     np.testing.assert_array_equal(panel.values, [[1.0, np.nan, 5.0], [2.0, 20.0, 10.0]])
     np.testing.assert_array_equal(panel.failed, [[False, True, False], [False, False, False]])
 
 
 def test_values_of_runs_and_the_largest_of_them():
-    one, two = (blocks.metric(RUNS, f"gain/{gain}/sound", "error") for gain in (1, 5))
+    one, two = (blocks.metric(RUNS, f"gain/{gain}/full_equations", "error") for gain in (1, 5))
     assert blocks.largest("largest", one, two).value == 5.0
     assert blocks.smallest("smallest", one, two).parts == (one, two)
     assert blocks.largest("largest", one, Measured("none", None, "m")).value is None
@@ -186,7 +197,10 @@ def test_values_of_runs_and_the_largest_of_them():
     [
         (tables.level("presett"), r"no axis 'presett' \(did you mean preset\?\); axes: gain, preset"),
         (tables.column("e", "error", only={"gian": "5"}), r"no axis 'gian' \(did you mean gain\?\)"),
-        (tables.column("e", "error", only={"preset": "sond"}), r"has no level 'sond' \(did you mean sound\?\)"),
+        (
+            tables.column("e", "error", only={"preset": "full_equation"}),
+            r"has no level 'full_equation' \(did you mean full_equations\?\)",
+        ),
     ],
 )
 def test_an_axis_or_level_that_no_run_has_is_refused(column, told):
