@@ -6,14 +6,14 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from runner.config.robot import Armature
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, PositivePerStage, TorquePerStage
-from runner.trajectories.posture import Posture
+from runner.trajectories.posture import Configuration
 
 _IN_WORDS = {
     FinitePerStage: "number, by stage",
     PositivePerStage: "number above 0, by stage",
     NonNegativePerStage: "number of 0 or more, by stage",
     TorquePerStage: "number above 0, or a list with one for each joint, by stage",
-    Posture: "number, or a list with one for each joint",
+    Configuration: "number, or a list with one for each joint",
     Armature: "number of 0 or more, or a list with one for each joint, or the name of a set",
 }
 _BOUNDS = {"gt": "above {:g}", "ge": "of {:g} or more", "lt": "below {:g}", "le": "of {:g} or less"}

@@ -47,7 +47,7 @@ _CASES = {
     ),
     "stages that do not feel each other": ("robot=combined", "controller=whole_body", "plant.dynamics=decoupled"),
     "a push": ("environment=push",),
-    "a hand": ("environment=hand",),
+    "a hand": ("environment=hand_guiding",),
 }
 _HEAD = """\
 On arms of up to 12 joints, where llvmlite is installed. A *whole run* is machine code from the first tick to the last,

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from importlib.util import find_spec
 
 _WHEELS = (3, 11)  # the newest Python for which there are wheels of PyBullet
-STAND_IN = "mujoco_for_bullet"
+STAND_IN = "mujoco_fallback"
 """Option of the group plant that takes bullet's place where PyBullet is missing."""
 
 

@@ -12,10 +12,10 @@ def check_reading(config: RunConfig) -> None:
         ConfigError: where they have none.
     """
     law = config.controller
-    if isinstance(law, HybridForceConfig) and law.reading == "joint_torque" and config.joint_torques is None:
+    if isinstance(law, HybridForceConfig) and law.force_source == "joint_torque" and config.joint_torques is None:
         raise ConfigError(
             [
-                "controller.reading: joint_torque needs torque sensors in the joints, and joint_torque_sensor.noise is "
-                "null; take joint_torque_sensor=ideal, or controller.reading=wrist"
+                "controller.force_source: joint_torque needs torque sensors in the joints, and "
+                "joint_torque_sensor.noise is null; take joint_torque_sensor=ideal, or controller.force_source=wrist"
             ]
         )

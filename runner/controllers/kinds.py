@@ -105,7 +105,7 @@ class ChecksStability(Protocol):
 class LeadsByForce(ChecksStability, Protocol):
     """A config of such controllers that says, too, where they feel, and what they take off the reading."""
 
-    at: str
+    wrench_frame: str
     compensation: str
 
 

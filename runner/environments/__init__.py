@@ -8,7 +8,7 @@ ENVIRONMENTS = Registry[KindConfig, [], Environment | None](
     "environment",
     {
         "free": "runner.environments.free",
-        "hand": "runner.environments.hand",
+        "hand_guiding": "runner.environments.hand",
         "push": "runner.environments.push",
         "wall": "runner.environments.wall",
     },

@@ -16,16 +16,16 @@ class HandConfig(StrictModel):
 
     Attributes:
         kind: Its name in the registry.
-        travel: Where it leads the tip, from where the tip starts, along the base's axes, in m.
-        begin: When it sets out, in s.
+        displacement: Where it leads the tip, from where the tip starts, along the base's axes, in m.
+        start_time: When it sets out, in s.
         duration: How long it takes, from rest to rest, in s; then it holds still.
         stiffness: Of its grip, in N/m.
         damping: Of its grip, in N s/m.
     """
 
-    kind: Literal["hand"]
-    travel: Annotated[list[float], Field(min_length=3, max_length=3)]
-    begin: NonNegativeFloat
+    kind: Literal["hand_guiding"]
+    displacement: Annotated[list[float], Field(min_length=3, max_length=3)]
+    start_time: NonNegativeFloat
     duration: PositiveFloat
     stiffness: PositiveFloat
     damping: NonNegativeFloat
@@ -36,7 +36,7 @@ class Hand:
 
     def __init__(self, config: HandConfig) -> None:
         self._config = config
-        self._travel = np.array(config.travel)
+        self._displacement = np.array(config.displacement)
         self._origin = np.zeros(3)
 
     def reset(self, tip: FloatArray) -> None:
@@ -46,9 +46,9 @@ class Hand:
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return the wrench on the tip; see Environment.wrench."""
         config = self._config
-        share, speed, _ = quintic_blend(np.array([(time - config.begin) / config.duration]))
-        pull = config.stiffness * (self._origin + share * self._travel - tip)
-        pull += config.damping * (speed / config.duration * self._travel - velocity)
+        share, speed, _ = quintic_blend(np.array([(time - config.start_time) / config.duration]))
+        pull = config.stiffness * (self._origin + share * self._displacement - tip)
+        pull += config.damping * (speed / config.duration * self._displacement - velocity)
         return np.concatenate([pull, np.zeros(3)])
 
 

@@ -22,8 +22,8 @@ class PushConfig(StrictModel):
         force: Force along the base's axes, in N; the amplitude of a sine.
         moment: Moment about the tip along the base's axes, in N m; likewise. 0 where a link is pushed.
         link: Link whose origin the force acts on; None is the tip.
-        begin: When it sets in, in s.
-        lasts: How long it lasts, in s; None is for ever.
+        start_time: When it sets in, in s.
+        duration: How long it lasts, in s; None is for ever.
         frequency: Of the sine, in Hz; 0 is a steady push.
     """
 
@@ -31,8 +31,8 @@ class PushConfig(StrictModel):
     force: Vector
     moment: Vector
     link: str | None
-    begin: NonNegativeFloat
-    lasts: PositiveFloat | None
+    start_time: NonNegativeFloat
+    duration: PositiveFloat | None
     frequency: NonNegativeFloat
 
 
@@ -41,8 +41,8 @@ class Push:
 
     def __init__(self, config: PushConfig) -> None:
         self._wrench = np.array([*config.force, *config.moment])
-        self._begin = config.begin
-        self._end = math.inf if config.lasts is None else config.begin + config.lasts
+        self._start = config.start_time
+        self._end = math.inf if config.duration is None else config.start_time + config.duration
         self._rate = 2.0 * math.pi * config.frequency
 
     def reset(self, tip: FloatArray) -> None:
@@ -54,7 +54,7 @@ class Push:
 
     def share(self, time: float) -> float:
         """Return how much of the push acts at a time, in s."""
-        since = time - self._begin
+        since = time - self._start
         if since < -1e-9 or time > self._end - 1e-9:
             return 0.0
         return math.sin(self._rate * since) if self._rate else 1.0

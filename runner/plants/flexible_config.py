@@ -27,8 +27,8 @@ class FlexibleJointsConfig(StrictModel):
         damping_ratio: Damping of each joint's spring, of its link alone with the others held at home: 1 is critical.
         torsion_damping: Ratio of the damping that drives add, of each motor alone against its spring, from encoders at
             motor and link: the fast part of Spong's composite control. 0 is none.
-        braked: When the brakes of a stage's motors close, in s, by stage; 0 is from the start. They stay open where a
-            stage is not named.
+        brake_time: When the brakes of a stage's motors close, in s, by stage; 0 is from the start. They stay open where
+            a stage is not named.
         encoders: Whether the encoders turn with the motors or with the links.
         static_deflection: Whether readings at the motors are corrected for the deflection under the believed weight.
     """
@@ -37,7 +37,7 @@ class FlexibleJointsConfig(StrictModel):
     motor_inertia: SpringPerStage
     damping_ratio: NonNegativeFloat
     torsion_damping: NonNegativeFloat
-    braked: dict[str, NonNegativeFloat]
+    brake_time: dict[str, NonNegativeFloat]
     encoders: Literal["motor", "link"]
     static_deflection: Literal["known", "unknown"]
 
@@ -77,7 +77,7 @@ class FlexibleJointsConfig(StrictModel):
         damping, fed_back = np.zeros((2, len(springs)))
         damping[flexible] = 2.0 * self.damping_ratio * np.sqrt(springs[flexible] * held[flexible])
         fed_back[flexible] = 2.0 * self.torsion_damping * np.sqrt(springs[flexible] * motors[flexible])
-        return Flexibility(springs, motors, damping, self._find_braked(arm, flexible), fed_back)
+        return Flexibility(springs, motors, damping, self._find_brake_time(arm, flexible), fed_back)
 
     def modes(self, arm: Robot, q: FloatArray) -> list[Mode]:
         """Return how a robot's joints ring about a posture with their motors held, by frequency; see Rings."""
@@ -86,11 +86,11 @@ class FlexibleJointsConfig(StrictModel):
         M = links_of(arm.model, on).mass_matrix(q)[np.ix_(on, on)]
         return find_modes(M, np.diag(flexibility.damping[on]), np.diag(flexibility.stiffness[on]))
 
-    def _find_braked(self, arm: Robot, flexible: np.ndarray) -> FloatArray:
+    def _find_brake_time(self, arm: Robot, flexible: np.ndarray) -> FloatArray:
         """Return when joints are braked, shape (nq,), in s."""
-        braked, stages, key = np.full(len(flexible), np.inf), arm.stage_names, "plant.flexible_joints.braked"
+        brake_time, stages, key = np.full(len(flexible), np.inf), arm.stage_names, "plant.flexible_joints.brake_time"
         problems = []
-        for name, time in self.braked.items():
+        for name, time in self.brake_time.items():
             if name not in stages:
                 problems.append(
                     f"{key}: no such stage: {quoted(name)}{nearest(name, stages)}; stages: {', '.join(stages)}"
@@ -99,7 +99,7 @@ class FlexibleJointsConfig(StrictModel):
             joints = arm.stages[stages.index(name)].joints
             if not flexible[joints].all():
                 problems.append(f"{key}: {name} has rigid joints, whose motors are links; give each of them a spring")
-            braked[joints] = time
+            brake_time[joints] = time
         if problems:
             raise ConfigError(problems)
-        return braked
+        return brake_time

@@ -18,7 +18,7 @@ class Flexibility:
         stiffness: K of each joint, shape (nq,), in N m/rad; infinite where it is rigid.
         motors: B, inertia of each motor after its gear, shape (nq,), in kg m^2; 0 where the joint is rigid.
         damping: D of each joint, shape (nq,), in N m s/rad; 0 where it is rigid.
-        braked: When the brake of each motor closes, shape (nq,), in s; infinite where it stays open.
+        brake_time: When the brake of each motor closes, shape (nq,), in s; infinite where it stays open.
         fed_back: K_f of each joint, shape (nq,), in N m s/rad: what its drive asks of the motor against the rate at
             which its spring turns.
     """
@@ -26,7 +26,7 @@ class Flexibility:
     stiffness: FloatArray
     motors: FloatArray
     damping: FloatArray
-    braked: FloatArray
+    brake_time: FloatArray
     fed_back: FloatArray
 
     @property
@@ -140,7 +140,7 @@ class FlexibleJoints:
     def _brake(self, on: np.ndarray) -> None:
         """Stop the motors whose brakes close in the tick that begins."""
         now, self._ticks = self._ticks * self._steps_per_tick * self._step, self._ticks + 1
-        self._free = now < self.flexibility.braked[on] - 1e-9
+        self._free = now < self.flexibility.brake_time[on] - 1e-9
         self.dtheta[on] *= self._free
 
     def _slope(self, x: FloatArray, tau: FloatArray) -> FloatArray:

@@ -41,7 +41,7 @@ class MujocoConfig(TorquePlantConfig):
             nothing damps; the classical Runge-Kutta scheme.
         in_place_of: The default plant, where it is missing and this one stands in for it, which the caveat
             default_plant says; None where this one was asked for.
-        least_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
+        min_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
             moment, gets this, in kg and kg m^2.
         flexible_joints: Springs between motors and links; None is an arm with rigid joints.
     """
@@ -49,7 +49,7 @@ class MujocoConfig(TorquePlantConfig):
     kind: Literal["mujoco"]
     integrator: Integrator
     in_place_of: Literal["bullet"] | None
-    least_inertia: float = Field(ge=1e-12, le=1e-3)
+    min_inertia: float = Field(ge=1e-12, le=1e-3)
     flexible_joints: FlexibleJointsConfig | None = None
 
 
@@ -62,7 +62,7 @@ class Mujoco:
         step: Integration step, in s.
         steps_per_tick: Integration steps for which the torques of one tick are held.
         integrator: See MujocoConfig.
-        least_inertia: Likewise, in kg and kg m^2.
+        min_inertia: Likewise, in kg and kg m^2.
 
     Raises:
         ConfigError: if MuJoCo cannot load the URDF.
@@ -75,11 +75,9 @@ class Mujoco:
         step: float,
         steps_per_tick: int,
         integrator: Integrator,
-        least_inertia: float,
+        min_inertia: float,
     ) -> None:
-        self._model = compiled(
-            read_spec(urdf, least_inertia, dict(zip(model.joint_names, model.armature, strict=True)))
-        )
+        self._model = compiled(read_spec(urdf, min_inertia, dict(zip(model.joint_names, model.armature, strict=True))))
         self._data = data = mujoco.MjData(self._model)
         self._steps_per_tick = steps_per_tick
         options = self._model.opt
@@ -171,7 +169,7 @@ CONFIG = MujocoConfig
 
 def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Make the plant that a config describes."""
-    tick, chosen = step * steps_per_tick, (config.integrator, config.least_inertia)
+    tick, chosen = step * steps_per_tick, (config.integrator, config.min_inertia)
     if config.flexible_joints is not None:
         parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
         return flexible_around(*parts, lambda links: Mujoco(robot.urdf, links, step, 1, *chosen))

@@ -20,14 +20,14 @@ FORCE, MOMENT, WALL = "reaction_force", "reaction_moment", "wall"
 """Names of what is beside the arm: sensors of the reaction in a tool's mount, and a wall that its shapes can touch."""
 
 
-def read_spec(urdf: str, least_inertia: float, armature: Mapping[str, float]) -> Any:
+def read_spec(urdf: str, min_inertia: float, armature: Mapping[str, float]) -> Any:
     """Return an arm as MuJoCo's specification, which can still be changed before it is compiled.
 
     Its joints have no damping and no friction, whatever the text says, and its shapes touch nothing but a wall.
 
     Args:
         urdf: The arm's URDF text.
-        least_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
+        min_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
             moment, gets this, in kg and kg m^2.
         armature: Of each joint by name, in kg m^2.
 
@@ -48,7 +48,7 @@ def read_spec(urdf: str, least_inertia: float, armature: Mapping[str, float]) ->
         raise _refused(error) from error
     for body in spec.bodies:
         if body.joints:
-            _give_inertia(body, least_inertia)
+            _give_inertia(body, min_inertia)
         elif _is_flat(body):
             _give_inertia(body, 0.0)
     for joint in spec.joints:

@@ -19,7 +19,7 @@ from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import MotorPerStage
 
-_MOST_PARTS = 32
+_MOST_SEGMENTS = 32
 _LIGHTEST = 1e-10  # smallest inertia of a bend over the largest
 
 
@@ -42,7 +42,7 @@ class Rk4FlexibleLinksConfig(StrictModel):
         kind: Its name in the registry.
         step: Integration step, in s; None is the fastest controller period.
         links: The links that bend, by name; None for one that is rigid.
-        parts: Springs along each of them; above 1 for links with mass alone.
+        segments: Springs along each of them; above 1 for links with mass alone.
         motor_inertia: Inertia of each joint's motor after its gear, in kg m^2. One for all joints or a list with one
             for each, by stage where the robot has several; None for a joint is its `robot.armature`.
         damping_ratio: Of each mode, with the motors held at home.
@@ -52,7 +52,7 @@ class Rk4FlexibleLinksConfig(StrictModel):
     kind: Literal["rk4_flexible_links"]
     step: PositiveFloat | None
     links: dict[str, BeamConfig | None]
-    parts: Annotated[int, Field(ge=1, le=_MOST_PARTS)]
+    segments: Annotated[int, Field(ge=1, le=_MOST_SEGMENTS)]
     motor_inertia: MotorPerStage
     damping_ratio: NonNegativeFloat
     computation: ComputationConfig
@@ -61,7 +61,8 @@ class Rk4FlexibleLinksConfig(StrictModel):
         """Return the links of a robot that bend.
 
         Raises:
-            ConfigError: for a link that is not there or has no length, none that bends, and several parts without mass.
+            ConfigError: for a link that is not there or has no length, none that bends, and several segments without
+                mass.
         """
         known, problems = moving_links(robot.model), []
         beams = {name: Beam(each.EI, each.mass) for name, each in self.links.items() if each is not None}
@@ -70,10 +71,10 @@ class Rk4FlexibleLinksConfig(StrictModel):
                 problems.append(f"plant.links.{name}: no such link{nearest(name, known)}; links: {', '.join(known)}")
             elif not np.any(span(robot.model, known[name], robot.flange)):
                 problems.append(f"plant.links.{name}: the link has no length between its joints, and cannot bend")
-            elif self.parts > 1 and beam.mass == 0.0:
+            elif self.segments > 1 and beam.mass == 0.0:
                 problems.append(
-                    f"plant.links.{name}.mass: 0 found with plant.parts={self.parts}; parts between springs move by "
-                    "their mass, so above 0, or plant.parts=1"
+                    f"plant.links.{name}.mass: 0 found with plant.segments={self.segments}; parts between springs "
+                    "move by their mass, so above 0, or plant.segments=1"
                 )
         if not beams:
             problems.append("plant.links: null for every link; take plant=rk4 for rigid ones")
@@ -103,14 +104,14 @@ class Rk4FlexibleLinksConfig(StrictModel):
         Raises:
             ConfigError: see beams; and for parts that have next to no inertia of their own.
         """
-        chain = cut(robot.model, robot.flange, self.beams(robot), self.parts)
+        chain = cut(robot.model, robot.flange, self.beams(robot), self.segments)
         M = chain.mass_matrix(robot.home)[np.ix_(chain.springs, chain.springs)]
         least, *_, most = np.linalg.eigvalsh(M)
         if least < _LIGHTEST * most:
             raise ConfigError(
                 [
-                    "plant.links: parts between springs have next to no inertia, and no step follows them; take more "
-                    "mass along the links, or plant.parts=1"
+                    "plant.links: parts between springs have next to no inertia, and no step follows them; take "
+                    "more mass along the links, or plant.segments=1"
                 ]
             )
         return chain

@@ -1,4 +1,4 @@
-"""Rest to rest between two postures, each joint by a polynomial of fifth order in time."""
+"""Rest to rest between two configurations, each joint by a polynomial of fifth order in time."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -11,26 +11,26 @@ from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import JointMotion
-from runner.trajectories.posture import Posture, posture_of, start_of
+from runner.trajectories.posture import Configuration, configuration_of, start_of
 
 _SAMPLES = 512
 
 
 class JointQuinticConfig(StrictModel):
-    """Config of a quintic between postures.
+    """Config of a quintic between configurations.
 
     Attributes:
         kind: Its name in the registry.
-        start_posture: Joint positions at t = 0, in rad; m where a joint slides. One for all joints or a list with one
-            for each; None is home.
-        goal_posture: Joint positions at t_f, in rad; m where a joint slides. One for all joints or a list with one for
-            each.
+        start_configuration: Joint positions at t = 0, in rad; m where a joint slides. One for all joints or a list with
+            one for each; None is home.
+        goal_configuration: Joint positions at t_f, in rad; m where a joint slides. One for all joints or a list with
+            one for each.
         duration: t_f, in s.
     """
 
     kind: Literal["joint_quintic"]
-    start_posture: Posture | None
-    goal_posture: Posture
+    start_configuration: Configuration | None
+    goal_configuration: Configuration
     duration: PositiveFloat
 
 
@@ -69,7 +69,7 @@ def joint_motion(config: JointQuinticConfig, robot: Robot) -> JointMotion:
     """Make the motion that a config describes.
 
     Raises:
-        ConfigError: for a posture that has not as many values as the robot has joints.
+        ConfigError: for a configuration that has not as many values as the robot has joints.
     """
-    goal = posture_of("trajectory.goal_posture", config.goal_posture, robot)
-    return JointQuintic(start_of(config.start_posture, robot), goal, config.duration)
+    goal = configuration_of("trajectory.goal_configuration", config.goal_configuration, robot)
+    return JointQuintic(start_of(config.start_configuration, robot), goal, config.duration)

@@ -13,7 +13,7 @@ from runner.schema.model import StrictModel
 from runner.schema.per_joint import NonNegativePerJoint, expand
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import JointMotion
-from runner.trajectories.posture import Posture, start_of
+from runner.trajectories.posture import Configuration, start_of
 
 _SAMPLES = 64  # in a period of the highest harmonic
 _AT_ONCE = 2_000_000  # sines that are in memory at the same time
@@ -22,12 +22,12 @@ Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
 
 class JointSinusoidsConfig(StrictModel):
-    """Config of sums of sinusoids about a posture.
+    """Config of sums of sinusoids about a configuration.
 
     Attributes:
         kind: Its name in the registry.
-        start_posture: Posture about which the joints swing, in rad; m where a joint slides. One for all joints or a
-            list with one for each; None is home.
+        start_configuration: Configuration about which the joints swing, in rad; m where a joint slides. One for all
+            joints or a list with one for each; None is home.
         frequency: Fundamental frequency, in Hz.
         harmonics: Number of harmonics, the fundamental included.
         amplitude: Largest displacement of each joint that drawn coefficients can give, in rad; m where a joint slides.
@@ -40,7 +40,7 @@ class JointSinusoidsConfig(StrictModel):
     """
 
     kind: Literal["joint_sinusoids"]
-    start_posture: Posture | None
+    start_configuration: Configuration | None
     frequency: PositiveFloat
     harmonics: Annotated[int, Field(ge=1, le=100)]
     amplitude: NonNegativePerJoint
@@ -60,7 +60,7 @@ class JointSinusoidsConfig(StrictModel):
 
 @dataclass(frozen=True)
 class JointSinusoids:
-    r"""A Fourier series about a posture, behind a window that opens and closes; see JointMotion for the attributes.
+    r"""A Fourier series about a configuration, behind a window that opens and closes; see JointMotion.
 
     .. math:: q_i(t) = q_{0i} + w(t) \sum_k a_{ik} \sin k \omega (t - t_r) + b_{ik} \cos k \omega (t - t_r)
 
@@ -137,7 +137,7 @@ def joint_motion(config: JointSinusoidsConfig, robot: Robot) -> JointMotion:
         _check(config.coefficients, config.harmonics, names)
         coefficients = np.array(config.coefficients)
     return JointSinusoids(
-        start_of(config.start_posture, robot),
+        start_of(config.start_configuration, robot),
         coefficients,
         2.0 * np.pi * config.frequency,
         config.ramp,

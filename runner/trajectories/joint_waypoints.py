@@ -1,4 +1,4 @@
-"""Through postures, from rest to rest, with the least jerk of the joints."""
+"""Through configurations, from rest to rest, with the least jerk of the joints."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -12,49 +12,49 @@ from runner.base.errors import ConfigError
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.trajectories.joint_motion import JointMotion
-from runner.trajectories.posture import Posture, posture_of, start_of
+from runner.trajectories.posture import Configuration, configuration_of, start_of
 from runner.trajectories.waypoints import check_time_shares, least_jerk_spline
 
-_SAMPLES = 256  # between two postures
-_CLOSEST = 1e-9  # share of all joint motion, below which two postures are one
+_SAMPLES = 256  # between two configurations
+_CLOSEST = 1e-9  # share of all joint motion, below which two configurations are one
 
 
 class JointWaypointsConfig(StrictModel):
-    """Config of a motion through postures; the first is the start.
+    """Config of a motion through configurations; the first is the start.
 
     Attributes:
         kind: Its name in the registry.
-        start_posture: Joint positions at t = 0, in rad; m where a joint slides. One for all joints or a list with one
-            for each; None is home.
-        postures: The postures after the start, in rad; m where a joint slides. Each one value for all joints or a list
-            with one for each.
+        start_configuration: Joint positions at t = 0, in rad; m where a joint slides. One for all joints or a list with
+            one for each; None is home.
+        configurations: The configurations after the start, in rad; m where a joint slides. Each one value for all
+            joints or a list with one for each.
         time_shares: When each of them is passed, as share of the duration, ascending to 1; None makes the time between
-            two postures proportional to the norm of their difference.
+            two configurations proportional to the norm of their difference.
         duration: t_f, in s.
     """
 
     kind: Literal["joint_waypoints"]
-    start_posture: Posture | None
-    postures: list[Posture]
+    start_configuration: Configuration | None
+    configurations: list[Configuration]
     time_shares: list[PositiveFloat] | None
     duration: PositiveFloat
 
-    @field_validator("postures")
+    @field_validator("configurations")
     @classmethod
-    def _check_postures(cls, value: list[Posture]) -> list[Posture]:
+    def _check_configurations(cls, value: list[Configuration]) -> list[Configuration]:
         if not value:
-            raise ValueError("must have one posture or more beside the start")
+            raise ValueError("must have one configuration or more beside the start")
         return value
 
     @field_validator("time_shares")
     @classmethod
     def _check_time_shares(cls, value: list[float] | None, info: ValidationInfo) -> list[float] | None:
-        return check_time_shares(value, info, "postures")
+        return check_time_shares(value, info, "configurations")
 
 
 @dataclass(frozen=True)
 class JointWaypoints:
-    """The joint motion of least jerk through postures at given times; see Waypoints, and JointMotion.
+    """The joint motion of least jerk through configurations at given times; see Waypoints, and JointMotion.
 
     Attributes:
         spline: Joint positions over time, in rad and s.
@@ -67,7 +67,7 @@ class JointWaypoints:
     samples: int
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return the motion, at rest in the last posture after t_f."""
+        """Return the motion, at rest in the last configuration after t_f."""
         within = np.clip(times, 0.0, self.duration)
         return np.stack([self.spline(within, order) for order in range(3)], axis=1)
 
@@ -79,18 +79,21 @@ def joint_motion(config: JointWaypointsConfig, robot: Robot) -> JointMotion:
     """Make the motion that a config describes.
 
     Raises:
-        ConfigError: for a posture that has not as many values as the robot has joints, or two in succession that are
-            the same.
+        ConfigError: for a configuration that has not as many values as the robot has joints, or two in succession that
+            are the same.
     """
-    given = [posture_of(f"trajectory.postures.{n}", value, robot) for n, value in enumerate(config.postures)]
-    postures = np.array([start_of(config.start_posture, robot), *given])
-    lengths = np.linalg.norm(np.diff(postures, axis=0), axis=1)
+    given = [
+        configuration_of(f"trajectory.configurations.{n}", value, robot)
+        for n, value in enumerate(config.configurations)
+    ]
+    configurations = np.array([start_of(config.start_configuration, robot), *given])
+    lengths = np.linalg.norm(np.diff(configurations, axis=0), axis=1)
     if (lengths < _CLOSEST * lengths.sum()).any() or not lengths.any():
         index = int(np.argmin(lengths))
-        before = f"trajectory.postures.{index - 1}" if index else "the start"
+        before = f"trajectory.configurations.{index - 1}" if index else "the start"
         raise ConfigError(
-            [f"trajectory.postures.{index}: is the same as {before}; two in succession must differ. Take one out"]
+            [f"trajectory.configurations.{index}: is the same as {before}; two in succession must differ. Take one out"]
         )
     shares = np.cumsum(lengths) / lengths.sum() if config.time_shares is None else np.array(config.time_shares)
     times = config.duration * np.concatenate([[0.0], shares[:-1], [1.0]])
-    return JointWaypoints(least_jerk_spline(postures, times), config.duration, _SAMPLES * len(given))
+    return JointWaypoints(least_jerk_spline(configurations, times), config.duration, _SAMPLES * len(given))

@@ -30,7 +30,7 @@ class AdmittanceConfig(StrictModel):
         mass: M, in kg and kg m^2.
         damping: B, in N s/m and N m s/rad.
         stiffness: K, in N/m and N m/rad; 0 lets an axis be guided by hand.
-        at: Where the wrench is taken to act: at the tool's tip, or at the flange.
+        wrench_frame: Where the wrench is taken to act: at the tool's tip, or at the flange.
         compensation: What is taken off the sensor's reading: its bias, and the tool's weight, and its inertia.
         tip_speed: Largest speed at which the spring's rest goes to a goal that jumps, in m/s.
         limit_approach: How fast a joint may near its position limit, as a share of what is left, in 1/s.
@@ -44,7 +44,7 @@ class AdmittanceConfig(StrictModel):
     mass: Six
     damping: Six
     stiffness: Six
-    at: Literal["tip", "flange"]
+    wrench_frame: Literal["tip", "flange"]
     compensation: Compensation
     tip_speed: PositiveFloat
     limit_approach: PositiveFloat
@@ -77,7 +77,7 @@ class AdmittanceControl:
         self._filter = AdmittanceFilter(config.law, config.period)
         self._motion = LimitedMotion(robot.model, config.period, config.limit_approach)
         self._compensation = ToolCompensation(robot, config.sensor, config.compensation, config.period)
-        self._at_tip = config.at == "tip"
+        self._at_tip = config.wrench_frame == "tip"
         self._orientation = robot.model.tip_pose(robot.home)[:3, :3]
         self._reading = np.zeros(6)
         self._approach = Approach(config.period, config.tip_speed)

@@ -26,7 +26,7 @@ class HybridForceConfig(TipForceConfig):
         force_gain: k_f of the force's error; 0 leaves f_d as it is.
         integral_gain: k_i, in 1/s; 0 is none. It integrates while something is felt.
         force_damping: xi of the motion into the wall.
-        reading: Where the force is read: at the wrist, or from torque sensors in the joints.
+        force_source: Where the force is read: at the wrist, or from torque sensors in the joints.
         sensor: What is believed of the wrist's sensor: its bias, rotation and height.
     """
 
@@ -37,7 +37,7 @@ class HybridForceConfig(TipForceConfig):
     force_gain: NonNegativeFloat
     integral_gain: NonNegativeFloat
     force_damping: NonNegativeFloat
-    reading: ReadingName
+    force_source: ReadingName
     sensor: ForceTorqueConfig
 
 
@@ -123,7 +123,7 @@ def build(config: HybridForceConfig, robot: Robot) -> tuple[Loop, ...]:
     acting = find_acting(config, robot)
     reading: ForceReading = (
         WristReading(robot, config.sensor, acting.period)
-        if config.reading == "wrist"
+        if config.force_source == "wrist"
         else JointTorqueReading(robot, acting.period)
     )
     return acting.loops(HybridForce(acting, config, reading), feels=True)

@@ -16,7 +16,7 @@ Three = Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]
 class ImpedanceConfig(TipForceConfig):
     """Config of impedance control; lists hold values along x, y, z of the base.
 
-    The natural frequency and damping ratio are those of the stages that carry the one that acts; see acts.
+    The natural frequency and damping ratio are those of the stages that carry the one that acts; see actuated_stages.
 
     Attributes:
         kind: Its name in the registry.

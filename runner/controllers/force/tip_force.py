@@ -25,8 +25,8 @@ class TipForceConfig(StrictModel):
     """What the configs of laws have in common that put a force on the tip.
 
     Attributes:
-        acts: What acts on the world where stages ride on each other: the whole arm, or the last stage alone, while
-            those below hold its base on the way and know its mass.
+        actuated_stages: What acts on the world where stages ride on each other: the whole arm, or the last stage alone,
+            while those below hold its base on the way and know its mass.
         natural_frequency: omega_n of the tip's motion where it is led, in rad/s; of each stage. The whole arm takes the
             last stage's, and so for the next two.
         damping_ratio: xi of it.
@@ -37,7 +37,7 @@ class TipForceConfig(StrictModel):
         null_space_frequency: omega_n of the posture task, home, of an arm with joints to spare, in rad/s.
     """
 
-    acts: Literal["whole", "last_stage"]
+    actuated_stages: Literal["whole", "last_stage"]
     natural_frequency: PositivePerStage
     damping_ratio: PositivePerStage
     period: PositivePerStage
@@ -216,7 +216,7 @@ def find_acting(config: TipForceConfig, robot: Robot) -> Acting:
     frequencies = by_stage("controller.natural_frequency", config.natural_frequency, names)
     ratios = by_stage("controller.damping_ratio", config.damping_ratio, names)
     periods = by_stage("controller.period", config.period, names)
-    apart = config.acts == "last_stage" and len(names) > 1
+    apart = config.actuated_stages == "last_stage" and len(names) > 1
     law = WholeBodyLaw(
         natural_frequency=frequencies[-1],
         damping_ratio=ratios[-1],

@@ -26,14 +26,14 @@ class AdaptiveConfig(JointLawConfig):
         kind: Its name in the registry.
         natural_frequency: lambda, and K_D / diag M, and omega_n of the motion that leads the tip, in rad/s.
         damping_ratio: xi of the motion that leads the tip; the joints have two equal poles.
-        adaptation: How fast the law adapts. With scale parameter, the square of what its fastest mode may reach, as a
-            share of omega_n^2; with scale uniform, the gain of every parameter.
+        adaptation_gain: How fast the law adapts. With scale parameter, the square of what its fastest mode may reach,
+            as a share of omega_n^2; with scale uniform, the gain of every parameter.
         scale: Whether each parameter has a gain that suits it, or all have one.
         friction: Whether it adapts to viscous and dry friction of each joint, too.
     """
 
     kind: Literal["adaptive"]
-    adaptation: PositiveFloat
+    adaptation_gain: PositiveFloat
     scale: Literal["parameter", "uniform"]
     friction: bool
 
@@ -46,7 +46,7 @@ class AdaptiveNumbers(NamedTuple):
         rate: lambda, in 1/s.
         damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
         armature: Diagonal of A, shape (nq,), in kg m^2.
-        adaptation: Diagonal of Gamma, shape (P,).
+        adaptation_gain: Diagonal of Gamma, shape (P,).
         believed: theta^ at the first tick, shape (P,).
         swings: a omega_n^2 / 4, above which a direction of s swings, in 1/s^2.
         limits: Torque limits, shape (nq,), in N m; infinite where there is none.
@@ -56,7 +56,7 @@ class AdaptiveNumbers(NamedTuple):
     rate: Scalar
     damping: Array
     armature: Array
-    adaptation: Array
+    adaptation_gain: Array
     believed: FloatArray
     swings: Scalar
     limits: Array
@@ -101,7 +101,7 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         self._friction = config.friction
         believed = np.concatenate([model.inertial_parameters, np.zeros(2 * model.nq if config.friction else 0)])
         D = model.mass_matrix(rest).diagonal()
-        gains = np.full(len(believed), config.adaptation)
+        gains = np.full(len(believed), config.adaptation_gain)
         self._bounded = config.scale == "parameter"
         if self._bounded:
             gains *= config.natural_frequency**2 * self._scales(model, config.gravity_compensation, rest, D)
@@ -110,10 +110,10 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
             rate=config.natural_frequency,
             damping=config.natural_frequency * D,
             armature=model.armature,
-            adaptation=gains,
+            adaptation_gain=gains,
             believed=believed,
             limits=model.effort_limits,
-            swings=0.25 * config.adaptation * config.natural_frequency**2,
+            swings=0.25 * config.adaptation_gain * config.natural_frequency**2,
         )
         super().__init__(model, motion, config.gravity_compensation, numbers, remembers=len(gains))
 
@@ -143,10 +143,10 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         torque = Y.dot(memory) + numbers.armature * ddq_r + numbers.damping * s
         teaches = np.array([_taught(arm, *of) for of in zip(torque, numbers.limits, s, strict=True)])
         gradient = Y.T.dot(teaches)
-        change = numbers.motion.period * numbers.adaptation * gradient
+        change = numbers.motion.period * numbers.adaptation_gain * gradient
         if self._bounded:
             braked = numbers.swings / numbers.rate * (numbers.damping * teaches).dot(teaches) + _NOTHING
-            needed = (numbers.adaptation * gradient).dot(gradient)
+            needed = (numbers.adaptation_gain * gradient).dot(gradient)
             change = change * (braked / arm.maths.maximum(braked, needed))
         return torque, memory + change
 

@@ -27,13 +27,13 @@ class IterativeLearningConfig(JointLawConfig):
         kind: Its name in the registry.
         repeats_every: T, after which the desired motion is the same again, in s; a multiple of the period.
         learning_gain: gamma, the share of the feedback torque that the next period takes over; below 2.
-        cut_off: Of the low-pass Q, in units of omega_n; None learns at every frequency.
+        cutoff: Of the low-pass Q, in units of omega_n; None learns at every frequency.
     """
 
     kind: Literal["iterative_learning"]
     repeats_every: PositiveFloat | None
     learning_gain: Annotated[float, Field(gt=0.0, lt=2.0)]
-    cut_off: PositiveFloat | None
+    cutoff: PositiveFloat | None
 
 
 class IterativeLearning:
@@ -53,7 +53,7 @@ class IterativeLearning:
     at each frequency w (Bristow, Tharayil and Alleyne, IEEE Control Systems Magazine 26(3), 2006), whose size is below
     1 everywhere for gamma < 2 - 1 / (2 xi^2). Sampling takes phase from T near the Nyquist frequency, so that Q ends
     the learning there: Q(j w) = 1 / (1 + (w / w_c)^4), without phase, over the period as a circle. It is the square of
-    a Butterworth filter of second order, and w_c is `cut_off` omega_n.
+    a Butterworth filter of second order, and w_c is `cutoff` omega_n.
 
     What a limit took from the torque is taken from what is learned: at a limit u goes, by 1 - gamma a period without Q,
     to what the limit leaves beside the feedforward.
@@ -81,8 +81,8 @@ class IterativeLearning:
         self._arm = PinocchioArm(model, config.gravity_compensation)
         self._period, self._gain = config.period, config.learning_gain
         rate = 2.0 * np.pi * np.fft.rfftfreq(self._ticks, config.period)
-        cut_off = np.inf if config.cut_off is None else config.cut_off * config.natural_frequency
-        self._Q: FloatArray = np.asarray(1.0 / (1.0 + (rate[:, None] / cut_off) ** 4), dtype=np.float64)
+        cutoff = np.inf if config.cutoff is None else config.cutoff * config.natural_frequency
+        self._Q: FloatArray = np.asarray(1.0 / (1.0 + (rate[:, None] / cutoff) ** 4), dtype=np.float64)
         self._shape = (self._ticks, model.nq)
         self._limits = model.effort_limits
         self.reset()

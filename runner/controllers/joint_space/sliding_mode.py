@@ -23,13 +23,13 @@ class SlidingModeConfig(JointLawConfig):
         kind: Its name in the registry.
         natural_frequency: lambda, and K_D / diag M, and omega_n of the motion that leads the tip, in rad/s.
         damping_ratio: xi of the motion that leads the tip; the joints have two real poles.
-        layer: Half-width of the boundary layer of s, phi, in rad/s.
-        switching: kappa, the torque beyond the layer, K, as a share of phi omega_n diag M.
+        boundary_layer: Half-width of the boundary layer of s, phi, in rad/s.
+        switching_gain: kappa, the torque beyond the layer, K, as a share of phi omega_n diag M.
     """
 
     kind: Literal["sliding_mode"]
-    layer: PositiveFloat
-    switching: PositiveFloat
+    boundary_layer: PositiveFloat
+    switching_gain: PositiveFloat
 
 
 class SlidingModeNumbers(NamedTuple):
@@ -38,16 +38,16 @@ class SlidingModeNumbers(NamedTuple):
     Attributes:
         motion: Of the joint motion that is followed.
         rate: lambda, in 1/s.
-        layer: phi, in rad/s.
+        boundary_layer: phi, in rad/s.
         damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
-        switching: Diagonal of K, shape (nq,), in N m.
+        switching_gain: Diagonal of K, shape (nq,), in N m.
     """
 
     motion: JointMotionNumbers
     rate: Scalar
-    layer: Scalar
+    boundary_layer: Scalar
     damping: Array
-    switching: Array
+    switching_gain: Array
 
 
 class SlidingMode(JointLaw[SlidingModeNumbers]):
@@ -82,9 +82,9 @@ class SlidingMode(JointLaw[SlidingModeNumbers]):
         numbers = SlidingModeNumbers(
             motion=motion.numbers,
             rate=config.natural_frequency,
-            layer=config.layer,
+            boundary_layer=config.boundary_layer,
             damping=damping,
-            switching=config.switching * config.layer * damping,
+            switching_gain=config.switching_gain * config.boundary_layer * damping,
         )
         super().__init__(model, motion, config.gravity_compensation, numbers)
 
@@ -92,8 +92,8 @@ class SlidingMode(JointLaw[SlidingModeNumbers]):
     def velocity_gain(self) -> VelocityGain:
         """K_v within the layer; see HasVelocityGain."""
         own = self.numbers
-        switching = own.switching[0] / (own.layer * own.damping[0])
-        return VelocityGain((1.0 + switching) * own.rate, own.rate)
+        gain = own.switching_gain[0] / (own.boundary_layer * own.damping[0])
+        return VelocityGain((1.0 + gain) * own.rate, own.rate)
 
     def command(
         self, arm: Arm, numbers: SlidingModeNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
@@ -102,8 +102,8 @@ class SlidingMode(JointLaw[SlidingModeNumbers]):
         dq_r = desired.dq + numbers.rate * (desired.q - q)
         ddq_r = desired.ddq + numbers.rate * (desired.dq - dq)
         s = dq_r - dq
-        saturated = np.array([_saturated(arm, share) for share in s / numbers.layer])
-        torque = numbers.damping * s + numbers.switching * saturated
+        saturated = np.array([_saturated(arm, share) for share in s / numbers.boundary_layer])
+        torque = numbers.damping * s + numbers.switching_gain * saturated
         return torque + passive_dynamics(arm, q, dq, dq_r, ddq_r), memory
 
 

@@ -179,7 +179,7 @@ def _adaptation(run: RunConfig, q: FloatArray) -> float:
     """
     law = cast(Adaptive, run.loops[0].controller)
     numbers, arm = law.numbers, PinocchioArm(law.models[0], law.gravity_compensation)
-    root, brake = np.sqrt(numbers.adaptation), np.sqrt(numbers.damping)[:, None]
+    root, brake = np.sqrt(numbers.adaptation_gain), np.sqrt(numbers.damping)[:, None]
     R: FloatArray = np.zeros((len(root), len(root)))
     for posture, dq, ddq in _desired_joints(run, q):
         Y = arm.regressor(posture, dq, dq, ddq)

@@ -44,7 +44,7 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         interpolate=plant.servo.interpolate,
         implicit=PLANTS.contacts_implicitly(plant.kind),
         law=law.law,
-        at_tip=law.at == "tip",
+        at_tip=law.wrench_frame == "tip",
         inertia=law.compensation == "gravity_and_inertia",
         seen=1.0 if low_pass is None else float(-np.expm1(-2.0 * np.pi * low_pass * timing.tick)),
         normal=np.array(wall.normal) / np.linalg.norm(wall.normal),
@@ -61,7 +61,7 @@ def force_contact(config: RunConfig, q_start: FloatArray) -> float | None:
         q_start: Joint positions at the start, shape (nq,), in rad.
     """
     wall, law, loop, timing = config.environment, config.controller, config.loops[-1], config.timing
-    if not isinstance(wall, WallConfig) or not isinstance(law, HybridForceConfig) or law.reading != "wrist":
+    if not isinstance(wall, WallConfig) or not isinstance(law, HybridForceConfig) or law.force_source != "wrist":
         return None
     normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
     mass = mass_along(tip_mobility(config.arm.model, q_start, loop.joints.start), normal)

@@ -41,7 +41,7 @@ def bullet_of(run: Run) -> Bullet:
 
 def mujoco_of(run: Run) -> Mujoco:
     """Return the arm of a run on MuJoCo in MuJoCo, with the run's least inertia, by Euler's scheme."""
-    return Mujoco(run.urdf, model_of(run), STEP, 1, "euler", run.config["plant"]["least_inertia"])
+    return Mujoco(run.urdf, model_of(run), STEP, 1, "euler", run.config["plant"]["min_inertia"])
 
 
 def random_states(model: RobotModel) -> list[State]:

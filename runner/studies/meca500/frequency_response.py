@@ -26,7 +26,7 @@ def fitted_response(run: Run) -> ComplexArray:
     """Return x / f of each axis of a run under a sine, shape (6,), in m/N and rad/(N m)."""
     environment, times = run.config["environment"], clock(run)
     late = times >= _SETTLED
-    angle = 2.0 * np.pi * float(environment["frequency"]) * (times[late] - float(environment["begin"]))
+    angle = 2.0 * np.pi * float(environment["frequency"]) * (times[late] - float(environment["start_time"]))
     basis = np.column_stack([np.sin(angle), np.cos(angle)])
     (sine, cosine), *_ = np.linalg.lstsq(basis, displacement(run)[late], rcond=None)
     return np.asarray((sine + 1j * cosine) / loads_of(run))

@@ -56,7 +56,7 @@ def answers(runs: Runs) -> list[Panel]:
     panels = []
     for index, axis in enumerate(AXES):
         found = {case: runs[f"step/{case}/{axis}"] for case in _SHOWN}
-        begins = {case: float(run.config["environment"]["begin"]) for case, run in found.items()}
+        begins = {case: float(run.config["environment"]["start_time"]) for case, run in found.items()}
         first, begin = found[_SHOWN[0]], begins[_SHOWN[0]]
         times = np.linspace(0.0, clock(first)[-1], 3001)
         series = [Series("analytic", times - begin, 1e3 * _expected(first, times), "dashed")]
@@ -74,6 +74,6 @@ def _pushed(run: Run) -> int:
 
 
 def _expected(run: Run, times: FloatArray) -> FloatArray:
-    since = np.maximum(times - float(run.config["environment"]["begin"]), 0.0)
+    since = np.maximum(times - float(run.config["environment"]["start_time"]), 0.0)
     answer: FloatArray = step_response(law_of(run), loads_of(run), since)
     return answer[:, _pushed(run)]

@@ -166,7 +166,7 @@ def _mass(run: Run, row: int) -> float:
 def _first_that_pushes(run: Run) -> int:
     """Return the first joint of what pushes on a wall."""
     stages = run.config["robot"].get("stages")
-    if not stages or run.config["controller"]["acts"] == "whole":
+    if not stages or run.config["controller"]["actuated_stages"] == "whole":
         return 0
     return sum(len(stage["home"]) for stage in list(stages.values())[:-1])
 

@@ -83,7 +83,7 @@ def test_noise_of_a_plugin_follows_from_seed_and_repetition(own):
 
 
 def test_a_wrist_sensor_with_crosstalk(own):
-    pushed = ("environment=push", "environment.force=[0,0,5]", "environment.begin=0", "plant=rk4", "duration=0.1")
+    pushed = ("environment=push", "environment.force=[0,0,5]", "environment.start_time=0", "plant=rk4", "duration=0.1")
     run = own("wrist_sensor", "crosstalk", "wrist_sensor.share=0.1", *pushed)
     load, reading = (
         run.trace[[f"{stem}_force_{axis}" for axis in "xyz"]].to_numpy()[-1] for stem in ("load", "reading")

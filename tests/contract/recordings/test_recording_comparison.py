@@ -17,7 +17,7 @@ def stored(tmp_path_factory):
     return run(
         "robot=macro", "controller=computed_torque", "trajectory=joint_quintic", "plant=rk4", "duration=1.5",
         "trajectory.duration=1.0",
-        "trajectory.goal_posture=[0.8,-0.5,0.6]", "controller.period=0.002",
+        "trajectory.goal_configuration=[0.8,-0.5,0.6]", "controller.period=0.002",
         f"outputs={tmp_path_factory.mktemp('outputs')}",
     )  # fmt: skip
 

@@ -68,7 +68,7 @@ def test_both_ends_move(document, sweep12):
     low, high = blocks_of(document, Playback)
     assert low.origin.command != high.origin.command
     listing = blocks_of(document, RunList)[0]
-    assert listing.commands[0] == low.origin.command.partition(" outputs=")[0].removesuffix(" plant=mujoco_for_bullet")
+    assert listing.commands[0] == low.origin.command.partition(" outputs=")[0].removesuffix(" plant=mujoco_fallback")
     assert listing.hashes[0] in {found.hash for found in sweep12.runs() if found.status == "ok"}
 
 

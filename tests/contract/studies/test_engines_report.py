@@ -43,7 +43,7 @@ def test_a_changed_arm_is_found_to_be_another(runs: Mapping[str, Run]) -> None:
     run = runs["open/planar/MuJoCo Euler/0.001"]
     heavier = run.urdf.replace('<mass value="1"', '<mass value="1.001"', 1)
     assert heavier != run.urdf
-    least = run.config["plant"]["least_inertia"]
+    least = run.config["plant"]["min_inertia"]
     other = side_by_side.Mujoco(heavier, model_of(run), 1e-3, 1, "euler", least)
     off = side_by_side.difference(model_of(run), other)
     assert min(off.mass, off.acceleration, off.torque) > 1e-5

@@ -26,7 +26,7 @@ SOME = {
     "meca500": {
         "step/servo, 16.7 ms/rotation x": (
             "experiment=meca500/push", "controller.period=0.0167", "plant=default", "plant.servo.period=0.000835",
-            "plant.step=0.000835", "environment.begin=0.0501", "environment.force=[0.0, 0.0, 0.0]",
+            "plant.step=0.000835", "environment.start_time=0.0501", "environment.force=[0.0, 0.0, 0.0]",
             "environment.moment=[0.05, 0.0, 0.0]"),
         "sine/servo, 1 ms/24.0": ("experiment=meca500/sine", "plant=default", "plant.step=0.001",
                                   "environment.frequency=24.0"),

@@ -10,7 +10,7 @@ from runner.plants.rk4 import Rk4
 from runner.simulation.assembly import assemble
 
 LINE = ("controller=adaptive", "controller.natural_frequency=30", "trajectory=joint_quintic", "plant=rk4")
-UNIFORM = ("controller.scale=uniform", "controller.adaptation=0.5", "controller.friction=false")
+UNIFORM = ("controller.scale=uniform", "controller.adaptation_gain=0.5", "controller.friction=false")
 
 
 def closed_loop(*overrides):
@@ -25,14 +25,14 @@ def followed(closed, desired, h):
     plant, numbers = Rk4(true, h, 1), law.numbers
     plant.reset(desired[0, 0], np.zeros(true.nq))
     law.reset()
-    adapts = numbers.adaptation > 0.0
+    adapts = numbers.adaptation_gain > 0.0
     believed, errors, energies = numbers.believed, [], []
     for tick, reference in enumerate(desired):
         e, s = reference[0] - plant.q, reference[1] - plant.dq + numbers.rate * (reference[0] - plant.q)
         wrong = np.concatenate([true.inertial_parameters, np.zeros(len(believed) - 10 * true.nq)]) - believed
         errors.append(e)
         energies.append(
-            0.5 * (s @ true.mass_matrix(plant.q) @ s + (wrong**2)[adapts] @ (1.0 / numbers.adaptation[adapts]))
+            0.5 * (s @ true.mass_matrix(plant.q) @ s + (wrong**2)[adapts] @ (1.0 / numbers.adaptation_gain[adapts]))
         )
         plant.advance(law.torque(h * tick, plant.q, plant.dq, reference))
         believed = law.memory
@@ -58,8 +58,8 @@ def test_torques_and_parameters_are_those_of_the_equations(name, friction):
         torque = law.torque(0.0, q, dq, reference)
         np.testing.assert_allclose(torque, expected, rtol=0.0, atol=1e-10 * np.abs(expected).max())
         s = s * (np.abs(expected) < closed.robot.model.effort_limits)
-        needed = s @ (Y * numbers.adaptation) @ Y.T @ s / (s @ (D * s))
-        gains = numbers.adaptation * 225.0 / max(225.0, needed)
+        needed = s @ (Y * numbers.adaptation_gain) @ Y.T @ s / (s @ (D * s))
+        gains = numbers.adaptation_gain * 225.0 / max(225.0, needed)
         theta = theta + closed.loops[0].period * gains * (Y.T @ s)
         np.testing.assert_allclose(law.memory, theta, rtol=1e-10, atol=1e-14)
 
@@ -97,8 +97,8 @@ def test_the_error_falls_from_period_to_period_as_a_prototype_s():
 def test_the_scale_by_parameter_bounds_the_frequencies_of_the_adaptation(name, friction):
     """The eigenvalues of D^-1/2 Y Gamma Y^T D^-1/2 for the motions that set the scale."""
     share = 0.49
-    closed = closed_loop(f"robot={name}", f"controller.adaptation={share}", f"controller.friction={friction}")
-    gains, model, home = closed.loops[0].controller.numbers.adaptation, closed.robot.model, closed.robot.home
+    closed = closed_loop(f"robot={name}", f"controller.adaptation_gain={share}", f"controller.friction={friction}")
+    gains, model, home = closed.loops[0].controller.numbers.adaptation_gain, closed.robot.model, closed.robot.home
     n, root, arm = model.nq, np.sqrt(model.mass_matrix(home).diagonal()), PinocchioArm(model)
     reached = []
     for way in (*np.eye(n), np.ones(n)):

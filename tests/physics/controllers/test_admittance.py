@@ -8,7 +8,7 @@ from runner.store import open_run
 from runner.studies.meca500.admittance_response import step_response
 
 STILL = ("robot=meca500", "trajectory.start=[0.18,0.01,0.06]", "trajectory.goal=[0.18,0.01,0.06]")
-PUSH = (*STILL, "environment=push", "environment.begin=0.1", "duration=1.2")
+PUSH = (*STILL, "environment=push", "environment.start_time=0.1", "duration=1.2")
 
 
 def turned(model, rows) -> np.ndarray:
@@ -40,7 +40,7 @@ def test_a_force_through_the_tip_turns_nothing(simulated, checked_config):
 
 
 def test_taken_at_the_flange_the_same_force_turns_the_tool(simulated, checked_config):
-    trace = simulated(*PUSH, "environment.force=[3,-2,4]", "controller.at=flange")
+    trace = simulated(*PUSH, "environment.force=[3,-2,4]", "controller.wrench_frame=flange")
     assert np.abs(turned(checked_config(*PUSH).arm.model, trace.q)).max() > 0.01
 
 
@@ -88,7 +88,7 @@ def test_at_a_wall_it_reads_the_force_of_the_springs_in_series(simulated, plant,
 
 def test_guided_by_hand_it_comes_along_and_stays(simulated):
     free = ("controller.stiffness=[0,0,0,8,8,8]", "controller.damping=[20,20,20,0.8,0.8,0.8]")
-    trace = simulated(*STILL, *free, "environment=hand", "duration=6")
+    trace = simulated(*STILL, *free, "environment=hand_guiding", "duration=6")
     np.testing.assert_allclose(trace.tip[-1] - trace.tip[0], [0.0, 0.05, 0.03], atol=5e-4)
 
 

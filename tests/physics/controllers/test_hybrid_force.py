@@ -73,7 +73,7 @@ def test_the_macro_is_slower_than_the_mini_by_the_root_of_their_masses(push):
 @pytest.mark.parametrize("stiffness", [1e3, pytest.param(1e4, marks=pytest.mark.slow), 4e4])  # it lies between
 def test_a_mini_on_a_macro_pushes_as_fast_as_alone(push, acts, stiffness):
     alone = rise_time(*push("mini", stiffness, "duration=0.1"))
-    riding = rise_time(*push("combined", stiffness, "duration=0.1", f"controller.acts={acts}"))
+    riding = rise_time(*push("combined", stiffness, "duration=0.1", f"controller.actuated_stages={acts}"))
     assert abs(riding - alone) <= max(1.0, 0.1 * alone) + 1e-6  # a tick, or a tenth
 
 
@@ -99,7 +99,9 @@ def test_the_stiffest_wall_is_that_of_the_sampled_map(push, checked_config, arm,
 
 
 def test_a_reading_by_joint_torques_finds_the_force(push):
-    trace, force = push("mini", 1e4, "duration=0.1", "controller.reading=joint_torque", "joint_torque_sensor=ideal")
+    trace, force = push(
+        "mini", 1e4, "duration=0.1", "controller.force_source=joint_torque", "joint_torque_sensor=ideal"
+    )
     assert force[-1] == pytest.approx(2.0, rel=1e-9)
     felt, mean = trace.contact.felt[2:, :3] @ NORMAL, 0.5 * (force[:-2] + force[1:-1])  # felt in the tick before
     np.testing.assert_allclose(felt[1:], mean[1:], atol=0.02)  # in the first period the force begins, and bends
@@ -156,8 +158,11 @@ def test_a_wall_that_is_too_stiff_is_told_before_it_is_found_out(tmp_path, stiff
         ),
         (("controller.normal=[0,0,2]",), "controller.normal: must be a unit vector"),
         (("environment.normal=[0,0,2]",), "environment.normal: must be a unit vector"),
-        (("controller.reading=joint_torque",), "controller.reading: joint_torque needs torque sensors in the joints"),
-        (("controller.acts=last",), "controller.acts"),
+        (
+            ("controller.force_source=joint_torque",),
+            "controller.force_source: joint_torque needs torque sensors in the joints",
+        ),
+        (("controller.actuated_stages=last",), "controller.actuated_stages"),
         (("robot=planar", "controller.normal=[0,1,0]"), "controller.normal: planar cannot push along [0.0, 1.0, 0.0]"),
         (("disturbance_observer=momentum",), "disturbance_observer.bandwidth: it takes a touch for a disturbance"),
         (("plant=kinematic",), "plant.kind: kinematic follows joint positions"),

@@ -8,7 +8,7 @@ ARMS = {
     "macro": ("robot=macro", f"robot.home={POSTURE}"),
     "combined": ("robot=combined", f"robot.stages.macro.home={POSTURE}", f"robot.stages.mini.home={POSTURE}"),
 }
-LAW = ("controller=impedance", "plant=rk4", "environment=push", "environment.begin=0")
+LAW = ("controller=impedance", "plant=rk4", "environment=push", "environment.start_time=0")
 
 
 def pushed(checked_config, simulated, arm, *overrides):
@@ -65,7 +65,7 @@ def test_a_mini_on_a_macro_gives_way_alone_or_with_it(checked_config, simulated,
         "environment.force=[0.3,-0.2,0.4]",
         "controller.tip_stiffness=[100,200,400]",
         "controller.tip_damping=[10,10,10]",
-        f"controller.acts={acts}",
+        f"controller.actuated_stages={acts}",
         "duration=3",
     )
     assert trace.failure is None

@@ -19,7 +19,7 @@ H, OMEGA, GAIN = 0.001, 30.0, 0.8
 CIRCLE = ("robot=macro", "controller=iterative_learning", "trajectory=circle", "trajectory.easing=none",
           "trajectory.duration=2")  # fmt: skip
 TO_AND_FRO = ("robot=macro", "controller=iterative_learning", "controller.period=0.002", "plant=rk4",
-              "controller.natural_frequency=30", "controller.repeats_every=3", "controller.cut_off=null",
+              "controller.natural_frequency=30", "controller.repeats_every=3", "controller.cutoff=null",
               "trajectory=from_file", "mismatch.mass=0.8", "plant.friction.viscous=0.2",
               "plant.friction.coulomb=0.5")  # fmt: skip
 
@@ -39,7 +39,7 @@ def slider(**changes):
         "null_space_frequency": 0.0,
         "repeats_every": 4.0,
         "learning_gain": GAIN,
-        "cut_off": None,
+        "cutoff": None,
         **changes,
     }
     law = IterativeLearning(model, IterativeLearningConfig(**values), np.zeros(1), True)
@@ -99,7 +99,7 @@ def test_a_run_tells_the_law_what_its_limits_left(checked_config):
 
 
 def test_the_low_pass_ends_learning_above_its_cut_off_and_has_no_phase():
-    law, _ = slider(cut_off=1.0)
+    law, _ = slider(cutoff=1.0)
     w = 2.0 * np.pi * 10.0
     t = H * np.arange(4000)
     law._feedback[:, 0] = np.cos(w * t)

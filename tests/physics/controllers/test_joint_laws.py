@@ -19,8 +19,8 @@ PROTOTYPE = {
     "adaptive": (None, 0.84, 0.84),
 }
 OPTIONS = {
-    "sliding_mode": ("controller.switching=1.3",),
-    "adaptive": ("controller.scale=uniform", "controller.adaptation=0.5", "controller.friction=false"),
+    "sliding_mode": ("controller.switching_gain=1.3",),
+    "adaptive": ("controller.scale=uniform", "controller.adaptation_gain=0.5", "controller.friction=false"),
 }
 NOISE = ("noise.position=1e-4", "noise.distribution=gaussian")  # velocities are exact
 WRONG = ("mismatch.mass=0.8", "plant.friction.viscous=0.2", "plant.friction.coulomb=0.5")

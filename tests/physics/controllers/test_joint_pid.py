@@ -70,7 +70,7 @@ def overshoot(trace, goal):
 
 
 def test_anti_windup_keeps_a_saturated_step_from_overshooting(simulated):
-    step = ("trajectory=joint_quintic", "trajectory.goal_posture=1.2", "trajectory.duration=0.05", "duration=8",
+    step = ("trajectory=joint_quintic", "trajectory.goal_configuration=1.2", "trajectory.duration=0.05", "duration=8",
             "controller.natural_frequency=10", "torque_limits.max=[20,60,20]")  # fmt: skip
     goal = checked(*LINE, *step).path.sample_joints(np.array([8.0]))[0, 0]
     held, wound = (simulated(*LINE, *step, f"controller.anti_windup={on}") for on in ("true", "false"))

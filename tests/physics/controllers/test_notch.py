@@ -83,7 +83,7 @@ def test_it_lets_links_encoders_be_used_at_a_low_bandwidth_and_no_more(simulated
         return simulated(
             *("robot=macro", "plant=rk4_flexible", "plant.step=0.001", "plant.flexible_joints.encoders=link"),
             *("controller=computed_torque", "controller.period=0.005", f"controller.natural_frequency={bandwidth}"),
-            *("trajectory=joint_quintic", "trajectory.goal_posture=[0.3,0.2,0.2]", "trajectory.duration=1"),
+            *("trajectory=joint_quintic", "trajectory.goal_configuration=[0.3,0.2,0.2]", "trajectory.duration=1"),
             *("noise=none", "torque_limits=none", "duration=6", *notch),
         ).failure
 

@@ -14,12 +14,12 @@ OPTIONS = {
     "null_space_frequency": ("10", "5"),
 }
 OWN = {
-    "adaptive": ("scale=uniform", "friction=false", "adaptation=1e-3"),
+    "adaptive": ("scale=uniform", "friction=false", "adaptation_gain=1e-3"),
     "computed_torque": ("integral_gain=100",),
     "joint_pd": ("inertia=posture",),
     "joint_pid": ("integral_share=0.5", "anti_windup=false"),
     "passivity": (),
-    "sliding_mode": ("layer=0.1", "switching=2"),
+    "sliding_mode": ("boundary_layer=0.1", "switching_gain=2"),
 }
 """Options of one law alone, away from their defaults."""
 

@@ -52,7 +52,7 @@ def radius(config):
 @pytest.mark.parametrize("robot", ["macro", "xarm7"])
 @pytest.mark.parametrize("law", LAWS)
 def test_the_bound_is_that_of_the_exact_map(robot, law):
-    stays = ("trajectory=joint_quintic", f"trajectory.goal_posture={HOMES[robot]}")
+    stays = ("trajectory=joint_quintic", f"trajectory.goal_configuration={HOMES[robot]}")
     more = () if law in ("operational_space", "whole_body") else stays
     one = bound_of(configured(robot, law, 1.0, *more))
     limit = 1.0 / one.share

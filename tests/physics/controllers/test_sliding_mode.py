@@ -9,7 +9,7 @@ from runner.plants.rk4 import Rk4
 
 OMEGA, PHI = 30.0, 0.05
 LINE = ("robot=macro", "controller=sliding_mode", "controller.period=0.001", f"controller.natural_frequency={OMEGA}",
-        f"controller.layer={PHI}", "plant=rk4")  # fmt: skip
+        f"controller.boundary_layer={PHI}", "plant=rk4")  # fmt: skip
 
 
 def configured(*overrides):
@@ -25,7 +25,7 @@ def sliding(trace, config):
 @pytest.mark.parametrize("name", ["macro", "xarm7"])
 @pytest.mark.parametrize("kappa", [1.0, 2.0])
 def test_torques_are_those_of_the_equation(name, kappa):
-    config = configured(f"robot={name}", f"controller.switching={kappa}")
+    config = configured(f"robot={name}", f"controller.switching_gain={kappa}")
     arm, generator = config.arm, np.random.default_rng(5)
     n, model, pin_model = arm.model.nq, arm.model, arm.model.pin_model
     D = model.mass_matrix(arm.home).diagonal()
@@ -48,7 +48,7 @@ def test_the_error_stays_within_the_bound_of_the_layer(simulated):
     s, e = sliding(trace, config)
     law, model = config.loops[0].controller.numbers, config.arm.model
     left_out = 0.05 * np.abs([model.gravity_torque(q) for q in trace.q]).max(axis=0) + 1.5
-    assert (left_out < law.switching + PHI * law.damping).all()  # what moves adds less than what is left here
+    assert (left_out < law.switching_gain + PHI * law.damping).all()  # what moves adds less than what is left here
     assert 0.3 * PHI < np.abs(s).max() < PHI
     assert np.abs(e).max() < PHI / OMEGA
 
@@ -67,7 +67,7 @@ def test_the_layer_is_reached_in_time():
         plant.advance(law.torque(h * tick, plant.q, plant.dq, goal))
     energy = np.sqrt([s @ M @ s for s, M in rows])
     smallest, largest = (pick([np.linalg.eigvalsh(M) for _, M in rows]) for pick in (np.min, np.max))
-    fastest = law.numbers.switching.min() / np.sqrt(largest)
+    fastest = law.numbers.switching_gain.min() / np.sqrt(largest)
     outside = energy > np.sqrt(smallest) * PHI
     assert outside[0]
     assert not outside[-1]
@@ -77,10 +77,10 @@ def test_the_layer_is_reached_in_time():
 
 def test_a_thin_layer_makes_the_torques_of_noisy_encoders_rough(simulated):
     def roughness(layer, *more):
-        run = simulated(*LINE, "trajectory=joint_quintic", f"controller.layer={layer}", "noise.position=1e-4",
+        run = simulated(*LINE, "trajectory=joint_quintic", f"controller.boundary_layer={layer}", "noise.position=1e-4",
                         "noise.distribution=gaussian", "duration=0.5", *more)  # fmt: skip
         return np.abs(np.diff(run.tau[:-1], axis=0)).mean()
 
     # Within the layer the gain of s is K_D + K / phi: K as it is at phi 0.05, in a layer of a tenth.
-    rough, smooth = roughness(0.005, "controller.switching=10"), roughness(0.05)
+    rough, smooth = roughness(0.005, "controller.switching_gain=10"), roughness(0.05)
     assert rough > 3.0 * smooth

@@ -23,9 +23,9 @@ def push(**changes):
     values = {
         "force": [1.0, 0.0, -2.0],
         "moment": [0.0, 0.1, 0.0],
-        "begin": 0.5,
+        "start_time": 0.5,
         "link": None,
-        "lasts": None,
+        "duration": None,
         "frequency": 0.0,
     }
     return make(PushConfig(kind="push", **(values | changes)))
@@ -39,7 +39,7 @@ def test_a_push_sets_in_at_its_time_and_stays():
 
 
 def test_a_push_that_lasts_ends():
-    short = push(lasts=0.2)
+    short = push(duration=0.2)
     assert np.abs(short.wrench(0.69, TIP, REST)).max() == 2.0
     np.testing.assert_array_equal(short.wrench(0.7, TIP, REST), np.zeros(6))
 
@@ -52,7 +52,7 @@ def test_a_sine_starts_from_zero_with_its_frequency():
 
 
 def test_a_push_on_a_link_leaves_the_tip_alone():
-    beside = push(link="link2", moment=[0.0, 0.0, 0.0], lasts=0.2)
+    beside = push(link="link2", moment=[0.0, 0.0, 0.0], duration=0.2)
     assert list(beside.points) == ["link2"]
     np.testing.assert_array_equal(beside.link_forces(0.6, TIP[None], REST[None]), [[1.0, 0.0, -2.0]])
     np.testing.assert_array_equal(beside.link_forces(0.8, TIP[None], REST[None]), np.zeros((1, 3)))
@@ -93,8 +93,8 @@ def test_a_normal_of_another_length_than_one_is_refused_with_the_unit_vector():
 
 
 def hand(**changes):
-    values = {"travel": [0.0, 0.05, 0.0], "begin": 0.5, "duration": 2.0, "stiffness": 500.0, "damping": 20.0}
-    return make(HandConfig(kind="hand", **(values | changes)))
+    values = {"displacement": [0.0, 0.05, 0.0], "start_time": 0.5, "duration": 2.0, "stiffness": 500.0, "damping": 20.0}
+    return make(HandConfig(kind="hand_guiding", **(values | changes)))
 
 
 def test_a_hand_holds_the_tip_where_it_took_it():

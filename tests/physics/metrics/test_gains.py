@@ -3,7 +3,7 @@
 import pytest
 from support.caveat_runs import found
 
-LINE = ("robot=xarm7", "trajectory=joint_quintic", "trajectory.goal_posture=[0.4,-0.3,0.3,0.4,-0.3,0.3,0.4]",
+LINE = ("robot=xarm7", "trajectory=joint_quintic", "trajectory.goal_configuration=[0.4,-0.3,0.3,0.4,-0.3,0.3,0.4]",
         "controller.period=0.001", "controller.natural_frequency=30")  # fmt: skip
 
 

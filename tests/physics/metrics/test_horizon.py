@@ -31,9 +31,9 @@ def test_others_are_not(checked_config, overrides):
 
 def test_the_duration_that_is_named_is_enough(checked_config):
     short = ("robot=macro", "controller=adaptive", "trajectory=circle", "trajectory.duration=2")
-    text = found(checked_config(*short, "controller.adaptation=0.1"))["short_horizon"].text
+    text = found(checked_config(*short, "controller.adaptation_gain=0.1"))["short_horizon"].text
     duration = text.partition("take duration=")[2].split()[0]
-    longer = found(checked_config(*short, "controller.adaptation=0.1", f"duration={duration}"))
+    longer = found(checked_config(*short, "controller.adaptation_gain=0.1", f"duration={duration}"))
     assert "short_horizon" not in longer
 
 

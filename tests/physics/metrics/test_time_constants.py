@@ -11,7 +11,7 @@ from runner.controllers import CONTROLLERS
 from runner.controllers.torque_law import PinocchioArm
 from runner.metrics.caveats.time_constants import slowest_part
 
-REST = ("robot=macro", "trajectory=joint_quintic", "trajectory.goal_posture=${robot.home}",
+REST = ("robot=macro", "trajectory=joint_quintic", "trajectory.goal_configuration=${robot.home}",
         "plant=rk4", "controller.period=0.001", "plant.step=0.001")  # fmt: skip
 SLOW = [
     ("integral", 0.1745, "controller=computed_torque", "controller.integral_gain=3375"),
@@ -33,11 +33,11 @@ def test_what_a_wrong_gravity_leaves_at_rest_fades_by_e_in_each(checked_config, 
 
 def test_the_rates_of_adaptation_are_those_at_which_errors_fade_at_rest(checked_config, simulated):
     """Gravity alone excites: K_D ds/dt = -Y Gamma Y^T s, in which masses that are believed wrong cancel."""
-    law = ("controller=adaptive", "controller.adaptation=0.02", "controller.friction=false")
+    law = ("controller=adaptive", "controller.adaptation_gain=0.02", "controller.friction=false")
     config = checked_config(*REST, *law)
     own = config.loops[0].controller
     Y = PinocchioArm(own.models[0], True).regressor(config.arm.home, *np.zeros((3, 3)))
-    A = (Y * own.numbers.adaptation) @ Y.T / own.numbers.damping[:, None]
+    A = (Y * own.numbers.adaptation_gain) @ Y.T / own.numbers.damping[:, None]
     q = simulated(*REST, *law, "mismatch.mass=0.9", "duration=13").q
     later, before = q[[13000, 1000]] - q[0]
     np.testing.assert_allclose(later, expm(-12.0 * A) @ before, rtol=0.0, atol=0.01 * np.linalg.norm(later))
@@ -51,7 +51,7 @@ ROUND = ("robot=macro", "trajectory=circle", "trajectory.easing=none", "trajecto
 
 
 def test_along_a_path_an_adaptation_has_done_two_thirds_of_its_work_after_one(checked_config, simulated):
-    adaptive = (*ROUND, "controller=adaptive", "controller.adaptation=0.1")
+    adaptive = (*ROUND, "controller=adaptive", "controller.adaptation_gain=0.1")
     found = slowest_part(checked_config(*adaptive))
     assert found == (pytest.approx(6.4, abs=0.1), "adaptation")
     adapted, never = (simulated(*overrides) for overrides in (adaptive, (*ROUND, "controller=passivity")))

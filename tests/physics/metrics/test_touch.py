@@ -19,7 +19,7 @@ def test_an_arm_behind_servos_that_force_leads_onto_a_wall_has_one(checked_confi
     config = checked_config("experiment=meca500/wall", f"plant={plant}")
     found = servo_contact(config, config.arm.home)
     assert found.ticks * found.tick == pytest.approx(config.controller.period)
-    assert (found.stiffness, found.at_tip) == (config.environment.stiffness, config.controller.at == "tip")
+    assert (found.stiffness, found.at_tip) == (config.environment.stiffness, config.controller.wrench_frame == "tip")
 
 
 @pytest.mark.parametrize(

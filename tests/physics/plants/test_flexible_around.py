@@ -68,7 +68,7 @@ def test_a_sensed_tip_errs_by_the_acceleration_and_a_blind_one_as_its_macro(simu
 def test_a_mode_gains_and_loses_damping_as_on_runge_kutta(simulated, law, expected):
     ring = ("experiment=thesis/flexible_ring", "plant=bullet_flexible", "plant.step=1e-4", "duration=2",
             f"{KEY}.stiffness={{macro: 1000, mini: null}}", f"{KEY}.motor_inertia={{macro: 2, mini: null}}",
-            f"{KEY}.damping_ratio=0", f"{KEY}.braked={{macro: 0}}")  # fmt: skip
+            f"{KEY}.damping_ratio=0", f"{KEY}.brake_time={{macro: 0}}")  # fmt: skip
     trace = simulated(*ring, *law)
     M = np.array([[2.0, 0.0, 0.0], [0.0, 3.0, 1.0], [0.0, 1.0, 1.0]])  # of the bare Macro at home
     y = (trace.q[:, :3] - trace.q[0, :3]) @ M @ np.linalg.eigh(M)[1][:, -1]
@@ -98,7 +98,7 @@ def test_what_the_engine_holds_is_released(closed_loop):
 def test_undamped_joints_with_brakes_keep_their_energy(closed_loop):
     """To the second order of the step, for ever: the scheme is symplectic."""
     closed = closed_loop(*MACRO, "plant=bullet_flexible", "gravity=0", "plant.step=1e-3", "controller.period=0.001",
-                         f"{KEY}.damping_ratio=0", f"{KEY}.braked={{macro: 0}}", "trajectory=goal")  # fmt: skip
+                         f"{KEY}.damping_ratio=0", f"{KEY}.brake_time={{macro: 0}}", "trajectory=goal")  # fmt: skip
     plant = closed.plant
     plant.reset(np.zeros(3), np.array([0.5, 0.3, -0.4]))
     plant.dtheta[:] = 0.0

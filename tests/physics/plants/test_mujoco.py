@@ -23,9 +23,9 @@ def pendulum(across=0.0, along=0.0, dynamics=""):
     return POINT.format(across=across, along=along, dynamics=dynamics)
 
 
-def make(urdf, tip, step=1e-4, steps=1, model=None, integrator="euler", least_inertia=1e-12):
+def make(urdf, tip, step=1e-4, steps=1, model=None, integrator="euler", min_inertia=1e-12):
     """Make MuJoCo's arm; the model may be of another text than MuJoCo reads."""
-    return Mujoco(urdf, model or RobotModel(urdf, tip), step, steps, integrator, least_inertia)
+    return Mujoco(urdf, model or RobotModel(urdf, tip), step, steps, integrator, min_inertia)
 
 
 @pytest.mark.parametrize("robot", ["macro", "mini", "combined", "xarm7", "meca500", *strangers.STRANGERS])
@@ -41,10 +41,10 @@ def test_masses_are_those_of_the_model(checked_config, robot):
 
 @pytest.mark.parametrize("floor", [1e-12, 1e-8, 1e-4])
 def test_a_link_without_inertia_gets_the_least_one_and_one_with_more_keeps_its_own(floor):
-    assert make(pendulum(), "rod", least_inertia=floor).mass_matrix(np.zeros(1))[0, 0] == pytest.approx(
+    assert make(pendulum(), "rod", min_inertia=floor).mass_matrix(np.zeros(1))[0, 0] == pytest.approx(
         2.0 * 0.5**2 + floor, rel=1e-15
     )
-    heavy = make(pendulum(across=0.3, along=0.2), "rod", least_inertia=floor)
+    heavy = make(pendulum(across=0.3, along=0.2), "rod", min_inertia=floor)
     assert heavy.mass_matrix(np.zeros(1))[0, 0] == pytest.approx(0.5 + 0.3, rel=1e-14)
 
 
@@ -125,7 +125,7 @@ def test_the_default_step_is_that_of_bullet():
     ("override", "message"),
     [
         ("plant.integrator=leapfrog", "plant.integrator: found 'leapfrog'; allowed: euler, implicitfast, rk4"),
-        ("plant.least_inertia=0", "plant.least_inertia: must be 1e-12 or more; found 0"),
+        ("plant.min_inertia=0", "plant.min_inertia: must be 1e-12 or more; found 0"),
         ("plant.mass=1", "plant.mass: unknown key"),
     ],
 )

@@ -154,7 +154,7 @@ def test_position_plant_gets_commands_and_the_worlds_load_and_tells_its_torques(
     free = open_run(cli(*given).folder).trace
     np.testing.assert_array_equal(free["q3"].to_numpy()[1:], free["q3_command"].to_numpy()[:-1])
     np.testing.assert_array_equal(free["tau3"].to_numpy(), 7.0)
-    pushed = open_run(cli(*given, "environment=push", "environment.begin=0.1").folder).trace
+    pushed = open_run(cli(*given, "environment=push", "environment.start_time=0.1").folder).trace
     assert pushed["tau2"].nunique() > 1
 
 

@@ -131,7 +131,7 @@ def assert_similar(simulated, plant, motion, limits, gravity):
             f"plant={plant}",
             f"torque_limits={limits}",
             f"gravity={g}",
-            *([f"plant.least_inertia={1e-9 * scale**3}"] if plant == "mujoco" else []),  # as m L^2 is
+            *([f"plant.min_inertia={1e-9 * scale**3}"] if plant == "mujoco" else []),  # as m L^2 is
             *(quintic(scale, 2.0, 2.0) if motion == "quintic" else (f"duration={4.0 * scale}",)),
         )
         for (robot, scale), g in zip(ARMS, gravity, strict=True)

@@ -97,7 +97,7 @@ def test_a_sensor_that_is_late_or_slow_or_noisy_serves_worse_and_alike_in_equal_
 def damping_ratios(frequency, *keys):
     """Frequencies in Hz and damping ratios of the modes of the Macro with its brakes on, under the Mini's law."""
     config = validate(
-        compose([*FLEXIBLE, "gravity=0", stiff(1000), f"{KEY}.damping_ratio=0", f"{KEY}.braked={{macro: 0}}",
+        compose([*FLEXIBLE, "gravity=0", stiff(1000), f"{KEY}.damping_ratio=0", f"{KEY}.brake_time={{macro: 0}}",
                  f"controller.natural_frequency={{macro: 30, mini: {frequency}}}", *keys]).resolved
     )  # fmt: skip
     closed = assemble(config)

@@ -25,7 +25,7 @@ MOVE = ("trajectory=quintic", "trajectory.duration=1", "trajectory.goal=[0.4,0.7
 LED = (
     *MACRO, "plant.links.link2=null", "plant.motor_inertia=1e5", "plant.damping_ratio=0.02", "gravity=0", "duration=1",
     "controller=computed_torque", "controller.period=0.001", "trajectory=joint_quintic",
-    "trajectory.goal_posture=[0.02,0,0]", "trajectory.duration=0.1",
+    "trajectory.goal_configuration=[0.02,0,0]", "trajectory.duration=0.1",
 )  # fmt: skip
 F0 = np.sqrt(3.0 * 300.0 / 0.75) / (2.0 * np.pi)  # Hz, 3 EI/(m L^3) over 1 - 1/(4 n^2), n = 1
 
@@ -58,7 +58,7 @@ def test_more_parts_change_the_motion_less_and_less(simulated):
     """Distances of 1 to 2, 2 to 3 parts and so on fall as 1/n^2 does."""
     keys = ("plant.links.link2.mass=0.3", "plant.links.link3.mass=0.3", *stiff(1000), "plant.step=0.0001")
     move = ("trajectory=quintic", "trajectory.duration=0.4", "trajectory.goal=[0.1,0.9,0.9]", "duration=0.4")
-    tips = [simulated(*MACRO, *move, *keys, f"plant.parts={parts}").tip for parts in (1, 2, 3)]
+    tips = [simulated(*MACRO, *move, *keys, f"plant.segments={parts}").tip for parts in (1, 2, 3)]
     first, second = (np.abs(after - before).max() for before, after in pairwise(tips))
     assert second / first == pytest.approx((1 / 4 - 1 / 9) / (1 - 1 / 4), rel=0.4)
 
@@ -67,7 +67,7 @@ def test_a_link_of_the_macro_with_mass_along_it_is_a_cantilever_of_the_second_or
     """Link 3 with its end mass of 1 kg, all motors held: the first two modes in each plane."""
     errors = []
     for parts in (4, 8, 16):
-        keys = ("plant.links.link2=null", "plant.links.link3.mass=0.5", f"plant.parts={parts}", "plant.step=1e-6")
+        keys = ("plant.links.link2=null", "plant.links.link3.mass=0.5", f"plant.segments={parts}", "plant.step=1e-6")
         config = checked(*MACRO, *keys)
         omega = [2.0 * np.pi * mode.frequency for mode in PLANTS.modes(config.plant, config.arm, config.arm.home)]
         exact = np.array(list(islice(cantilever_roots(2.0), 2))) ** 2 * np.sqrt(300.0 / 0.5)
@@ -161,8 +161,8 @@ def test_runs_on_other_plants_know_nothing_of_it():
         (("plant.links.link2.EI=0",), "plant.links.link2.EI: must be above 0; found 0"),
         (("plant.links.link2.EI=-3",), "plant.links.link2.EI: must be above 0; found -3"),
         (("plant.links.link2.mass=-1",), "plant.links.link2.mass: must be 0 or more; found -1"),
-        (("plant.parts=0",), "plant.parts: must be 1 or more; found 0"),
-        (("plant.parts=2",), "plant.links.link3.mass: 0 found with plant.parts=2"),
+        (("plant.segments=0",), "plant.segments: must be 1 or more; found 0"),
+        (("plant.segments=2",), "plant.links.link3.mass: 0 found with plant.segments=2"),
         (
             ("+plant.links.lnk3={EI: 300, mass: 0}",),
             "plant.links.lnk3: no such link (did you mean link3?); links: link1",
@@ -171,7 +171,7 @@ def test_runs_on_other_plants_know_nothing_of_it():
         (("plant.links.link2=null", "plant.links.link3=null"), "null for every link; take plant=rk4"),
         (("plant.step=0.01",), "11.9 Hz at home; allowed: up to 0.00671 s, such as 0.005"),
         (
-            ("plant.parts=2", "plant.links.link2.mass=1e-11", "plant.links.link3.mass=1e-11", "input_shaper=zv"),
+            ("plant.segments=2", "plant.links.link2.mass=1e-11", "plant.links.link3.mass=1e-11", "input_shaper=zv"),
             "plant.links: parts between springs have next to no inertia",
         ),
         (("plant.motor_inertia=null",), "a link without mass turns with its motor alone; give each joint one"),

@@ -94,7 +94,7 @@ def test_the_names_of_rigid_runs_know_nothing_of_flexible_joints():
         ((f"{KEY}.stiffness=1e6",), "Hz at home; allowed: up to 0.0003"),
         ((f"{KEY}.encoders=motr",), "did you mean motor?"),
         (("robot.armature=0.1",), "q1 has robot.armature=0.1, too, and both are its motor; give null"),
-        ((f"{KEY}.braked={{mini: 0}}",), f"{KEY}.braked: no such stage: 'mini'"),
+        ((f"{KEY}.brake_time={{mini: 0}}",), f"{KEY}.brake_time: no such stage: 'mini'"),
         (("environment=wall",), "a wall is met by arms with rigid joints"),
         (("joint_torque_sensor=ideal",), "joint_torque_sensor.noise=null"),
         (("robot.payload.schedule=[{at: 1.0, mass: 0.5}]",), "robot.payload.schedule=[]"),
@@ -127,8 +127,8 @@ def test_damping_the_springs_lets_encoders_at_the_links_do(simulated):
 
 
 def test_brakes_hold_the_motors_and_a_push_bends_the_arm(simulated):
-    braked = (*MACRO, "gravity=0", f"{KEY}.braked={{macro: 0}}", f"{KEY}.damping_ratio=0.3", "environment=push",
-              "environment.force=[2.0,0.0,0.0]", "environment.begin=0", "duration=8")  # fmt: skip
+    braked = (*MACRO, "gravity=0", f"{KEY}.brake_time={{macro: 0}}", f"{KEY}.damping_ratio=0.3", "environment=push",
+              "environment.force=[2.0,0.0,0.0]", "environment.start_time=0", "duration=8")  # fmt: skip
     trace = simulated(*braked)
     arm = checked(*MACRO).arm.model
     J = arm.tip_jacobian(np.zeros(3))[:3]

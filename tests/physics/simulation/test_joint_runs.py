@@ -44,7 +44,7 @@ def test_under_an_exact_model_only_the_held_torque_leaves_an_error(checked_confi
 def test_the_arm_starts_at_the_first_posture(checked_config):
     posture = [0.3, 0.4, -0.2]
     for controller in ("computed_torque", "operational_space", "differential_inverse_kinematics"):
-        more = (f"trajectory.start_posture={posture}", f"controller={controller}")
+        more = (f"trajectory.start_configuration={posture}", f"controller={controller}")
         np.testing.assert_allclose(traced(checked_config(*JOINTS, *more)).q[0], posture, atol=1e-15)
 
 

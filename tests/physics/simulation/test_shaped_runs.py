@@ -16,7 +16,7 @@ FLEXIBLE = ("robot=macro", "plant=rk4_flexible", "noise=none", "torque_limits=no
 # Motors so heavy that their law leads them as if nothing pulled at them; joint 1 alone turns, and rings on its own.
 LED = (
     *FLEXIBLE, "controller=computed_torque", "controller.period=0.001", "plant.flexible_joints.motor_inertia=1e5",
-    "trajectory=joint_quintic", "trajectory.goal_posture=[0.05,0,0]", "trajectory.duration=0.2",
+    "trajectory=joint_quintic", "trajectory.goal_configuration=[0.05,0,0]", "trajectory.duration=0.2",
 )  # fmt: skip
 PATH = ("trajectory=quintic", "plant.step=0.005", "input_shaper=zv")
 F0 = np.sqrt(1000.0 / 2.0) / (2.0 * np.pi)  # Hz, K 1000 N m/rad on 2 kg m^2

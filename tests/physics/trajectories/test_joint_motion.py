@@ -11,7 +11,7 @@ from runner.trajectories.trajectory import joint_reference
 KINDS = ("joint_quintic", "joint_waypoints", "joint_sinusoids")
 ROBOTS = {
     "macro": ("robot=macro",),
-    "xarm7": ("robot=xarm7", "trajectory.start_posture=[0.1,0.6,-0.1,1.4,0.2,0.7,-0.2]"),
+    "xarm7": ("robot=xarm7", "trajectory.start_configuration=[0.1,0.6,-0.1,1.4,0.2,0.7,-0.2]"),
     "parallel": ("robot=combined", "plant=rk4", "plant.wrist_rotation=parallel"),
 }
 
@@ -71,7 +71,7 @@ def test_the_tip_s_own_trajectories_lead_no_joints():
 
 
 def test_a_quintic_peaks_at_half_time():
-    path = path_of("robot=macro", "trajectory=joint_quintic", "trajectory.start_posture=0.1")
+    path = path_of("robot=macro", "trajectory=joint_quintic", "trajectory.start_configuration=0.1")
     motion = path.sample_joints(np.array([0.5 * path.duration]))[0]
     np.testing.assert_allclose(motion[0], 0.5 * (0.1 + 0.5) * np.ones(3), rtol=1e-14)
     np.testing.assert_allclose(motion[1], 1.875 * 0.4 / 3.0 * np.ones(3), rtol=1e-14)
@@ -88,7 +88,12 @@ def test_sinusoids_are_those_given_between_the_ramps():
     given = "[[[0.1,0.0],[0.0,0.05]],[[0.0,0.2],[0.0,0.0]],[[0.0,0.0],[-0.1,0.1]]]"
     path = path_of(
         *("robot=macro", "trajectory=joint_sinusoids", "trajectory.harmonics=2", f"trajectory.coefficients={given}"),
-        *("trajectory.frequency=0.5", "trajectory.ramp=1", "trajectory.duration=8", "trajectory.start_posture=0.3"),
+        *(
+            "trajectory.frequency=0.5",
+            "trajectory.ramp=1",
+            "trajectory.duration=8",
+            "trajectory.start_configuration=0.3",
+        ),
     )
     t = np.linspace(1.0, 7.0, 50)
     omega = np.pi * (t - 1.0)
@@ -119,11 +124,17 @@ def test_drawn_sinusoids_keep_within_their_amplitude_and_follow_from_the_seed():
 @pytest.mark.parametrize(
     ("overrides", "problem"),
     [
-        (["joint_quintic", "goal_posture=[0.1,0.2]"], r"goal_posture: 2 values for 3 joints \(q1, q2, q3\)"),
-        (["joint_quintic", "goal_posture=fast"], "goal_posture: must be a number, or a list of numbers"),
-        (["joint_quintic", "start_posture=[1]"], "start_posture: 1 values for 3 joints"),
-        (["joint_waypoints", "postures=[]"], "postures: must have one posture or more"),
-        (["joint_waypoints", "postures=[0.2,0.2]"], "postures.1: is the same as trajectory.postures.0"),
+        (
+            ["joint_quintic", "goal_configuration=[0.1,0.2]"],
+            r"goal_configuration: 2 values for 3 joints \(q1, q2, q3\)",
+        ),
+        (["joint_quintic", "goal_configuration=fast"], "goal_configuration: must be a number, or a list of numbers"),
+        (["joint_quintic", "start_configuration=[1]"], "start_configuration: 1 values for 3 joints"),
+        (["joint_waypoints", "configurations=[]"], "configurations: must have one configuration or more"),
+        (
+            ["joint_waypoints", "configurations=[0.2,0.2]"],
+            "configurations.1: is the same as trajectory.configurations.0",
+        ),
         (["joint_waypoints", "time_shares=[0.5,1]"], "time_shares: must be 3 ascending numbers"),
         (["joint_sinusoids", "duration=1"], "duration: must have room for both ramps, 2 s or more; found 1"),
         (["joint_sinusoids", "coefficients=[[[0,1]]]"], "coefficients: 1 lists for 3 joints"),

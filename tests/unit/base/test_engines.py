@@ -65,11 +65,11 @@ def test_the_recorded_command_names_what_stands_in(installed):
         text: command(compose(text.split())) for text in ("robot=macro", "plant=default robot=mini", "plant=rk4")
     }
     assert recorded == {
-        "robot=macro": "runner robot=macro" + ("" if installed else " plant=mujoco_for_bullet"),
-        "plant=default robot=mini": f"runner plant={'bullet' if installed else 'mujoco_for_bullet'} robot=mini",
+        "robot=macro": "runner robot=macro" + ("" if installed else " plant=mujoco_fallback"),
+        "plant=default robot=mini": f"runner plant={'bullet' if installed else 'mujoco_fallback'} robot=mini",
         "plant=rk4": "runner plant=rk4",
     }
-    assert compose(["robot=mini", "plant=mujoco_for_bullet"]).resolved["plant"]["in_place_of"] == "bullet"
+    assert compose(["robot=mini", "plant=mujoco_fallback"]).resolved["plant"]["in_place_of"] == "bullet"
 
 
 @pytest.mark.usefixtures("_missing")
