@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import Concatenate, Generic, Literal, ParamSpec, Protocol, TypeVar, runtime_checkable
 
 from runner.base.errors import ConfigError, RunnerError, nearest, told
+from runner.base.former_names import explain_value
 from runner.plugins.discovery import added, load
 from runner.schema.model import StrictModel
 
@@ -104,6 +105,8 @@ class Kinds:
         """
         modules = self._modules if kind in self._modules else self._plugins()
         if kind not in modules:
+            if former := explain_value(self.group, kind):
+                raise ConfigError([f"{self.group}.kind: {former}"])
             known = ", ".join(self.names()) or f"none, until a plug-in is named: --plugin {self.group}=FILE.py"
             raise ConfigError([f"{self.group}.kind: '{kind}' is unknown{nearest(kind, self.names())}; known: {known}"])
         return load(self.group, kind, modules[kind])

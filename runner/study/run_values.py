@@ -63,14 +63,8 @@ def clock(run: Run) -> FloatArray:
 
 
 def delay_of(run: Run) -> int:
-    """Return how late the commands of a run's last control loop act, without jitter, in ticks of the fastest loop.
-
-    Runs that were stored before `plant.computation` have `plant.command_delay`, in s.
-    """
-    plant, t = run.config["plant"], clock(run)
-    if "computation" not in plant:
-        return round(float(plant.get("command_delay", 0.0)) / float(t[1] - t[0]))
-    delay = plant["computation"]["delay"]
+    """Return how late the commands of a run's last control loop act, without jitter, in ticks of the fastest loop."""
+    delay = run.config["plant"].get("computation", {"delay": 0})["delay"]
     return int(list(delay.values())[-1] if isinstance(delay, Mapping) else delay)
 
 

@@ -10,6 +10,7 @@ from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 
 from runner.base.bounded_yaml import explain_yaml
 from runner.base.errors import ConfigError, nearest
+from runner.base.former_names import explain_value
 from runner.base.texts import VALUE, one_line, quoted
 from runner.config.compose.malformed import explain_parser
 from runner.config.compose.options import group_options
@@ -28,6 +29,8 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
     if isinstance(error, MissingConfigException) and error.missing_cfg_file:
         group, _, option = str(error.missing_cfg_file).partition("/")
         known = group_options(group, config_dirs)
+        if former := explain_value(group, option):
+            return ConfigError([f"{group}: {former}"])
         if known:
             return ConfigError([f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}"])
     if isinstance(error, OverrideParseException):

@@ -7,6 +7,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from runner.base.errors import nearest
+from runner.base.former_names import KEYS, explain_key
 from runner.base.texts import quoted
 from runner.config.compose.meanings import find_units, nested_model
 from runner.schema.model import StrictModel
@@ -31,11 +32,6 @@ _NUMBERS = {
 }
 _OF_NUMBERS = ("float_type", "int_type", "list_type", "value_error")
 
-_MOVED = {  # keys of before
-    "command_delay": "it is plant.computation.delay now, in ticks of the fastest loop",
-    "rotor_inertia": "it is armature now, and adds to the diagonal of the mass matrix alone",
-}
-
 
 def describe(group: str, model: type[StrictModel], error: ValidationError) -> Iterator[str]:
     """Yield one message for each problem that pydantic found in a group.
@@ -45,15 +41,26 @@ def describe(group: str, model: type[StrictModel], error: ValidationError) -> It
         model: The model that the group was checked against.
         error: What pydantic raised.
     """
-    seen = set()
-    for item in error.errors():
-        location = [
-            str(part) for part in item["loc"] if not str(part).startswith(("list[", "function-", "constrained"))
-        ]
-        key = ".".join([*([group] if group else []), *location])
+    items = [(*_locate(group, item["loc"]), dict(item)) for item in error.errors()]
+    renamed = {KEYS[key] for key, location, item in items if _is_renamed(model, key, location, item)}
+    seen = set(renamed)  # their values stand under the former keys
+    for key, location, item in items:
         if key not in seen:  # a union reports each of its branches
             seen.add(key)
-            yield f"{key}: {_explain(model, location, dict(item))}"
+            told = explain_key(key) if KEYS.get(key) in renamed else _explain(model, location, item)
+            yield f"{key}: {told}"
+
+
+def _locate(group: str, place: tuple[int | str, ...]) -> tuple[str, list[str]]:
+    """Return the dotted key of a problem, and its parts below the group."""
+    location = [str(part) for part in place if not str(part).startswith(("list[", "function-", "constrained"))]
+    return ".".join([*([group] if group else []), *location]), location
+
+
+def _is_renamed(model: type[StrictModel], key: str, location: list[str], item: dict[str, Any]) -> bool:
+    """Return True if a problem is the former name of a key that the model has."""
+    present = KEYS.get(key, "").rpartition(".")[2]
+    return item["type"] == "extra_forbidden" and present in _innermost(model, location).model_fields
 
 
 def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]) -> str:
@@ -64,8 +71,7 @@ def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]
         return explain_quantity(quantity, units.at([int(part) if part.isdecimal() else part for part in location]))
     if kind == "extra_forbidden":
         keys = [field.alias or name for name, field in _innermost(model, location).model_fields.items()]
-        moved = f" ({_MOVED[location[-1]]})" if location[-1] in _MOVED else nearest(location[-1], keys)
-        return f"unknown key{moved}; keys: {', '.join(keys)}"
+        return f"unknown key{nearest(location[-1], keys)}; keys: {', '.join(keys)}"
     if kind == "missing":
         return "missing"
     if kind == "literal_error":

@@ -134,15 +134,6 @@ def test_what_is_no_armature_is_refused(value, problem):
         checked("robot=xarm7", f"robot.armature={value}")
 
 
-def test_the_former_key_names_the_new_one(tmp_path):
-    with pytest.raises(ConfigError, match=r"armature"):
-        checked("robot=xarm7", "robot.rotor_inertia=0.1")
-    resolved = dict(compose(["robot=xarm7"]).resolved)
-    resolved["robot"] = {**resolved["robot"], "rotor_inertia": 0.1}
-    with pytest.raises(ConfigError, match=r"robot.rotor_inertia: unknown key \(it is armature now"):
-        validate(resolved)
-
-
 def test_an_arm_without_sets_says_so():
     with pytest.raises(ConfigError, match=r"no set 'assumed'; there is no macro.armature.yaml"):
         checked("robot=macro", "robot.armature=assumed")

@@ -99,10 +99,6 @@ def test_a_delay_counts_where_a_wall_is_judged(cli):
 @pytest.mark.parametrize(
     ("overrides", "message"),
     [
-        (
-            ("robot=macro", "plant.command_delay=0.01"),
-            "plant.command_delay: unknown key (it is plant.computation.delay now, in ticks of the fastest loop)",
-        ),
         (("robot=macro", "plant.computation.delay=0.5"), "plant.computation.delay: must be a whole number; found 0.5"),
         (("robot=xarm7", "plant.computation.delay=-1"), "plant.computation.delay: must be 0 or more; found -1"),
         (("robot=combined", "plant.computation.delay={macro: 1}"), "plant.computation.delay.mini: missing"),

@@ -1,0 +1,41 @@
+"""Former names of keys, options, commands and presets."""
+
+# This module goes with version 1.0, and so do its tests and the places that import it.
+
+KEYS: dict[str, str] = {
+    "plant.parts": "plant.segments",
+    "plant.least_inertia": "plant.min_inertia",
+    "plant.flexible_joints.braked": "plant.flexible_joints.brake_time",
+    "trajectory.start_posture": "trajectory.start_configuration",
+    "trajectory.goal_posture": "trajectory.goal_configuration",
+    "trajectory.postures": "trajectory.configurations",
+    "controller.acts": "controller.actuated_stages",
+    "controller.at": "controller.wrench_frame",
+    "controller.reading": "controller.force_source",
+    "controller.switching": "controller.switching_gain",
+    "controller.layer": "controller.boundary_layer",
+    "controller.adaptation": "controller.adaptation_gain",
+    "controller.cut_off": "controller.cutoff",
+    "environment.lasts": "environment.duration",
+    "environment.begin": "environment.start_time",
+    "environment.travel": "environment.displacement",
+}
+"""Present name of each former key of a config, both with their groups."""
+
+VALUES: dict[str, dict[str, str]] = {
+    "preset": {"sound": "full_equations"},
+    "environment": {"hand": "hand_guiding"},
+    "plant": {"mujoco_for_bullet": "mujoco_fallback"},
+}
+"""Present name of each former option, by config group."""
+
+
+def explain_key(key: str) -> str:
+    """Return a sentence with the present name of a former key."""
+    return f"this key is now called {KEYS[key]}."
+
+
+def explain_value(group: str, name: str) -> str | None:
+    """Return a sentence with the present name of a former option; None for any other name."""
+    present = VALUES.get(group, {}).get(name)
+    return f"'{name}' is now called '{present}'." if present else None
