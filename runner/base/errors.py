@@ -50,7 +50,7 @@ class ConfigError(RunnerError):
 
 
 class StoreError(RunnerError):
-    """A run folder, sweep folder or reference file that cannot be read or written."""
+    """A run folder, sweep folder or baseline that cannot be read or written."""
 
 
 class SimulationError(Exception):

@@ -29,6 +29,25 @@ VALUES: dict[str, dict[str, str]] = {
 }
 """Present name of each former option, by config group."""
 
+COMMANDS: dict[str, str] = {
+    "diff": "compare",
+}
+"""Present name of each former command."""
+
+OPTIONS: dict[str, str] = {
+    "--at-most": "--max-failure-probability",
+    "--at-once": "--jobs",
+    "--check": "--finite-differences",
+    "--html": "--output",
+    "--learn": "--save-baseline",
+    "--metric": "--metrics",
+    "--of": "--parameters",
+    "--outputs": "--output",
+    "--reference": "--baseline",
+    "--write": "--output",
+}
+"""Present name of each former option of commands."""
+
 
 def explain_key(key: str) -> str:
     """Return a sentence with the present name of a former key."""

@@ -2,9 +2,10 @@
 
 import argparse
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from runner.base.errors import RunnerError, nearest
+from runner.base.former_names import OPTIONS
 from runner.store.latest import Kind, find_folder
 
 
@@ -26,6 +27,11 @@ class Stored:
 def stored(*kinds: Kind) -> Stored:
     """Return the type of an argument that is the folder of something stored, of one of some kinds."""
     return Stored(kinds)
+
+
+def name_list(text: str) -> list[str]:
+    """Return the names of a list with commas."""
+    return [name.strip() for name in text.split(",") if name.strip()]
 
 
 class UsageError(RunnerError):
@@ -52,11 +58,19 @@ class Parser(argparse.ArgumentParser):
         super().__init__(prog=f"runner {command}", description=description, allow_abbrev=False)
 
     def _check_value(self, action: argparse.Action, value: object) -> None:
-        """Refuse a value that is none of an argument's choices, with the nearest of these."""
+        """Reject a value, or one of a list, that is not among an argument's choices, and name the nearest of these."""
         choices = [str(choice) for choice in action.choices or ()]
-        if choices and value not in choices:
-            name = "/".join(action.option_strings) or str(action.metavar)
-            raise RunnerError(f"{name}: no '{value}'{nearest(str(value), choices)}; allowed: {', '.join(choices)}")
+        for one in value if isinstance(value, list) else [value]:
+            if choices and one not in choices:
+                name = "/".join(action.option_strings) or str(action.metavar)
+                raise RunnerError(f"{name}: no '{one}'{nearest(str(one), choices)}; allowed: {', '.join(choices)}")
+
+    def _parse_optional(self, arg_string: str) -> Any:
+        """Reject the former name of one of the command's options, before any value is read."""
+        name = arg_string.partition("=")[0]
+        if OPTIONS.get(name) in self._option_string_actions and name not in self._option_string_actions:
+            raise RunnerError(f"{name} is now called {OPTIONS[name]}.")
+        return super()._parse_optional(arg_string)
 
     def error(self, message: str) -> NoReturn:
         """Raise what is wrong with the arguments.

@@ -1,9 +1,9 @@
-"""`runner check DIR [--reference FILE]`: do the metrics of a run or sweep lie where a spec or a reference has them?
+"""`runner check DIR [--baseline FILE]`: compare the metrics of a run or a sweep with a spec or a baseline.
 
-A run with a spec is checked by that where no reference is given: no repetition may break a bound, or with `--at-most P`
-the whole 95 % interval of the probability of failing has to lie below P.
+Without a baseline, a run with a spec is checked by the spec. No repetition may break a bound. With
+`--max-failure-probability P` the whole 95 % interval of the probability of failing must be below P.
 
-With `--learn FILE` a sweep becomes a reference itself; what moved since is told by `--reference FILE [--markdown]`.
+`--save-baseline FILE` writes the baseline of a sweep. `--baseline FILE [--markdown]` then lists what changed.
 """
 
 import argparse
@@ -25,7 +25,7 @@ _MOVE_COLUMNS = ("cell", "metric", "was", "is", "moved", "beyond the seeds' spre
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Check a run or sweep against a reference, or learn one."""
+    """Check a run or sweep against a baseline, or save one."""
     parser = Parser("check", __doc__)
     parser.add_argument(
         "folder",
@@ -34,40 +34,46 @@ def main(arguments: Sequence[str]) -> int:
         help="folder of a run or a sweep, or latest",
     )
     parser.add_argument(
-        "--reference",
+        "--baseline",
         type=Path,
         metavar="FILE",
-        help="reference file; default: the spec, or that of the experiment",
+        help="bands or a saved sweep; default: the spec, or the baseline of the experiment",
     )
     parser.add_argument(
-        "--at-most", type=_probability, metavar="P", help="probability of failing a bound of the spec that is allowed"
+        "--max-failure-probability",
+        type=_probability,
+        metavar="P",
+        help="highest allowed probability that a repetition breaks a bound of the spec",
     )
-    parser.add_argument("--learn", type=Path, metavar="FILE", help="write a reference of the whole sweep")
-    parser.add_argument("--markdown", action="store_true", help="tell what moved as a Markdown table")
+    parser.add_argument("--save-baseline", type=Path, metavar="FILE", help="write the baseline of a whole sweep")
+    parser.add_argument("--markdown", action="store_true", help="print the changes as a Markdown table")
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
     from runner.store.references import cell_names, learn, load_learned
 
-    if options.learn:
-        count = learn(store.open_sweep(options.folder), options.learn)
-        print(f"learned: {count} metrics of {options.folder} are now in {options.learn}")
+    if options.save_baseline:
+        count = learn(store.open_sweep(options.folder), options.save_baseline)
+        print(f"saved: {count} metrics of {options.folder} are now in {options.save_baseline}")
         return 0
-    learned = load_learned(options.reference) if options.reference else None
+    learned = load_learned(options.baseline) if options.baseline else None
     if learned is not None:
         return _check_sweep(store.open_sweep(options.folder), learned, options.markdown)
     if options.markdown:
-        parser.error("--markdown needs a reference of a sweep, made by --learn")
+        parser.error("--markdown needs the baseline of a sweep, made by --save-baseline")
     runs = store.open_runs(options.folder)
-    judged = options.reference is None and runs[0].spec is not None
-    if options.at_most is not None and not judged:
-        parser.error("--at-most needs a run with a spec, as by spec.metrics.settling_time.max=1.6, no --reference")
+    judged = options.baseline is None and runs[0].spec is not None
+    if options.max_failure_probability is not None and not judged:
+        parser.error(
+            "--max-failure-probability needs a run with a spec, as by spec.metrics.settling_time.max=1.6, "
+            "and no --baseline"
+        )
     if judged:
         from runner.cli.check_spec import check_spec
 
         cells = cell_names(store.open_sweep(options.folder)) if store.is_sweep(options.folder) else []
-        return check_spec(runs, cells, options.at_most)
-    return _check_bands(runs, options.reference)
+        return check_spec(runs, cells, options.max_failure_probability)
+    return _check_bands(runs, options.baseline)
 
 
 def _probability(text: str) -> float:
@@ -81,7 +87,7 @@ def _probability(text: str) -> float:
 
 
 def _check_sweep(sweep: "Sweep", learned: "Learned", markdown: bool) -> int:
-    """Print what moved since a sweep's reference was learned; return 1 where it is more than the seeds' spread."""
+    """Print what changed since a sweep's baseline was saved; return 1 if it is more than the seeds' spread."""
     from runner.store.references import find_moves
 
     moves = find_moves(sweep, learned)

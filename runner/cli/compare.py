@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
 from runner.base.quiet import quiet_environment
-from runner.cli.arguments import Parser, Stored
+from runner.cli.arguments import Parser, Stored, name_list
 from runner.recordings import is_bag
 from runner.schema.units import read_quantity
 
@@ -38,11 +38,11 @@ def main(arguments: Sequence[str]) -> int:
         metavar="DIR",
         help="runs, or sweeps; or latest; or a run and a recording, a CSV file or a ROS bag",
     )
-    parser.add_argument("--metrics", type=_names, metavar="NAME,NAME", help="compare these metrics alone")
+    parser.add_argument("--metrics", type=name_list, metavar="A,B", help="compare only these metrics")
     parser.add_argument("--by", metavar="AXIS", help="of one sweep: compare the levels of this axis")
     parser.add_argument(
         "--within",
-        type=_names,
+        type=name_list,
         metavar="AXIS,AXIS",
         help="within each level of these; default: over all others and within each",
     )
@@ -107,10 +107,6 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
     from runner.cli.compare_recording import print_recording
 
     print_recording(folders[0], recordings[0], options.columns, options.fill_gaps or 0.0)
-
-
-def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",") if name.strip()]
 
 
 def _seconds(text: str) -> float:

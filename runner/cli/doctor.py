@@ -1,9 +1,10 @@
-"""`runner doctor FILE [--tip FRAME] [--name NAME] [--write DIR] [--html DIR]`: does a robot of yours fit?
+"""`runner doctor FILE [--tip FRAME] [--name NAME] [-o DIR] [--format config,html]`: check if your robot fits.
 
-It prints one line for each thing found: `refused` bars the robot, `fixed` was changed in the copy that --write makes,
-with what it was and is, a `note` is good to know. `--write` makes a config folder with a robot's YAML and a copy of the
-URDF; an MJCF is copied as it is, or becomes a URDF where something is fixed. A robot whose links have no mass gets a
-config whose joints go where they are told. Exit codes: 0 it fits, 2 nothing can be written of it.
+It prints one line for each finding. `refused` bars the robot. `fixed` was changed in the copy that --output writes; the
+line has the old and the new value. A `note` is good to know. `--output` writes a config folder with the robot's YAML
+and a copy of its URDF. An MJCF is copied unchanged, or becomes a URDF if something is fixed. `--format html` writes
+report.html there instead, and `--format config,html` writes both. A robot whose links have no mass gets a config with
+joint position commands. Exit codes: 0 it fits, 2 no config can be written of it.
 """
 
 import os
@@ -14,7 +15,9 @@ from pathlib import Path
 from runner.base.errors import RunnerError
 from runner.base.quiet import quiet_environment
 from runner.base.texts import one_line
-from runner.cli.arguments import Parser
+from runner.cli.arguments import Parser, name_list
+
+_FORMATS = ("config", "html")
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -27,9 +30,17 @@ def main(arguments: Sequence[str]) -> int:
         "--package-path", action="append", default=[], type=Path, metavar="DIR",
         help="folder with the ROS packages of its meshes; again for more",
     )  # fmt: skip
-    parser.add_argument("--write", type=Path, metavar="DIR", help="make a config folder to start from")
-    parser.add_argument("--html", type=Path, metavar="DIR", help="write report.html there, with the robot drawn")
+    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="where to write; default: nothing is written")
+    parser.add_argument(
+        "--format",
+        type=name_list,
+        metavar="A,B",
+        choices=_FORMATS,
+        help="config: a config folder to start from (default); html: report.html, with the robot drawn",
+    )
     options = parser.parse_args(arguments)
+    if options.format and options.output is None:
+        parser.error("--format needs --output DIR")
     if not options.file.is_file():
         raise RunnerError(f"no file {options.file}")
     quiet_environment()
@@ -42,14 +53,15 @@ def main(arguments: Sequence[str]) -> int:
     print(one_line(f"{found.name}: {joints}, tip '{found.tip}'"))
     for finding in found.findings:
         print(one_line(str(finding)))
-    if options.html is not None:
+    folder, formats = options.output, options.format or ["config"]
+    if folder is not None and "html" in formats:
         from runner.reporting.doctor_report import doctor_document
         from runner.reporting.render import write_report
 
-        write_report(doctor_document(found), options.html, ("html",))
-        print(options.html)
-    if options.write is not None:
-        write_folder(found, options.write)
-        print(shlex.join(["runner", "--config-dir", str(options.write), f"robot={found.name}"]))
-        print(options.write)
+        write_report(doctor_document(found), folder, ("html",))
+    if folder is not None and "config" in formats:
+        write_folder(found, folder)
+        print(shlex.join(["runner", "--config-dir", str(folder), f"robot={found.name}"]))
+    if folder is not None:
+        print(folder)
     return 2 if found.arm is None else 0

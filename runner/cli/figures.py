@@ -40,7 +40,9 @@ def main(arguments: Sequence[str]) -> int:
         metavar="DIR",
         help="a run, sweep or tuning; a work; or latest",
     )
-    parser.add_argument("--output", type=Path, metavar="FOLDER", help="where to write; figures/ beside the report")
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="DIR", help="where to write; default: figures/ in the report's folder"
+    )
     parser.add_argument("--width", default="single", metavar="W", help="single (88 mm), double (180 mm) or millimetres")
     parser.add_argument("--only", metavar="NAME", help="one figure, or those whose names begin so")
     options = parser.parse_args(arguments)
@@ -93,7 +95,7 @@ def _document(path: Path) -> "tuple[Document, Path]":
 
 
 def _of_work(name: str, outputs: Path) -> "tuple[Document, Path]":
-    folder, mend = outputs / "reports" / name, f"`runner reproduce {name} --outputs {outputs}` makes"
+    folder, mend = outputs / "reports" / name, f"`runner reproduce {name} --output {outputs}` makes"
     if not folder.is_dir():
         raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
     from runner.study.making import count_missing, make_all

@@ -105,7 +105,7 @@ def _printed(claim: "PublishedClaim") -> str:
     return f": {' to '.join(f'{value:g}' for value in claim.printed)} {claim.unit}" if claim.printed else ""
 
 
-def _list_references(_: Sequence[Path]) -> dict[str, str]:
+def _list_baselines(_: Sequence[Path]) -> dict[str, str]:
     from runner.store.references.shipped import described_references
 
     return described_references()
@@ -125,7 +125,7 @@ TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
     "plants": _list_plants,
     "metrics": _list_metrics,
     "claims": _list_claims,
-    "references": _list_references,
+    "baselines": _list_baselines,
     "works": _list_works,
 }
 """What can be listed: each gives names and one-line descriptions."""

@@ -9,10 +9,11 @@ import os
 import shlex
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NoReturn
 
 from runner.base.errors import DISK_FULL, RunnerError, nearest, told, unwritten, user_place
+from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import shown
 from runner.base.texts import one_line
 from runner.cli.completion import answer, is_asked
@@ -20,9 +21,10 @@ from runner.cli.completion import answer, is_asked
 HELP = """\
 runner: config-driven experiments for robot-arm control, with reports
 
-  runner robot=macro trajectory=goal             one run; its key metrics, and as the last line its folder
+  runner [run] robot=macro trajectory=goal       one run; its key metrics, and as the last line its folder
   runner -m robot=macro,mini noise.position=1e-4,1e-3
-                                                 a sweep over every combination; again, it makes what is missing
+                                                 a sweep over every combination, also `runner sweep ...`; again, it
+                                                 makes what is missing
   runner status DIR                              how far a sweep is
   runner tune OVERRIDES --minimize METRIC        choose numbers, as in controller.period="interval(0.005,0.05)"
   runner reproduce [thesis|xarm7|meca500|audit|all|FOLDER]
@@ -32,10 +34,11 @@ runner: config-driven experiments for robot-arm control, with reports
                                                  a sweep as one table, or a table for a paper
   runner figures DIR [--width single|double|MM]  each figure of a report as SVG, PDF and CSV
   runner verify [DIR]                            is all in an outputs folder as it was written?
-  runner check DIR [--reference FILE]            is every metric inside its reference band? --learn a sweep's
+  runner check DIR [--baseline FILE]             compare every metric with a baseline; --save-baseline FILE writes that
+                                                 of a sweep
   runner compare A B...                          runs or sweeps side by side: what differs, every metric in pairs;
                                                  compare SWEEP --by controller: the levels of an axis
-  runner sensitivity RUN [--metric NAME] [--of gains|masses|lengths|...] [--check]
+  runner sensitivity RUN [--metrics A,B] [--parameters gains,masses,...] [--finite-differences]
                                                  which parameter a run's metrics depend on most, by exact derivatives
   runner work new FOLDER                         write a first work of your own, to reproduce another paper;
                                                  check FOLDER looks through it, diff OLD NEW compares two makings
@@ -43,12 +46,12 @@ runner: config-driven experiments for robot-arm control, with reports
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,
                                                  --gravity
-  runner doctor FILE [--tip FRAME] [--name NAME] [--write DIR] [--html DIR]
+  runner doctor FILE [--tip FRAME] [--name NAME] [-o DIR] [--format config,html]
                                                  does a robot of yours fit, what to mend, and a config to start from
   runner example DIR                             copy the examples: an arm, a controller, a paper, a notebook
   latest                                         in place of a DIR: the run, sweep, tuning or report made or found last
   runner list [robots|controllers|trajectories|experiments|plants|environments|wrist_sensors|mismatch|noise|presets|
-               torque_limits|calibrations|metrics|claims|references|works]
+               torque_limits|calibrations|metrics|claims|baselines|works]
 
   runner --cfg job [OVERRIDES]                   show the composed config without running it
   runner --config-dir DIR OVERRIDES              take YAML and URDFs from your own folder, too
@@ -79,6 +82,8 @@ COMMANDS = (
     "calibrate", "audit", "benchmark",
     "doctor", "list", "work", "example",
 )  # fmt: skip
+SPELLED_OUT: Mapping[str, Sequence[str]] = {"run": (), "sweep": ("-m",)}
+"""Words before overrides that name what overrides make, with the flags that each stands for."""
 
 
 def main() -> None:
@@ -177,9 +182,10 @@ def _choose(arguments: Sequence[str]) -> int:
         return 0
     if first in COMMANDS:
         return _command(first, arguments[1:])
-    if first == "run":
-        overrides = shlex.join(arguments[1:]) or "robot=macro"
-        raise RunnerError(f"there is no command 'run': a run is started by overrides alone: `runner {overrides}`")
+    if first in SPELLED_OUT:
+        return _run([*SPELLED_OUT[first], *arguments[1:]])
+    if first in FORMER_COMMANDS:
+        raise RunnerError(f"{first} is now called {FORMER_COMMANDS[first]}.")
     if len(arguments) > 1 and arguments[1].startswith("=") and "=" not in first:
         given = "".join(arguments[1:3]) if arguments[1] == "=" else arguments[1]
         raise RunnerError(f"an override has no spaces beside its '=': `runner {shlex.join([first + given])}`")

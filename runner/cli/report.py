@@ -1,4 +1,4 @@
-"""`runner report DIR... [--html] [--pdf] [--metric NAME]`: a report from stored runs, a sweep, or several compared."""
+"""`runner report DIR... [--html] [--pdf] [--metrics A,B]`: a report from stored runs, a sweep, or several compared."""
 
 import hashlib
 import os
@@ -10,7 +10,7 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.progress.stages import READING, SOON, of_report
 from runner.base.quiet import quiet_environment
-from runner.cli.arguments import Parser, stored
+from runner.cli.arguments import Parser, name_list, stored
 from runner.config.compose.user_settings import outputs_dir
 from runner.store.latest import note
 
@@ -31,12 +31,16 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--html", action="store_true", help="only HTML (with --pdf: both)")
     parser.add_argument("--pdf", action="store_true", help="only PDF (with --html: both)")
     parser.add_argument(
-        "--metric", action="append", default=[], metavar="NAME", help="what a sweep is compared by; the first ranks it"
+        "--metrics",
+        type=name_list,
+        default=[],
+        metavar="A,B",
+        help="metrics by which a sweep is compared; the first ranks it",
     )
     options = parser.parse_args(arguments)
     quiet_environment()
     formats = [name for name in ("html", "pdf") if getattr(options, name)] or ["html", "pdf"]
-    print(write(options.folders, options.metric, formats))
+    print(write(options.folders, options.metrics, formats))
     return 0
 
 
@@ -80,7 +84,7 @@ def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> "tup
         what = "a tuning has a report of its own" if any(tunings) else "runs and sweeps have no report together"
         raise RunnerError(f"{what}; give runs alone, sweeps alone, or one folder")
     if metrics and (any(tunings) or not all(sweeps)):
-        raise RunnerError("--metric is for the report on sweeps")
+        raise RunnerError("--metrics is for the report on sweeps")
     reports = _outputs(folders[0]) / "reports"
     of_sweeps = _of_sweep if len(sweeps) == 1 else _of_sweeps
     make = _of_tuning if any(tunings) else of_sweeps if all(sweeps) else _of_runs

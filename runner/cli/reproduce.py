@@ -65,7 +65,9 @@ def main(arguments: Sequence[str]) -> int:
     parser = Parser("reproduce", __doc__)
     parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(works)}, all or a folder")
     parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as hydra.sweeper.workers=1")
-    parser.add_argument("--outputs", type=Path, default=outputs_dir(), help="folder of runs and reports")
+    parser.add_argument(
+        "-o", "--output", type=Path, default=outputs_dir(), metavar="DIR", help="where to write runs and reports"
+    )
     parser.add_argument("--check", action="store_true", help="exit 1 where a finding fell or a caveat is unexpected")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings, caveats, numbers")
     parser.add_argument("--profile", default="", metavar="P", help="a smaller or larger making that work.yaml names")
@@ -79,7 +81,7 @@ def main(arguments: Sequence[str]) -> int:
     quiet_environment()
     plugins = [word for text in named() for word in ("--plugin", text)]
     command = shlex.join(["runner", *plugins, "reproduce", *arguments])
-    way = _Way(options.outputs, options.overrides, command, options.profile, options.code, _parts(options.work))
+    way = _Way(options.output, options.overrides, command, options.profile, options.code, _parts(options.work))
     made = dict(_reproduce(work, way) for work in _chosen(options.work, way))
     if options.json is not None:
         _write_conclusions(made, options.json)

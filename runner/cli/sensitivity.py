@@ -12,7 +12,7 @@ import numpy as np
 
 from runner.base import progress
 from runner.base.quiet import quiet_environment
-from runner.cli.arguments import Parser, stored
+from runner.cli.arguments import Parser, name_list, stored
 from runner.cli.columns import aligned, number
 
 if TYPE_CHECKING:
@@ -34,13 +34,16 @@ def main(arguments: Sequence[str]) -> int:
     """Print a table for each metric; return 1 where differences disagree."""
     parser = Parser("sensitivity", __doc__)
     parser.add_argument("run", type=stored("run"), metavar="RUN", help="folder of a run, or latest")
-    parser.add_argument("--metric", action="append", metavar="NAME", help="which metric; again for the next one")
+    parser.add_argument("--metrics", type=name_list, metavar="A,B", help="which metrics; default: the main ones")
     parser.add_argument(
-        "--of", action="append", metavar="GROUP", choices=_GROUPS, help=f"which parameters: {', '.join(_GROUPS)}; again"
-        " for the next"
-    )  # fmt: skip
+        "--parameters",
+        type=name_list,
+        metavar="A,B",
+        choices=_GROUPS,
+        help=f"groups of parameters: {', '.join(_GROUPS)}; default: all",
+    )
     parser.add_argument("--repetition", type=int, default=0, metavar="N", help="which repetition (0)")
-    parser.add_argument("--check", action="store_true", help="compare with central differences")
+    parser.add_argument("--finite-differences", action="store_true", help="compare with central differences")
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
@@ -48,17 +51,17 @@ def main(arguments: Sequence[str]) -> int:
 
     run = store.open_run(options.run)
     progress.begin("differentiating", total=None, unit="parameters")
-    found = of_run(run, options.of or _GROUPS, options.repetition)
-    names = options.metric or [name for name in _SHOWN if name in found.metrics]
+    found = of_run(run, options.parameters or _GROUPS, options.repetition)
+    names = options.metrics or [name for name in _SHOWN if name in found.metrics]
     for name in names:
         check_smooth(name, found.metrics)
-    compared = differences(found, names) if options.check else {}
+    compared = differences(found, names) if options.finite_differences else {}
     print(_about(run, found))
     for name in names:
         print(f"\n{name}: {number(found.metrics[name])} {_unit(name)}")
         print(aligned(_rows(found, name, compared.get(name))))
     print(*_notes(found), sep="\n")
-    return _compare(found, compared) if options.check else 0
+    return _compare(found, compared) if options.finite_differences else 0
 
 
 def _about(run: "Run", found: "Sensitivity") -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError, StoreError
 from runner.base.quiet import quiet_environment
 from runner.base.texts import one_line
-from runner.cli.arguments import Parser, stored
+from runner.cli.arguments import Parser, name_list, stored
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -31,13 +31,13 @@ def main(arguments: Sequence[str]) -> int:
         "folder", type=stored("sweep", "run", "tuning"), metavar="DIR", help="folder of a sweep or run, or latest"
     )
     parser.add_argument("--format", metavar="FORMAT", choices=FORMATS, help=", ".join(FORMATS))
-    parser.add_argument("--metrics", type=_names, metavar="A,B", help="which metrics")
-    parser.add_argument("--by", type=_names, metavar="A,B", help="a row for each combination of these axes")
+    parser.add_argument("--metrics", type=name_list, metavar="A,B", help="which metrics")
+    parser.add_argument("--by", type=name_list, metavar="A,B", help="a row for each combination of these axes")
     parser.add_argument(
         "--where", action="append", default=[], metavar="KEY=VALUE", help="only the cells with this value; again for "
         "the next"
     )  # fmt: skip
-    parser.add_argument("--output", type=Path, metavar="FILE", help="in place of standard output")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="write to a file instead of standard output")
     options = parser.parse_args(arguments)
     chosen = _format(options)
     quiet_environment()
@@ -58,10 +58,6 @@ def main(arguments: Sequence[str]) -> int:
 
     frame = selection(measurements, options.metrics, options.by, options.where)
     return _put(as_parquet(frame, measurements) if chosen == "parquet" else as_csv(frame), options.output)
-
-
-def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",") if name.strip()]
 
 
 def _format(options: "Namespace") -> str:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from runner.sweeps.tuning.study import Tuning
 
 _TRIALS = 100
-_AT_ONCE = 4
+_JOBS = 4
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -42,11 +42,12 @@ def main(arguments: Sequence[str]) -> int:
         )
     parser.add_argument("--trials", type=_count, default=_TRIALS, metavar="N", help=f"in all; default {_TRIALS}")
     parser.add_argument(
-        "--at-once",
+        "-j",
+        "--jobs",
         type=_count,
-        default=_AT_ONCE,
+        default=_JOBS,
         metavar="N",
-        help=f"trials under way at once, at least as many as processes; default {_AT_ONCE}",
+        help=f"number of trials that run at once, at least as many as processes; default {_JOBS}",
     )
     parser.add_argument("--config-dir", type=Path, action="append", default=[], metavar="DIR", help="of your own YAML")
     options = parser.parse_intermixed_args(arguments)
@@ -67,7 +68,7 @@ def main(arguments: Sequence[str]) -> int:
         options.overrides,
         [Objective(metric, direction) for direction, metric in objectives],
         options.trials,
-        options.at_once,
+        options.jobs,
         shlex.join(["runner", "tune", *arguments]),
         options.config_dir,
     )

@@ -1,7 +1,7 @@
 """`runner verify [DIR]`: is everything in an outputs folder as it was written?
 
 A digest finds accidents, as a flipped bit or half a file; it does not find forgery. Reports are made from what is
-stored and have none; references and claims are edited by people.
+stored and have none; baselines and claims are edited by people.
 """
 
 from collections import Counter

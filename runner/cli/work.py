@@ -32,7 +32,7 @@ def main(arguments: Sequence[str]) -> int:
     new.add_argument("folder", type=Path, metavar="DIR", help="a folder that is not there yet, or empty")
     check = actions.add_parser("check", help="look through a work")
     check.add_argument("work", metavar="DIR", help="the work's folder, or the name of an installed one")
-    check.add_argument("--outputs", type=Path, default=outputs_dir(), help="folder of runs")
+    check.add_argument("-o", "--output", type=Path, default=outputs_dir(), metavar="DIR", help="where to write runs")
     check.add_argument("--code", action="store_true", help="run the Python of DIR")
     diff = actions.add_parser("diff", help="what changed between two makings")
     diff.add_argument("old", type=Path, metavar="OLD", help="file or folder of the earlier making")
@@ -63,7 +63,7 @@ def _check(options: Namespace) -> int:
     from runner.study.work import load_work
 
     work = load_work(options.work, options.code)
-    runs, calibrations = make_all(work, options.outputs)
+    runs, calibrations = make_all(work, options.output)
     found = [*problems(work, runs, calibrations)]
     for line in found:
         print(one_line(line))

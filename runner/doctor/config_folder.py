@@ -36,7 +36,7 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
         RunnerError: if something bars the arm, one of the files is there already, or they cannot be written.
     """
     if examination.arm is None:
-        raise RunnerError("--write: nothing was written: first correct what is refused above")
+        raise RunnerError("--output: nothing was written: first correct what is refused above")
     model, start = examination.arm.model, examination.arm.start
     name = examination.name
     format, arm = _arm_files(examination, name)
@@ -61,14 +61,14 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
     files |= {folder / "robots" / file: content for file, content in arm.items()}
     there = [str(path) for path in files if path.exists()]
     if there:
-        raise RunnerError(f"--write: {', '.join(there)} is there already; choose another folder, or remove it")
+        raise RunnerError(f"--output: {', '.join(there)} is there already; choose another folder, or remove it")
     try:
         for path, content in files.items():
             write_atomically(path, content)
     except StoreError as error:
         for path in filter(Path.is_file, files):
             path.unlink()
-        raise RunnerError(f"--write: {error}; nothing was written") from error
+        raise RunnerError(f"--output: {error}; nothing was written") from error
     return list(files)
 
 

@@ -143,7 +143,7 @@ def _left_out(mjcf: Mjcf) -> list[Finding]:
 def _taken(dynamics: FileDynamics, model: RobotModel) -> list[Finding]:
     """Return what the config takes from the file beside masses."""
     return [
-        Finding("note", what, by_value(values, model.joint_names), f"--write gives it by {key}")
+        Finding("note", what, by_value(values, model.joint_names), f"--output gives it by {key}")
         for what, key, values in dynamics.by_key()
         if values.any()
     ]

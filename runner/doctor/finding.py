@@ -16,8 +16,8 @@ class Finding:
     """One observation with what was or can be done about it.
 
     Attributes:
-        grade: "refused": the runner cannot take the arm so; "fixed": it was changed in the copy that --write makes;
-            "note": good to know.
+        grade: "refused": the runner cannot take the arm so; "fixed": it was changed in the copy that --output
+            makes; "note": good to know.
         place: The link or joint, or what was looked at.
         text: What was found; of what is fixed, as it was.
         remedy: What to do about it, or what was done; "" where nothing needs doing.

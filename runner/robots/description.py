@@ -152,7 +152,7 @@ def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
     """Return joints that move with another, or beside it: a robot is a serial arm, or several, each with its file."""
     chain = tree.chain
     beside = sorted(name for name, joint in tree.joints.items() if moves(joint) and name not in chain)
-    held = "`runner doctor FILE --tip FRAME --write DIR` holds fixed what does not move the tip"
+    held = "`runner doctor FILE --tip FRAME --output DIR` holds fixed what does not move the tip"
     if beside:
         return [
             f"robot.urdf: {path} branches: {', '.join(beside)} move beside {', '.join(sorted(chain))}; allowed: a "

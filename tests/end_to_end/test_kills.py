@@ -80,7 +80,7 @@ def test_a_tuning_that_is_killed_ends_as_if_it_had_not_been(tuned, tmp_path, gat
     """After two lines in the journal, where the command makes the runs and where a process of its own does."""
     whole = tuned(trials=12)
     overrides = (*SHORT, f"outputs={tmp_path}/killed", FREQUENCY, DAMPING)
-    options = ("--minimize=peak_torque", "--trials=12", "--at-once=3")
+    options = ("--minimize=peak_torque", "--trials=12", "--jobs=3")
     for workers in (0, 1):
         words = ("tune", *overrides, *options, f"hydra.sweeper.workers={workers}")
         killed(gate.command("runner.sweeps.tuning.journal:Journal.append", 2, *words))

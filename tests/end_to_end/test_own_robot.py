@@ -52,7 +52,7 @@ def test_the_check_is_good_and_its_run_as_stored_by_the_users_parts(place, tmp_p
     place = (shutil.copytree(place[0], tmp_path / "own_robot", ignore=shutil.ignore_patterns("outputs")), place[1])
     ending = call(place, "./check.sh")
     assert (ending.returncode, without_caveats(without_results(ending.stderr))) == (0, "")
-    assert ending.stdout == "good: 4 metrics of 1 run lie in the bands of reference.yaml\n"
+    assert ending.stdout == "good: 4 metrics of 1 run lie in the bands of baseline.yaml\n"
     (folder,) = (place[0] / "outputs" / "runs").iterdir()
     run = runner.open_run(folder)
     assert run.config["robot"]["name"] == "lamp"

@@ -23,7 +23,7 @@ for folder in (Path(runner.__file__).parent, conf_dir(), robots_dir(), templates
     assert folder.is_relative_to(site), folder
 assert (Path(runner.__file__).parent / "py.typed").is_file()
 assert (templates_dir() / "report.html.j2").is_file()
-assert dispatch(["list", "references"]) == 0
+assert dispatch(["list", "baselines"]) == 0
 assert dispatch(["list", "claims"]) == 0
 sys.exit(dispatch(["robot=macro", "duration=0.05"]))
 """

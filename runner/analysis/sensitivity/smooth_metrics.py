@@ -69,8 +69,8 @@ def check_smooth(name: str, known: Mapping[str, object]) -> None:
     why = next((reason for base, reason in WITHOUT.items() if f"_{base}_" in f"_{name}_"), None)
     have = f"metrics with one: {', '.join(known)}"
     if why is None:
-        raise RunnerError(f"--metric: no '{name}'{nearest(name, known)} with a derivative; {have}")
-    raise RunnerError(f"--metric: {name} has no derivative: {why}; it is not approximated; {have}")
+        raise RunnerError(f"--metrics: no '{name}'{nearest(name, known)} with a derivative; {have}")
+    raise RunnerError(f"--metrics: {name} has no derivative: {why}; it is not approximated; {have}")
 
 
 def _of_tip(trace: Trace, tip: FloatArray, context: MetricContext) -> dict[str, FloatArray]:

@@ -7,7 +7,7 @@ from runner.cli.completion.arguments import argument_words
 from runner.cli.completion.line import Line
 from runner.cli.completion.overrides import override_words
 from runner.cli.completion.places import files
-from runner.cli.main import COMMANDS, HELP
+from runner.cli.main import COMMANDS, HELP, SPELLED_OUT
 
 _ROOTS = {"calibrate": "calibrate"}  # commands whose config hangs on another file of conf/ than that of a run
 _FLAG = re.compile(r"^  runner (--?[\w-]+)(?: ([a-z]+)(?= ))?", re.MULTILINE)  # in HELP, as `--cfg job`
@@ -34,7 +34,7 @@ def _run_words(line: Line) -> Iterator[str]:
     flags = dict(_FLAG.findall(HELP))
     before = line.words[-1] if line.words else ""
     if not line.words:
-        yield from (*COMMANDS, "--help", "--version")
+        yield from (*COMMANDS, *SPELLED_OUT, "--help", "--version")
     if flags.get(before):
         yield flags[before]
     elif before == "--config-dir":

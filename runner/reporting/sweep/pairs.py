@@ -39,7 +39,7 @@ def section(subject: Subject) -> Section | None:
         return None
     text = (
         "The cells of a pair differ in one axis alone, and in what goes with it (Also differs). "
-        f"{EXPLAINED} The option --metric compares by other metrics."
+        f"{EXPLAINED} The option --metrics compares by other metrics."
     )
     return Section("Compared in pairs", [Text(text)], sections)
 

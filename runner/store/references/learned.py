@@ -1,4 +1,4 @@
-"""A reference learned from a whole sweep: each metric of each cell, with its spread over the seeds."""
+"""The baseline of a whole sweep: each metric of each cell, with its spread over the seeds."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -51,7 +51,7 @@ class Move:
     Attributes:
         cell: Overrides that tell the cell from others.
         metric: Name of the metric; empty where the whole cell is meant.
-        was: What the reference holds; None where it holds none.
+        was: What the baseline holds; None where it holds none.
         value: Its median now; None where there is none.
         remark: What happened to the whole cell, as its failure; empty for a moved metric.
         beyond: Whether it is more than the seeds' spread.
@@ -66,7 +66,7 @@ class Move:
 
 
 def learn(sweep: Sweep, path: Path) -> int:
-    """Write the reference of a sweep; return its number of metrics.
+    """Write the baseline of a sweep; return its number of metrics.
 
     Raises:
         StoreError: if a run of the sweep is missing or failed, or the file cannot be written.
@@ -74,16 +74,16 @@ def learn(sweep: Sweep, path: Path) -> int:
     cells: dict[str, dict[str, Any]] = {}
     for cell, run in zip(cell_names(sweep), sweep.runs(), strict=True):
         if run.failure is not None:
-            raise StoreError(f"cannot learn from a failed run: [{cell}] {run.failure_text}")
+            raise StoreError(f"a failed run cannot be in a baseline: [{cell}] {run.failure_text}")
         cells[cell] = {name: _spread(run, metric).model_dump() for name, metric in run.metrics.items()}
     text = yaml.dump({"schema": SCHEMA, "cells": cells}, sort_keys=False, width=120, Dumper=yaml.CSafeDumper)
-    head = f"# What each cell gave, over its seeds; made by `runner check DIR --learn {path.name}` after\n"
+    head = f"# What each cell gave, over its seeds; made by `runner check DIR --save-baseline {path.name}` after\n"
     write_atomically(path, f"{head}# {escaped(sweep.command)}\n{text}".encode())
     return sum(map(len, cells.values()))
 
 
 def load_learned(path: Path) -> Learned | None:
-    """Read the reference of a sweep, or return None where a file holds no cells: it is a reference of another kind.
+    """Read the baseline of a sweep, or return None if a file holds no cells: it is a baseline of another kind.
 
     Raises:
         StoreError: if it cannot be read or is damaged; lists all its problems.
@@ -91,9 +91,9 @@ def load_learned(path: Path) -> Learned | None:
     try:
         content = read_yaml(read_text(path, _BOUNDS.size), path, _BOUNDS)
     except YamlError as error:
-        raise StoreError(f"reference file {error}") from error
+        raise StoreError(f"baseline {error}") from error
     except (OSError, ValueError) as error:
-        raise StoreError(f"cannot read the reference file {path}: {error}") from error
+        raise StoreError(f"cannot read the baseline {path}: {error}") from error
     if not isinstance(content, dict) or "cells" not in content:
         return None
     problems: list[str] = []
@@ -111,12 +111,12 @@ def load_learned(path: Path) -> Learned | None:
     if not any(learned.values()):
         problems.append("cells: must hold the metrics of at least one cell")
     if problems:
-        raise StoreError("\n".join([f"{path} is no valid reference:", *(f"  - {problem}" for problem in problems)]))
+        raise StoreError("\n".join([f"{path} is not a valid baseline:", *(f"  - {problem}" for problem in problems)]))
     return learned
 
 
 def find_moves(sweep: Sweep, learned: Learned) -> list[Move]:
-    """Return all that moved between a reference and a sweep, cell by cell.
+    """Return all that changed between a baseline and a sweep, cell by cell.
 
     Raises:
         StoreError: if a run of the sweep is missing or damaged.

@@ -1,4 +1,4 @@
-"""A reference: a band for each metric, with the reason for its width."""
+"""A baseline: a band for each metric, with the reason for its width."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -34,7 +34,7 @@ class Band(Bound):
 
 @dataclass(frozen=True)
 class Reference:
-    """A checked reference file.
+    """A checked baseline.
 
     Attributes:
         name: Its name or path, for messages.
@@ -63,14 +63,14 @@ class Finding:
 
 
 def load_reference(path: Path, name: str | None = None) -> Reference:
-    """Read a reference file, `{schema: 1, metrics: {NAME: {min:, max:, reason:}}}`.
+    """Read a baseline, `{schema: 1, metrics: {NAME: {min:, max:, reason:}}}`.
 
     Args:
         path: The file.
         name: What messages call it; None is its path.
 
     Raises:
-        StoreError: if it cannot be read or is no reference; lists all its problems.
+        StoreError: if it cannot be read or is not a baseline; lists all its problems.
     """
     # Read as the configs are: 1e-3 is a number, a key given twice an error.
     from runner.base.bounded_yaml import STORED, YamlError, check_yaml, explain_yaml
@@ -79,20 +79,20 @@ def load_reference(path: Path, name: str | None = None) -> Reference:
         check_yaml(read_text(path, STORED.size), path, STORED)
         content = OmegaConf.to_container(OmegaConf.load(path), resolve=False)
     except YamlError as error:
-        raise StoreError(f"reference file {error}") from error
+        raise StoreError(f"baseline {error}") from error
     except yaml.YAMLError as error:
-        raise StoreError(f"reference file {explain_yaml(error, path)}") from error
+        raise StoreError(f"baseline {explain_yaml(error, path)}") from error
     except (OSError, ValueError, OmegaConfBaseException) as error:
-        raise StoreError(f"cannot read the reference file {path}: {error}") from error
+        raise StoreError(f"cannot read the baseline {path}: {error}") from error
     bands: dict[str, Band] = {}
     problems = list(_check_content(content, bands))
     if problems:
-        raise StoreError("\n".join([f"{path} is no valid reference:", *(f"  - {problem}" for problem in problems)]))
+        raise StoreError("\n".join([f"{path} is not a valid baseline:", *(f"  - {problem}" for problem in problems)]))
     return Reference(name or str(path), bands)
 
 
 def check_run(run: "Run", reference: Reference) -> list[Finding]:
-    """Compare the medians of a run with a reference; every metric of a failed run falls short."""
+    """Compare the medians of a run with a baseline; every metric of a failed run falls short."""
     findings = []
     for metric, band in reference.bands.items():
         value = run.metrics.get(metric, {}).get("median")
@@ -102,7 +102,7 @@ def check_run(run: "Run", reference: Reference) -> list[Finding]:
 
 
 def _check_content(content: Any, bands: dict[str, Band]) -> Iterator[str]:
-    """Yield the problems of a reference file's content; put its bands into `bands`."""
+    """Yield the problems of a baseline's content; put its bands into `bands`."""
     if not isinstance(content, dict):
         yield "must hold schema and metrics"
         return

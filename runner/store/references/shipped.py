@@ -1,4 +1,4 @@
-"""The references that come with the package, one for each published experiment and preset."""
+"""The baselines that come with the package, one for each published experiment and preset."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -29,7 +29,7 @@ def described_references() -> dict[str, str]:
 
 
 def find_shipped(run: "Run") -> Reference:
-    """Return the reference for the experiment and preset that a run was composed from.
+    """Return the baseline for the experiment and preset that a run was composed from.
 
     Raises:
         RunnerError: if there is none; says where those there are stand.
@@ -40,13 +40,13 @@ def find_shipped(run: "Run") -> Reference:
     if name not in known:
         what = f"'{name}'{nearest(name, known)}" if choices.get("experiment") else "a run without an experiment"
         raise RunnerError(
-            f"{run.folder}: no reference comes with the runner for {what}; give one by --reference FILE, which --learn "
-            f"FILE makes of a sweep; `runner list references` tells the {len(known)} that come with it"
+            f"{run.folder}: no baseline comes with the runner for {what}; give one by --baseline FILE, which "
+            f"--save-baseline FILE makes of a sweep; `runner list baselines` prints the {len(known)} that come with it"
         )
     return load_reference(reference_path(name), name)
 
 
 def reference_path(name: str) -> Path:
-    """Return the file of a reference, such as "thesis/figure_3_5.full_equations", whether it is there or not."""
+    """Return the file of a baseline, such as "thesis/figure_3_5.full_equations", whether it is there or not."""
     work, _, file = name.partition("/")
     return works_dir() / work / _FOLDER / f"{file}.yaml"

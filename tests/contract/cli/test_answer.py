@@ -12,9 +12,9 @@ from runner.cli.completion import answer, is_asked
 LINES = (
     "", "r", "robot", "robot=", "robot=macro,", "robot=nosuch ", "robot=nosuch controller.", "controller..", ".", "=",
     "==", "=,", "-", "--", "-m", "-m ", "-m robot=macro,mini", "--nosuch ", "nosuch ", "nosuch --", "report ",
-    "report --metric ", "report nosuch ", "table nosuch --", "status ", "list ", "list nosuch ", "tune ", "tune --min",
+    "report --metrics ", "report nosuch ", "table nosuch --", "status ", "list ", "list nosuch ", "tune ", "tune --min",
     "tune --minimize", "tune --minimize ", "tune --trials x ", "tune --trials", "work ", "work nosuch ", "work new ",
-    "work check nosuch --", "check --reference ", "diff a b c ", "reproduce ", "reproduce nosuch ", "doctor nosuch ",
+    "work check nosuch --", "check --baseline ", "run a", "sweep ", "reproduce ", "reproduce nosuch ", "doctor nosuch ",
     "audit --tip ", "calibrate calibration=", "calibrate nosuch=", "--plugin ", "--plugin nosuch=", "--plugin=",
     "--plugin controller=nosuch.py controller=", "--plugin controller ", "--config-dir ", "--config-dir nosuch robot=",
     "--config-dir bad robot=", "--config-dir bad robot=broken robot.", "--config-dir bad robot=code robot.",
@@ -63,8 +63,8 @@ def test_names_that_a_shell_would_carry_out_are_left_out(tmp_path, monkeypatch, 
 def test_fish_takes_a_word_a_line(monkeypatch, capsys):
     tab("list rob", monkeypatch, ("-sc", "query=fish"))
     assert capsys.readouterr().out == "robots\n"
-    tab("list r", monkeypatch, ("-sc", "query=fish"))
-    assert capsys.readouterr().out == "references\nrobots\n"
+    tab("list p", monkeypatch, ("-sc", "query=fish"))
+    assert capsys.readouterr().out == "plants\npresets\n"
 
 
 def test_a_fault_of_ours_is_no_words(monkeypatch, capfd):

@@ -1,4 +1,4 @@
-"""`runner check` of runs and sweeps against references: bands, and what is refused."""
+"""`runner check` of runs and sweeps against baselines: bands, and what is refused."""
 
 import json
 import shutil
@@ -22,7 +22,7 @@ metrics:
 @pytest.fixture
 def reference(tmp_path):
     def write(text):
-        path = tmp_path / "reference.yaml"
+        path = tmp_path / "baseline.yaml"
         path.write_text(text)
         return path
 
@@ -32,14 +32,14 @@ def reference(tmp_path):
 def test_a_run_inside_its_bands_says_so_in_one_line(cli, copy_run, reference):
     run = copy_run("goal")
     path = reference(GOOD)
-    ending = cli("check", run, "--reference", path)
+    ending = cli("check", run, "--baseline", path)
     assert (ending.code, ending.err) == (0, "")
     assert ending.out == f"good: 1 metrics of 1 run lie in the bands of {path}\n"
 
 
 def test_what_falls_short_is_a_table_with_reasons(cli, copy_run, reference):
     run = copy_run("goal")
-    ending = cli("check", run, "--reference", reference(BAD))
+    ending = cli("check", run, "--baseline", reference(BAD))
     assert (ending.code, ending.err) == (1, "")
     head, title, *rows = ending.out.splitlines()
     assert head.startswith(f"{run}: 3 of 4 metrics fall short of ")
@@ -56,11 +56,11 @@ def test_the_median_over_repetitions_is_checked(cli, copy_run, reference):
     record = json.loads((run / "metrics.json").read_text())
     median = float(np.median(record["metrics"]["peak_joint_speed"]["values"]))
     band = f"schema: 1\nmetrics:\n  peak_joint_speed: {{min: {median}, max: {median}, reason: exactly the median}}\n"
-    assert cli("check", run, "--reference", reference(band)).code == 0
+    assert cli("check", run, "--baseline", reference(band)).code == 0
 
 
 def test_a_failed_run_falls_short(cli, copy_run, reference):
-    ending = cli("check", copy_run("failed"), "--reference", reference(GOOD))
+    ending = cli("check", copy_run("failed"), "--baseline", reference(GOOD))
     assert ending.code == 1
     assert "1 of 1 metrics fall short" in ending.out
     assert "  failed in repetition 0 at t = 0.6 s (q1): diverged" in ending.out
@@ -68,8 +68,8 @@ def test_a_failed_run_falls_short(cli, copy_run, reference):
 
 def test_a_sweep_is_checked_run_by_run(cli, copy_sweep, reference):
     sweep = copy_sweep("goal", "other seed")
-    assert cli("check", sweep, "--reference", reference(GOOD)).out.startswith("good: 2 metrics of 2 runs lie in ")
-    assert cli("check", sweep, "--reference", reference(BAD)).out.count("fall short") == 2
+    assert cli("check", sweep, "--baseline", reference(GOOD)).out.startswith("good: 2 metrics of 2 runs lie in ")
+    assert cli("check", sweep, "--baseline", reference(BAD)).out.count("fall short") == 2
 
 
 def test_the_shipped_reference_follows_from_experiment_and_preset(cli):
@@ -91,9 +91,9 @@ def test_without_a_shipped_reference_the_way_out_is_named(cli, copy_run):
     ending = cli("check", copy_run("goal"))
     assert ending.code == 2
     assert (
-        "no reference comes with the runner for a run without an experiment; give one by --reference FILE" in ending.err
+        "no baseline comes with the runner for a run without an experiment; give one by --baseline FILE" in ending.err
     )
-    assert f"`runner list references` tells the {len(shipped_references())} that come with it\n" in ending.err
+    assert f"`runner list baselines` prints the {len(shipped_references())} that come with it\n" in ending.err
     assert len(ending.err) < 400
     run = cli("experiment=thesis/lag", "duration=0.05").folder
     assert "for 'thesis/lag.full_equations'" in cli("check", run).err
@@ -102,7 +102,7 @@ def test_without_a_shipped_reference_the_way_out_is_named(cli, copy_run):
 def test_a_copied_run_is_checked_elsewhere(cli, copy_run, reference, tmp_path):
     copy = shutil.copytree(copy_run("goal"), tmp_path / "elsewhere" / "copy")
     shutil.rmtree(tmp_path / "outputs")
-    assert cli("check", copy, "--reference", reference(GOOD)).code == 0
+    assert cli("check", copy, "--baseline", reference(GOOD)).code == 0
     assert cli("compare", copy, copy).code == 0
 
 
@@ -111,9 +111,9 @@ def test_folders_and_files_that_cannot_be_read(cli, copy_run, reference, tmp_pat
     cases = [
         (("check", tmp_path / "gone"), "no folder"),
         (("check", tmp_path), "is nothing that is stored"),
-        (("check", run, "--reference", "gone.yaml"), "cannot read the reference file gone.yaml"),
-        (("check", run, "--reference", run), "cannot read the reference file"),
-        (("check", run, "--reference", reference("schema: [\n")), "reference.yaml, line 2, column 1"),
+        (("check", run, "--baseline", "gone.yaml"), "cannot read the baseline gone.yaml"),
+        (("check", run, "--baseline", run), "cannot read the baseline"),
+        (("check", run, "--baseline", reference("schema: [\n")), "baseline.yaml, line 2, column 1"),
         (("check",), "the following arguments are required: DIR"),
     ]
     for arguments, message in cases:

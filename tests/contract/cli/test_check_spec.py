@@ -60,7 +60,7 @@ def test_without_a_probability_no_repetition_may_fail(cli, cut, failing, code, s
     ],
 )
 def test_the_interval_decides_on_a_probability(cli, cut, failing, at_most, code, said):
-    ending = cli("check", cli(*DRAWN, cut(failing)).folder, "--at-most", at_most)
+    ending = cli("check", cli(*DRAWN, cut(failing)).folder, "--max-failure-probability", at_most)
     row = ending.out.splitlines()[1]
     assert ending.code == code
     assert said in row
@@ -76,24 +76,24 @@ def test_a_broken_bound_is_told_with_its_reason(cli):
 
 @pytest.mark.usefixtures("cut")
 def test_a_reference_that_is_given_counts_and_not_the_spec(cli, tmp_path):
-    path = tmp_path / "reference.yaml"
+    path = tmp_path / "baseline.yaml"
     path.write_text("schema: 1\nmetrics:\n  peak_torque: {min: 0.0, reason: torques have no sign here}\n")
     run = cli(*DRAWN, "spec.metrics.peak_torque.max=1").folder
-    assert cli("check", run, "--reference", path).code == 0
+    assert cli("check", run, "--baseline", path).code == 0
     assert cli("check", run).code == 1
 
 
 @pytest.mark.parametrize("value", ["0", "1", "often", "nan"])
 def test_a_probability_lies_between_0_and_1(cli, copy_run, value):
-    ending = cli("check", copy_run("rk4"), "--at-most", value)
+    ending = cli("check", copy_run("rk4"), "--max-failure-probability", value)
     assert ending.code == 2
-    assert f"--at-most: must be a number above 0 and below 1; found '{value}'" in ending.err
+    assert f"--max-failure-probability: must be a number above 0 and below 1; found '{value}'" in ending.err
 
 
 def test_a_probability_needs_a_spec(cli, copy_run):
-    ending = cli("check", copy_run("rk4"), "--at-most", "0.1")
+    ending = cli("check", copy_run("rk4"), "--max-failure-probability", "0.1")
     assert ending.code == 2
-    assert "--at-most needs a run with a spec" in ending.err
+    assert "--max-failure-probability needs a run with a spec" in ending.err
 
 
 def test_a_sweep_is_checked_cell_by_cell(cli, cut):

@@ -1,4 +1,4 @@
-"""A whole sweep as reference: learned, and compared cell by cell."""
+"""A whole sweep as a baseline: saved, and compared cell by cell."""
 
 import pytest
 import yaml
@@ -16,10 +16,10 @@ def outputs(tmp_path_factory):
 @pytest.fixture
 def learned(cli, outputs, tmp_path):
     folder = cli(*SWEEP, outputs, AXIS, "repetitions=5").folder
-    path = tmp_path / "reference.yaml"
-    ending = cli("check", folder, "--learn", path)
+    path = tmp_path / "baseline.yaml"
+    ending = cli("check", folder, "--save-baseline", path)
     assert ending.code == 0
-    assert ending.out == f"learned: {_count(path)} metrics of {folder} are now in {path}\n"
+    assert ending.out == f"saved: {_count(path)} metrics of {folder} are now in {path}\n"
     return folder, path
 
 
@@ -36,7 +36,7 @@ def change(path, cell, metric, **values):
 def test_a_sweep_is_good_against_what_it_taught(cli, learned):
     folder, path = learned
     for flags in ((), ("--markdown",)):
-        ending = cli("check", folder, "--reference", path, *flags)
+        ending = cli("check", folder, "--baseline", path, *flags)
         assert (ending.code, ending.err) == (0, "")
         assert f"{_count(path)} metrics of 2 cells: 0 moved, 0 beyond the seeds' spread" in ending.out
         assert ending.out.count("\n") == 1
@@ -44,7 +44,7 @@ def test_a_sweep_is_good_against_what_it_taught(cli, learned):
 
 def test_other_seeds_move_within_the_spread(cli, outputs, learned):
     other = cli(*SWEEP, outputs, AXIS, "repetitions=5", "seed=1").folder
-    ending = cli("check", other, "--reference", learned[1])
+    ending = cli("check", other, "--baseline", learned[1])
     assert " 0 moved" not in ending.out
     moved = [line.split() for line in ending.out.splitlines()[2:]]
     assert {"up", "down"} & {word for line in moved for word in line}
@@ -58,7 +58,7 @@ def test_what_moved_is_told_with_direction_and_spread(cli, learned):
     peak, energy = (cells[cell][name]["median"] for name in ("peak_torque", "energy"))
     change(path, cell, "peak_torque", median=peak / 2, min=peak / 2, max=peak / 2)
     change(path, cell, "energy", median=energy * 2, min=energy / 2, max=energy * 3)
-    ending = cli("check", folder, "--reference", path, "--markdown")
+    ending = cli("check", folder, "--baseline", path, "--markdown")
     assert ending.code == 1
     head, blank, titles, rule, *rows = ending.out.splitlines()
     assert head.endswith("2 moved, 1 beyond the seeds' spread**")
@@ -75,7 +75,7 @@ def test_a_metric_without_value_is_beyond_every_number(cli, learned):
     folder, path = learned
     change(path, "controller.natural_frequency=30", "settling_time", median=None, min=None, max=None)
     change(path, "controller.natural_frequency=20", "peak_torque", median=None, min=0.0, max=None)
-    ending = cli("check", folder, "--reference", path)
+    ending = cli("check", folder, "--baseline", path)
     rows = {line.split()[0] + line.split()[1]: line.split() for line in ending.out.splitlines()[2:]}
     assert "down" in rows["controller.natural_frequency=20peak_torque"]
     assert rows["controller.natural_frequency=20peak_torque"][-1] == "no"
@@ -83,17 +83,17 @@ def test_a_metric_without_value_is_beyond_every_number(cli, learned):
 
 def test_cells_that_are_new_gone_or_failed_are_told(cli, outputs, learned):
     other = cli(*SWEEP, outputs, "controller.natural_frequency=20,40", "repetitions=5").folder
-    ending = cli("check", other, "--reference", learned[1])
+    ending = cli("check", other, "--baseline", learned[1])
     assert ending.code == 1
     lines = [" ".join(line.split()) for line in ending.out.splitlines()]
     assert "controller.natural_frequency=40 (all) is new no" in lines
     assert "controller.natural_frequency=30 (all) is gone yes" in lines
     failing = ("plant=rk4", "controller.period=0.06", "controller.singularity_damping=0", "duration=2")
     failed = cli(*SWEEP, outputs, AXIS, "repetitions=5", *failing).folder
-    ending = cli("check", failed, "--reference", learned[1])
+    ending = cli("check", failed, "--baseline", learned[1])
     assert ending.code == 1
     assert "diverged" in ending.out
-    assert "cannot learn from a failed run" in cli("check", failed, "--learn", learned[1]).err
+    assert "a failed run cannot be in a baseline" in cli("check", failed, "--save-baseline", learned[1]).err
 
 
 @pytest.mark.parametrize(
@@ -105,13 +105,13 @@ def test_cells_that_are_new_gone_or_failed_are_told(cli, outputs, learned):
             "schema: 1\ncells: {a: {energy: {unit: J, median: x, min: 1.0, max: 1.0, seeds: 1}}}",
             "cells.a.energy.median",
         ),
-        ("schema: [", "reference.yaml, line 2"),
+        ("schema: [", "baseline.yaml, line 2"),
     ],
 )
 def test_a_damaged_reference_is_said(cli, learned, content, message):
     folder, path = learned
     path.write_text(content)
-    ending = cli("check", folder, "--reference", path)
+    ending = cli("check", folder, "--baseline", path)
     assert (ending.code, ending.out) == (2, "")
     assert message in ending.err
 
@@ -119,6 +119,6 @@ def test_a_damaged_reference_is_said(cli, learned, content, message):
 def test_markdown_is_for_sweeps(cli, learned):
     folder, path = learned
     path.write_text("schema: 1\nmetrics: {peak_torque: {min: 0.0, reason: no sign}}\n")
-    ending = cli("check", folder, "--reference", path, "--markdown")
+    ending = cli("check", folder, "--baseline", path, "--markdown")
     assert ending.code == 2
-    assert "--markdown needs a reference of a sweep, made by --learn" in ending.err
+    assert "--markdown needs the baseline of a sweep, made by --save-baseline" in ending.err

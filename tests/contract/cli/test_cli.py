@@ -59,12 +59,6 @@ def test_the_guide_s_commands_work(cli):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (
-            ["run", "robot=macro"],
-            "there is no command 'run': a run is started by overrides alone: `runner robot=macro`",
-        ),
-        (["run"], "there is no command 'run': a run is started by overrides alone: `runner robot=macro`"),
-        (["run", "a=b c"], "there is no command 'run': a run is started by overrides alone: `runner 'a=b c'`"),
         (["robot", "=", "macro"], "an override has no spaces beside its '=': `runner robot=macro`"),
         (["robot", "=macro"], "an override has no spaces beside its '=': `runner robot=macro`"),
     ],
@@ -73,6 +67,17 @@ def test_what_looks_like_a_command_is_one_line(cli, tmp_path, arguments, told):
     ending = cli(*arguments)
     assert (ending.code, ending.out, ending.err) == (2, "", f"runner: {told}\n")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_run_and_sweep_are_spelled_out_forms_of_overrides(cli):
+    first = cli(*SHORT, ASKED)
+    again = cli("run", *SHORT, ASKED)
+    assert (again.code, again.folder) == (first.code, first.folder)
+    assert "stored before in" in again.err
+    swept = cli("sweep", *IN_PROCESS, *SHORT, "seed=0,1")
+    assert swept.folder == cli("-m", *IN_PROCESS, *SHORT, "seed=0,1").folder
+    assert "runner: 2 runs: 1 made, 1 stored before" in swept.err
+    assert open_sweep(swept.folder).command.startswith("runner -m ")
 
 
 def test_a_sweep_without_an_axis_is_told(cli):

@@ -32,6 +32,8 @@ def test_commands_stand_first():
     assert set(COMMANDS) < set(words(""))
     assert words("rep") == ["repetitions=", "report", "reproduce"]
     assert "report" not in words("robot=macro ")
+    assert {"run", "sweep"} < set(words(""))
+    assert words("run robot=min") == words("sweep robot=min") == ["robot=mini"]
 
 
 def test_topics():
@@ -40,7 +42,7 @@ def test_topics():
 
 
 def test_options_are_those_of_the_command():
-    assert words("report --") == ["--help", "--html", "--metric", "--pdf"]
+    assert words("report --") == ["--help", "--html", "--metrics", "--pdf"]
     assert words("tune robot=macro --min") == ["--minimize"]
     assert words("work diff --") == ["--all", "--help", "--json"]
 
@@ -54,6 +56,12 @@ def test_values_of_options():
     assert words("tune robot=macro --minimize=settling") == ["--minimize=settling_time"]
     assert words("tune --trials 5 robot=min") == ["robot=mini"]
     assert words("tune --trials ") == []
+
+
+def test_lists_of_options():
+    assert words("sensitivity latest --metrics peak_torque,sett") == ["peak_torque,settling_time"]
+    assert words("sensitivity latest --parameters gains,m") == ["gains,masses", "gains,mismatch"]
+    assert words("doctor arm.urdf --format ") == ["config", "html"]
 
 
 def test_metrics_are_read_once(monkeypatch):

@@ -10,7 +10,7 @@ KUKA = strangers.DATA / "kuka_iiwa/model.urdf"
 
 @pytest.mark.bullet
 def test_from_a_stranger_s_urdf_to_a_report_in_three_commands(cli, tmp_path):
-    examined = cli("doctor", KUKA, "--write", "mine")
+    examined = cli("doctor", KUKA, "--output", "mine")
     assert examined.code == 0
     assert examined.out.splitlines()[-2:] == ["runner --config-dir mine robot=lbr_iiwa", "mine"]
     assert len((tmp_path / "mine/robot/lbr_iiwa.yaml").read_text().splitlines()) <= 18
@@ -29,7 +29,7 @@ def fits(cli, path, folder):
     """Let the doctor write a config of a file into a folder, and run it for 0.1 s; return whether it could be taken."""
     tip = TIPS.get(path.relative_to(strangers.DATA).as_posix())
     given = ["--tip", tip] if tip else []
-    written = cli("doctor", path, *given, "--write", folder)
+    written = cli("doctor", path, *given, "--output", folder)
     assert written.code in (0, 2)
     if written.code == 2:
         assert written.err or "refused" in written.out, path
@@ -65,7 +65,7 @@ def test_every_file_of_pybullet_runs_or_is_refused_with_the_reason(cli):
 
 @pytest.mark.bullet
 def test_the_page_shows_robot_and_findings(cli, tmp_path):
-    ending = cli("doctor", KUKA, "--html", tmp_path / "page")
+    ending = cli("doctor", KUKA, "--output", tmp_path / "page", "--format", "html")
     assert ending.out.splitlines()[-1] == str(tmp_path / "page")
     page = (tmp_path / "page/report.html").read_text()
     assert '<figure class="playback' in page
@@ -77,20 +77,36 @@ def test_the_page_shows_robot_and_findings(cli, tmp_path):
 @pytest.mark.bullet
 def test_nothing_is_overwritten(cli):
     with strangers.short_examination():
-        cli("doctor", KUKA, "--write", "mine")
-        ending = cli("doctor", KUKA, "--write", "mine")
+        cli("doctor", KUKA, "--output", "mine")
+        ending = cli("doctor", KUKA, "--output", "mine")
     assert ending.code == 2
     assert "is there already; choose another folder, or remove it" in ending.err
 
 
 @pytest.mark.bullet
 def test_what_is_barred_is_not_written(cli):
-    ending = cli("doctor", strangers.DATA / "cube_no_rotation.urdf", "--write", "mine")
+    ending = cli("doctor", strangers.DATA / "cube_no_rotation.urdf", "--output", "mine")
     assert ending.code == 2
     assert "first correct what is refused above" in ending.err
 
 
-@pytest.mark.parametrize(("arguments", "said"), [(("none.urdf",), "no file none.urdf"), ((), "required: FILE")])
+@pytest.mark.bullet
+def test_config_and_page_in_one_folder(cli):
+    with strangers.short_examination():
+        ending = cli("doctor", KUKA, "-o", "mine", "--format", "config,html")
+    assert ending.code == 0
+    assert sorted(entry.name for entry in ending.folder.iterdir()) == ["report.html", "robot", "robots"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("none.urdf",), "no file none.urdf"),
+        ((), "required: FILE"),
+        (("none.urdf", "--format", "html"), "--format needs --output DIR"),
+        (("none.urdf", "--format", "pdf"), "--format: no 'pdf'; allowed: config, html"),
+    ],
+)
 def test_bad_input(cli, arguments, said):
     ending = cli("doctor", *arguments)
     assert ending.code == 2

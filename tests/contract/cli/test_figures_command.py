@@ -48,7 +48,7 @@ def test_a_failed_run_without_a_trace_has_no_figures(cli, copy_run):
 def test_a_work_that_was_not_made_is_told(cli):
     ending = cli("figures", "xarm7")
     assert ending.code == 2
-    assert "no report on xarm7 in outputs; `runner reproduce xarm7 --outputs outputs` makes it" in ending.err
+    assert "no report on xarm7 in outputs; `runner reproduce xarm7 --output outputs` makes it" in ending.err
 
 
 @pytest.mark.slow

@@ -51,7 +51,7 @@ def test_a_sweep_has_a_report_of_its_own_with_links_to_its_runs(cli, sweep):
     assert "2 cells over seed (2), all of them finished; repetitions in each: 1." in page
     links = re.findall(r'"folders": (\[.*?\])', page)
     assert [(ending.folder / link / "metrics.json").exists() for link in json.loads(links[0])] == [True, True]
-    assert ending.folder != cli("report", sweep, "--html", "--metric", "peak_torque").folder
+    assert ending.folder != cli("report", sweep, "--html", "--metrics", "peak_torque").folder
 
 
 def test_several_runs_are_reported_run_by_run(cli, copy_run, stored):
@@ -70,10 +70,10 @@ def test_several_sweeps_are_compared(cli):
     page = ending.folder.joinpath("report.html").read_text()
     assert "2 sweeps compared" in page
     assert "A and B differ in torque_limits.max alone: 30 against 31." in page
-    chosen = cli("report", *folders, "--html", "--metric", "energy").folder
+    chosen = cli("report", *folders, "--html", "--metrics", "energy").folder
     assert chosen != ending.folder
     assert "rms torque" not in chosen.joinpath("report.html").read_text()
-    refused = cli("report", *folders, "--metric", "enrgy")
+    refused = cli("report", *folders, "--metrics", "enrgy")
     assert (refused.code, refused.out) == (2, "")
     assert "the runs have no metric 'enrgy' (did you mean energy?)" in refused.err
 
@@ -87,10 +87,10 @@ def test_runs_and_sweeps_have_no_report_together(cli, sweep, stored):
 
 
 def test_a_metric_is_asked_for_where_a_sweep_has_it(cli, sweep, stored):
-    ending = cli("report", sweep, "--metric", "peak_torq")
+    ending = cli("report", sweep, "--metrics", "peak_torq")
     assert ending.code == 2
     assert "the runs have no metric 'peak_torq' (did you mean peak_torque?)" in ending.err
-    assert "--metric is for the report on sweeps" in cli("report", stored, "--metric", "peak_torque").err
+    assert "--metrics is for the report on sweeps" in cli("report", stored, "--metrics", "peak_torque").err
 
 
 @pytest.mark.parametrize(

@@ -157,7 +157,7 @@ def test_all_reproduces_every_work_the_shortest_first(cli, monkeypatch, tmp_path
 
 def test_outputs_that_cannot_be_written_are_told_before_anything_is_simulated(cli, small_work, tmp_path):
     (tmp_path / "file").write_text("in the way")
-    ending = cli("reproduce", "small", "--outputs", "file")
+    ending = cli("reproduce", "small", "--output", "file")
     assert ending.code == 2
     assert ending.err.startswith("runner: cannot write file/runs")
 

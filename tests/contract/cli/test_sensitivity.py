@@ -17,7 +17,7 @@ def run(copy_run):
 
 
 def test_a_table_for_each_metric_the_largest_first(cli, run):
-    ending = cli("sensitivity", run, "--metric", "peak_torque", "--metric", "energy", "--of", "masses", "--of", "gains")
+    ending = cli("sensitivity", run, "--metrics", "peak_torque,energy", "--parameters", "masses,gains")
     assert (ending.code, ending.err) == (0, "")
     head, *tables, beside = ending.out.split("\n\n")
     assert head == "macro, operational_space, repetition 0\nheld: the start, the desired motion, the ticks"
@@ -36,7 +36,7 @@ def test_a_table_for_each_metric_the_largest_first(cli, run):
 
 
 def test_differences_stand_beside_where_they_are_asked_for(cli, run):
-    ending = cli("sensitivity", run, "--metric", "rms_tracking_error", "--of", "gains", "--check")
+    ending = cli("sensitivity", run, "--metrics", "rms_tracking_error", "--parameters", "gains", "--finite-differences")
     assert ending.code == 0
     *_, count, gap = ending.out.splitlines()
     assert count.endswith("central differences are sure to 1e-07 of the derivative or better")
@@ -53,9 +53,9 @@ def test_differences_stand_beside_where_they_are_asked_for(cli, run):
     ],
 )
 def test_a_metric_without_derivative_is_not_approximated(cli, run, name, why):
-    ending = cli("sensitivity", run, "--metric", name, "--of", "gains")
+    ending = cli("sensitivity", run, "--metrics", name, "--parameters", "gains")
     assert ending.code == 2
-    assert f"--metric: {why}" in ending.err
+    assert f"--metrics: {why}" in ending.err
     assert "metrics with one: " in ending.err
     assert "rms_tracking_error" in ending.err
 
@@ -77,7 +77,7 @@ def test_runs_without_derivatives_are_refused_with_the_reason(cli, copy_run, mad
 
 
 def test_a_run_on_another_plant_has_those_of_its_counterpart(cli, copy_run, run):
-    one = ("--metric", "peak_torque", "--of", "masses")
+    one = ("--metrics", "peak_torque", "--parameters", "masses")
     other = copy_run("mujoco")
     told, same = cli("sensitivity", other, *one).out, cli("sensitivity", run, *one).out
     assert "derivatives of the same run on rk4, because those of mujoco are not available" in told
@@ -92,15 +92,15 @@ def test_a_run_that_its_command_no_longer_gives_is_refused(run):
 
 
 def test_bad_arguments(cli, run):
-    assert "--of: no 'mases' (did you mean masses?)" in cli("sensitivity", run, "--of", "mases").err
+    assert "--parameters: no 'mases' (did you mean masses?)" in cli("sensitivity", run, "--parameters", "mases").err
     ending = cli("sensitivity", run, "--repetition", 40)
     assert (ending.code, "no repetition 40 of" in ending.err, "allowed: 0 to 39" in ending.err) == (2, True, True)
     told = "depends on no parameter of payload; robot.payload.mass: its value is 0 (a small value shows its effect)"
-    assert told in cli("sensitivity", run, "--of", "payload").err
+    assert told in cli("sensitivity", run, "--parameters", "payload").err
 
 
 def test_another_repetition_has_its_own_noise(cli, run):
-    asked = ("sensitivity", run, "--metric", "max_tracking_error", "--of", "noise")
+    asked = ("sensitivity", run, "--metrics", "max_tracking_error", "--parameters", "noise")
     first, second = (cli(*asked, "--repetition", number).out.split("\n\n")[1] for number in (0, 1))
     assert first != second
 

@@ -62,7 +62,7 @@ def test_the_best_is_the_same_run_again_and_other_commands_take_a_tuning_for_a_s
     assert cli("status", folder).out.startswith("4 runs: 4 done, 0 left\n")
     assert cli("table", folder).code == 0
     assert (folder / "table.csv").read_text().count("\n") == 5
-    assert cli("check", folder, "--learn", tmp_path / "reference.yaml").code == 0
+    assert cli("check", folder, "--save-baseline", tmp_path / "baseline.yaml").code == 0
 
 
 @pytest.mark.usefixtures("no_report")
@@ -94,8 +94,8 @@ def test_a_tuning_in_which_every_trial_failed_has_a_report_too(cli):
         (["tune", *SHORT, RANGE, "--minimize", "energy", "--maximize", "energy"], "minimized and maximized at once"),
         (["tune", *SHORT, RANGE, "--minimize", "energy", "--trials", "0"], "argument --trials: must be a whole number"),
         (
-            ["tune", *SHORT, RANGE, "--minimize", "energy", "--at-once", "x"],
-            "argument --at-once: must be a whole number",
+            ["tune", *SHORT, RANGE, "--minimize", "energy", "--jobs", "x"],
+            "argument -j/--jobs: must be a whole number",
         ),
         (["tune", *SHORT, "--minimize", "energy"], "nothing to tune; give a key a range"),
         (["tune", *SHORT, RANGE, "--minimize", "energy", "--config-dir", "none"], "--config-dir: no folder none"),

@@ -124,7 +124,7 @@ def test_an_arm_without_mass_runs_as_it_is_written_and_refuses_torques(tmp_path)
 
 def test_a_folder_that_cannot_be_made_is_told(written, tmp_path):
     (tmp_path / "mine").write_text("a file")
-    with pytest.raises(RunnerError, match=r"--write: cannot write .*mine.robot.lamp.yaml: .*; nothing was written"):
+    with pytest.raises(RunnerError, match=r"--output: cannot write .*mine.robot.lamp.yaml: .*; nothing was written"):
         written("lamp.urdf")
 
 

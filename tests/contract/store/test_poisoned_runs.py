@@ -145,5 +145,5 @@ def test_a_reference_is_learned_whatever_the_sweep_s_command(cli, runs, tmp_path
     run = runs["goal"]
     shutil.copytree(run.folder, tmp_path / "o" / "runs" / run.hash)
     sweep = write_sweep(tmp_path / "o", [(["robot=macro", f"x={TEXT}"], run.hash)], f"runner -m {TEXT}")
-    assert cli("check", sweep, "--learn", "ref.yaml").code == 0
-    assert cli("check", sweep, "--reference", "ref.yaml").code == 0
+    assert cli("check", sweep, "--save-baseline", "baseline.yaml").code == 0
+    assert cli("check", sweep, "--baseline", "baseline.yaml").code == 0

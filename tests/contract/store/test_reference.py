@@ -17,7 +17,7 @@ from runner.store.references.shipped import reference_path
 @pytest.fixture
 def load(tmp_path):
     def write_and_load(text):
-        path = tmp_path / "reference.yaml"
+        path = tmp_path / "baseline.yaml"
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
         return load_reference(path)
 
@@ -41,7 +41,7 @@ def test_a_valid_reference_is_read(load):
     )
     assert reference.bands["energy"] == Band(min=1e-3, max=2.0, reason="r")
     assert reference.bands["peak_torque_q1"].min is None
-    assert reference.name.endswith("reference.yaml")
+    assert reference.name.endswith("baseline.yaml")
 
 
 @pytest.mark.parametrize(
@@ -117,19 +117,19 @@ def test_a_reference_needs_bands(load, text, message):
     [
         ("schema: 1\nschema: 1\n", "line 2, column 1: found duplicate key schema"),
         ("schema: [\n", "line 2, column 1: "),
-        (b"\xff\xfe\x00", "cannot read the reference file "),
-        ("3", "cannot read the reference file "),
+        (b"\xff\xfe\x00", "cannot read the baseline "),
+        ("3", "cannot read the baseline "),
         ("schema: ${nope}\n", "schema: must be 1; found '${nope}'"),
     ],
 )
 def test_what_is_no_yaml_is_said_with_its_line(load, text, message):
-    with pytest.raises(StoreError, match=r"reference\.yaml") as raised:
+    with pytest.raises(StoreError, match=r"baseline\.yaml") as raised:
         load(text)
     assert message in str(raised.value)
 
 
 def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(StoreError, match=r"cannot read the reference file .*gone\.yaml: .*No such file"):
+    with pytest.raises(StoreError, match=r"cannot read the baseline .*gone\.yaml: .*No such file"):
         load_reference(tmp_path / "gone.yaml")
 
 

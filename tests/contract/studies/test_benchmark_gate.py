@@ -19,10 +19,10 @@ def test_an_experiment_is_what_the_benchmark_runs(arm):
 def test_a_law_is_held_against_what_it_did_before(cli):
     made = cli(*SWEEP, "controller=passivity")
     assert made.code == 0
-    assert cli("check", made.folder, "--learn", "passivity.json").code == 0
-    assert cli("check", made.folder, "--reference", "passivity.json").code == 0
+    assert cli("check", made.folder, "--save-baseline", "passivity.json").code == 0
+    assert cli("check", made.folder, "--baseline", "passivity.json").code == 0
     softer = cli(*SWEEP, "controller=passivity", "controller.natural_frequency=15")
-    told = cli("check", softer.folder, "--reference", "passivity.json")
+    told = cli("check", softer.folder, "--baseline", "passivity.json")
     assert told.code == 1
     assert "rms_tracking_error" in told.out
 

@@ -69,7 +69,7 @@ def test_the_work_that_is_written_first_is_small_and_stands(tmp_path, capsys):
     lines = [line for text in texts.values() for line in text.splitlines()]
     assert len(lines) <= 45
     assert max(map(len, lines)) <= 100
-    outputs = f"--outputs={tmp_path / 'outputs'}"
+    outputs = f"--output={tmp_path / 'outputs'}"
     assert dispatch(["reproduce", str(folder), outputs, "--check"]) == 0
     report = Path(capsys.readouterr().out.splitlines()[-1])
     assert report == tmp_path / "outputs" / "reports" / "paper"
@@ -264,7 +264,7 @@ def test_what_a_profile_does_without_is_left_out_of_tables_and_of_the_chapters_t
     about = ABOUT.replace("[one.md]", "[one.md, two.md]")
     about += "profiles: {quick: {levels: {goal: {duration: [0.05], preset: [slow]}}}}\n"
     folder = a_work(tmp_path / "paper", work__yaml=about, one__md=text, two__md=CHAPTER.replace("# One", "# Two"))
-    outputs = f"--outputs={tmp_path / 'outputs'}"
+    outputs = f"--output={tmp_path / 'outputs'}"
     assert dispatch(["reproduce", str(folder), outputs, "--profile", "quick", "hydra.sweeper.workers=0"]) == 0
     page = (tmp_path / "outputs" / "reports" / "paper" / "report.html").read_text()
     assert "goal/slow/0.1: the profile quick has no such run" in page
