@@ -5,8 +5,8 @@
     >>> run.status
     'ok'
 
-`run`, `sweep`, `tune` and `calibrate` do what the commands do, `report` writes a report; `open_run` and `open_sweep`
-open what is stored. docs/python.md shows them at work.
+`run`, `sweep`, `tune` and `calibrate` do what the commands do, `report` writes a report, `compare` compares runs or
+sweeps; `open_run`, `open_sweep` and `open_tuning` open what is stored. docs/python.md shows them at work.
 """
 
 from importlib import import_module
@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from runner.api.calls import calibrate, run, sweep, tune
+    from runner.api.compare import compare
     from runner.api.metric import Metric
-    from runner.api.opening import open_run, open_sweep
+    from runner.api.opening import open_run, open_sweep, open_tuning
     from runner.api.report import Report, report
     from runner.api.run import Run
     from runner.api.sweep import Sweep
@@ -32,8 +33,10 @@ __all__ = [
     "Sweep",
     "Tuning",
     "calibrate",
+    "compare",
     "open_run",
     "open_sweep",
+    "open_tuning",
     "report",
     "run",
     "sweep",
@@ -48,8 +51,10 @@ _PLACES = {
     "Sweep": "runner.api.sweep",
     "Tuning": "runner.api.tuning",
     "calibrate": "runner.api.calls",
+    "compare": "runner.api.compare",
     "open_run": "runner.api.opening",
     "open_sweep": "runner.api.opening",
+    "open_tuning": "runner.api.opening",
     "report": "runner.api.report",
     "run": "runner.api.calls",
     "sweep": "runner.api.calls",

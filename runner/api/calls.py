@@ -99,7 +99,7 @@ def tune(
     minimize: str | Sequence[str] = (),
     maximize: str | Sequence[str] = (),
     trials: int = 100,
-    at_once: int = 4,
+    jobs: int = 4,
     workers: int = 2,
     config_dirs: Folders = (),
     plugins: Sequence[str] = (),
@@ -109,7 +109,7 @@ def tune(
 
         >>> tuning = runner.tune(robot="macro", trajectory="quintic", duration=0.1, workers=0, trials=2,
         ...                      controller__natural_frequency=(5, 50), minimize="max_tracking_error")
-        >>> len(tuning.table())
+        >>> len(tuning.to_frame())
         2
 
     Args:
@@ -117,7 +117,7 @@ def tune(
         minimize: Metrics that are to be small.
         maximize: Metrics that are to be large.
         trials: Number of trials in all, those of earlier calls included.
-        at_once: Trials under way at once; the choice of trials depends on it.
+        jobs: Number of trials that run at once; the choice of trials depends on it.
         workers: Number of processes on this machine; 0 makes the trials in this process.
         config_dirs: See `run`.
         plugins: See `run`.
@@ -139,11 +139,11 @@ def tune(
     if not objectives or len({objective.metric for objective in objectives}) < len(objectives):
         raise ConfigError(["name each metric once, in minimize=... or maximize=..."])
     words = [f"--{objective.direction}={objective.metric}" for objective in objectives]
-    words += [f"--trials={trials}", f"--at-once={at_once}"]
-    _check_counts(trials=trials, at_once=at_once)
+    words += [f"--trials={trials}", f"--jobs={jobs}"]
+    _check_counts(trials=trials, jobs=jobs)
     command = _command(["tune"], folders, [*texts, *words])
     with workers_only_work():
-        made = tuning.tune([*texts, f"hydra.sweeper.workers={workers}"], objectives, trials, at_once, command, folders)
+        made = tuning.tune([*texts, f"hydra.sweeper.workers={workers}"], objectives, trials, jobs, command, folders)
     return Tuning(made)
 
 

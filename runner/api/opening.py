@@ -10,6 +10,7 @@ from runner.store.latest import find_folder
 if TYPE_CHECKING:
     from runner.api.run import Run
     from runner.api.sweep import Sweep
+    from runner.api.tuning import Tuning
 
 
 @door
@@ -44,3 +45,24 @@ def open_sweep(folder: str | Path) -> "Sweep":
     from runner.api.sweep import Sweep
 
     return Sweep(store.open_sweep(find_folder(folder, ("sweep", "tuning"))))
+
+
+@door
+def open_tuning(folder: str | Path) -> "Tuning":
+    """Open a stored tuning.
+
+        >>> made = runner.tune(robot="macro", trajectory="quintic", duration=0.1, workers=0, trials=2,
+        ...                    controller__natural_frequency=(5, 50), minimize="max_tracking_error")
+        >>> len(runner.open_tuning(made.folder).to_frame())
+        2
+
+    Args:
+        folder: Its folder in `outputs/tunings`; "latest" for the one made or found last.
+
+    Raises:
+        RunnerError: if the folder is not a tuning, or damaged.
+    """
+    from runner.api.tuning import Tuning
+    from runner.sweeps.tuning import study
+
+    return Tuning(study.open_tuning(find_folder(folder, ("tuning",))))

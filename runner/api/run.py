@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
+    from runner.analysis.sensitivity import Sensitivity
     from runner.recordings.compare import RecordingComparison
     from runner.reporting.key_metrics import KeyMetric
     from runner.statistics.spec import Spec
@@ -30,7 +31,7 @@ class Run:
         'N m'
         >>> len(run.metrics["peak_torque"].values)
         3
-        >>> run.metrics_frame().columns.tolist()
+        >>> run.to_frame().columns.tolist()
         ['unit', 'median', 'min', 'max', 'n']
         >>> run.trace(repetition=2)[["t", "error_x"]].shape
         (11, 2)
@@ -108,7 +109,7 @@ class Run:
         """Unit of each column of the trace."""
         return self.stored.units
 
-    def metrics_frame(self) -> "pd.DataFrame":
+    def to_frame(self) -> "pd.DataFrame":
         """Return the metrics as a table: a row for each, with unit, median, min, max and n, the number of values."""
         import numpy as np
         import pandas as pd
@@ -148,6 +149,25 @@ class Run:
         from runner.api.plots import figure_of
 
         return figure_of(signals_of(self.stored, repetition), signal)
+
+    @door
+    def sensitivity(self, parameters: str | Sequence[str] = (), repetition: int = 0) -> "Sensitivity":
+        """Return the derivatives of its metrics by its parameters: what `runner sensitivity` prints, as arrays.
+
+        The result has `metrics`, `parameters` and `derivatives`, with an array over the parameters for each metric;
+        `elasticities(metric)`; `ranked(metric)`, the order of the parameters; `left_out`, parameters by reason.
+
+        Args:
+            parameters: Groups of parameters, such as "masses" and "gains"; empty for all.
+            repetition: Number of the repetition.
+
+        Raises:
+            RunnerError: if the run has no derivatives, or no such repetition or parameter.
+        """
+        from runner.analysis.sensitivity import GROUPS, of_run
+
+        groups = [parameters] if isinstance(parameters, str) else parameters
+        return of_run(self.stored, groups or GROUPS, repetition)
 
     @door
     def compare_recording(

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 _CELLS_SHOWN, _METRICS_SHOWN = 20, 3
+_LEVELS = ("cells", "repetitions")
 
 
 class Sweep:
@@ -30,9 +31,9 @@ class Sweep:
         ...                      robot=["macro", "mini"], controller=["operational_space", "computed_torque"])
         >>> len(sweep)
         4
-        >>> sweep.table(["max_tracking_error"])[["robot", "controller", "median", "low", "high", "n"]].shape
+        >>> sweep.to_frame(["max_tracking_error"])[["robot", "controller", "median", "low", "high", "n"]].shape
         (4, 6)
-        >>> paired = sweep.compare("controller", within="robot", metrics=["max_tracking_error"])
+        >>> paired = sweep.compare(by="controller", within="robot", metrics=["max_tracking_error"])
         >>> paired[["robot", "first", "second", "difference", "low", "high", "n"]].shape
         (2, 7)
         >>> sweep.run(robot="mini", controller="computed_torque").status
@@ -96,24 +97,35 @@ class Sweep:
         return Run(store.Finished(self.stored.outputs).open(self.stored.hashes[int(cells[0])]))
 
     @door
-    def table(self, metrics: str | Sequence[str] | None = None) -> "pd.DataFrame":
-        """Return the metrics of its cells: a row for each cell and metric.
+    def to_frame(
+        self, metrics: str | Sequence[str] | None = None, level: Literal["cells", "repetitions"] = "cells"
+    ) -> "pd.DataFrame":
+        """Return its metrics: a row for each cell and metric, or for each repetition of a cell and metric.
 
-        The columns are the axes under their keys; metric and unit; median; low and high, the ends of the median's 95 %
-        interval over the repetitions, missing where these are too few; n, the number of repetitions that have a value;
-        status and the number of caveats. `runner table` writes one row for each cell, with quantiles.
+        The first columns are the axes under their keys. For cells then come metric and unit; median; low and high, the
+        ends of the median's 95 % interval over the repetitions, missing if these are too few; n, the number of
+        repetitions that have a value; status and the number of caveats. `runner table` writes one row for each cell,
+        with quantiles. For repetitions then come repetition, metric, unit and value. The value is infinite, which is
+        beyond every number, if the repetition failed or never settled.
 
         Args:
             metrics: Names of metrics; None for all.
+            level: What a row is: "cells" or "repetitions".
 
         Raises:
-            RunnerError: if there is no such metric, or runs are missing.
+            RunnerError: if there is no such metric or level, or if runs are missing.
         """
+        if level not in _LEVELS:
+            raise RunnerError(f"level: no {quoted(level)}{nearest(str(level), _LEVELS)}; allowed: {', '.join(_LEVELS)}")
+        names = self._names(metrics)
+        return self._cell_frame(names) if level == "cells" else self._repetition_frame(names)
+
+    def _cell_frame(self, names: Sequence[str]) -> "pd.DataFrame":
         import pandas as pd
 
         from runner.sweeps.table import table
 
-        found, names = self._measurements, self._names(metrics)
+        found = self._measurements
         wide = table(found, names)
         keys = [axis.name for axis in found.axes]
         parts = []
@@ -126,28 +138,25 @@ class Sweep:
             parts.append(part)
         return pd.concat(parts, ignore_index=True) if parts else wide[[*keys, "status", "caveats"]]
 
-    @door
-    def values(self, metric: str) -> "pd.DataFrame":
-        """Return a metric in each repetition: a row for each, with the axes, the repetition and the value.
-
-        A value is infinite, which is beyond every number, where the repetition failed or never settled.
-
-        Raises:
-            RunnerError: if there is no such metric, or runs are missing.
-        """
+    def _repetition_frame(self, names: Sequence[str]) -> "pd.DataFrame":
         import pandas as pd
 
-        (name,) = self._names(metric)
         found = self._measurements
-        cells, repetitions = np.nonzero(~np.isnan(found.values[name]))
-        columns: dict[str, object] = {
-            axis.name: [axis.values[level] for level in axis.level[cells].tolist()] for axis in found.axes
-        }
-        return pd.DataFrame(columns | {"repetition": repetitions, name: found.values[name][cells, repetitions]})
+        parts = []
+        for name in names:
+            cells, repetitions = np.nonzero(~np.isnan(found.values[name]))
+            columns: dict[str, object] = {
+                axis.name: [axis.values[level] for level in axis.level[cells].tolist()] for axis in found.axes
+            }
+            columns |= {"repetition": repetitions, "metric": name, "unit": found.units[name]}
+            parts.append(pd.DataFrame(columns | {"value": found.values[name][cells, repetitions]}))
+        keys = [axis.name for axis in found.axes]
+        none = pd.DataFrame(columns=[*keys, "repetition", "metric", "unit", "value"])
+        return pd.concat(parts, ignore_index=True) if parts else none
 
     @door
     def compare(
-        self, axis: str, within: str | Sequence[str] | None = None, metrics: str | Sequence[str] | None = None
+        self, *, by: str, within: str | Sequence[str] | None = None, metrics: str | Sequence[str] | None = None
     ) -> "pd.DataFrame":
         """Return how the values of an axis differ from its first one, in pairs of runs that differ in nothing else.
 
@@ -157,7 +166,7 @@ class Sweep:
         interval excludes zero exactly if p is below 0.05. What is swept beyond that is pooled: a draw counts once.
 
         Args:
-            axis: The axis, such as "controller".
+            by: The axis, such as "controller".
             within: Axes within each combination of whose values it is compared; None for over all others, and then
                 within all of them but the seed.
             metrics: Names of metrics; None for all.
@@ -165,37 +174,20 @@ class Sweep:
         Raises:
             RunnerError: if there is no such axis or metric, or no two runs share their seeds.
         """
-        import pandas as pd
-
-        from runner.reporting.answers import Asked, judge
+        from runner.api.comparison_frame import comparison_frame
+        from runner.reporting.answers import Asked
         from runner.reporting.comparison.levels import levels
         from runner.reporting.sweep.subject import first_screen, whole_metrics
 
         inside = [within] if isinstance(within, str) else within
-        compared = levels(self._measurements, axis, inside, metrics=self._names(metrics))
+        compared = levels(self._measurements, by, inside, metrics=self._names(metrics))
         first = first_screen(self._names(metrics) if metrics else whole_metrics(self._measurements.values))
-        answers = judge([Asked(one.metric, one.unit, one.comparison) for one in compared], first)
         known = dict.fromkeys((name for found in compared for name in found.pair.at), "all")
-        missing = (np.nan, np.nan)
-        rows = [
-            {
-                **known,
-                **found.pair.at,
-                "first": found.pair.first,
-                "second": found.pair.second,
-                "metric": found.metric,
-                "unit": found.unit,
-                "difference": found.comparison.difference,
-                "low": (answer.interval or missing)[0],
-                "high": (answer.interval or missing)[1],
-                "n": found.comparison.n,
-                "effect": found.comparison.effect,
-                "p": answer.p_value,
-                "word": answer.word,
-            }
-            for found, answer in zip(compared, answers, strict=True)
+        labels = [
+            {**known, **found.pair.at, "first": found.pair.first, "second": found.pair.second} for found in compared
         ]
-        return pd.DataFrame(rows).astype({"low": float, "high": float, "p": float})
+        asked = [Asked(found.metric, found.unit, found.comparison) for found in compared]
+        return comparison_frame(labels, asked, first)
 
     def __repr__(self) -> str:
         told = _told(find_status(self.stored))
@@ -226,7 +218,7 @@ class Sweep:
         ]
         heads = [*(axis.name for axis in runs.axes), *(f"{title(name)}, median" for name in names)]
         more = len(self) - len(rows)
-        rest = f"and {more} more; `table()` has all of them" if more else ""
+        rest = f"and {more} more; `to_frame()` has all of them" if more else ""
         return page.table([*heads, "status", "caveats"], rows) + page.line(rest)
 
     def _over(self) -> list[str]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class Tuning:
-    """A stored tuning, which `runner.tune` makes.
+    """A stored tuning: `runner.tune` makes one, `runner.open_tuning` opens one.
 
     Args:
         stored: The tuning as it lies on the disk.
@@ -35,7 +35,7 @@ class Tuning:
         """Where it is stored."""
         return self.stored.folder
 
-    def table(self) -> "pd.DataFrame":
+    def to_frame(self) -> "pd.DataFrame":
         """Return the trials, a row for each: the tuned keys, the objectives, failure, hash of the run, and best.
 
         `best` tells the best trial; of several objectives, those of the Pareto front.

@@ -24,7 +24,10 @@ def test_docstrings(tmp_path, monkeypatch):
 
 
 def test_all_that_is_called_has_an_example():
-    shown = [getattr(runner, name).__doc__ for name in ("run", "sweep", "tune", "calibrate", "report", "open_run")]
+    shown = [
+        getattr(runner, name).__doc__
+        for name in ("run", "sweep", "tune", "calibrate", "report", "compare", "open_run", "open_tuning")
+    ]
     assert all(">>> " in text for text in [*shown, runner.Run.__doc__, runner.Sweep.__doc__])
 
 

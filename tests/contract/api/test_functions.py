@@ -92,7 +92,7 @@ def test_own_parts(tmp_path):
     assert str(run.metrics["span"]) == "50 ms"
 
 
-@pytest.mark.parametrize("name", ["open_run", "open_sweep"])
+@pytest.mark.parametrize("name", ["open_run", "open_sweep", "open_tuning"])
 def test_a_folder_may_be_a_text_and_must_be_of_the_kind(name, tmp_path):
     opened = getattr(runner, name)
     for folder in ("nowhere", Path("nowhere")):
@@ -102,7 +102,9 @@ def test_a_folder_may_be_a_text_and_must_be_of_the_kind(name, tmp_path):
     if name == "open_run":
         assert opened(str(made.folder)).metrics == made.metrics
     else:
-        with pytest.raises(RunnerError, match="is the folder of a run; needed: the folder of a sweep"):
+        with pytest.raises(
+            RunnerError, match=f"is the folder of a run; needed: the folder of a {name.removeprefix('open_')}"
+        ):
             opened(made.folder)
 
 
@@ -132,13 +134,14 @@ def test_a_report_in_no_format():
 def test_a_tuning_and_its_best_run():
     words = {"robot": "macro", "trajectory": "quintic", "duration": 0.05, "workers": 0, "trials": 3}
     tuning = runner.tune(controller__natural_frequency=(5, 50), minimize="max_tracking_error", **words)
-    table = tuning.table()
+    table = tuning.to_frame()
     assert list(table.columns) == ["controller.natural_frequency", "max_tracking_error", "failure", "hash", "best"]
     assert len(table) == 3
     best = table[table["best"]].iloc[0]
     assert best["max_tracking_error"] == table["max_tracking_error"].min()
     assert tuning.best().hash == best["hash"]
     assert tuning.best().metrics["max_tracking_error"].median == best["max_tracking_error"]
+    assert runner.open_tuning(str(tuning.folder)).to_frame().equals(table)
     assert "3 trials of controller.natural_frequency, 0 of them failed" in repr(tuning)
     assert "max_tracking_error" in tuning._repr_html_()
 

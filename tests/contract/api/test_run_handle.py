@@ -50,7 +50,7 @@ def test_a_spec_tells_how_probable_it_is_that_it_is_broken(run):
 
 
 def test_the_frame_of_metrics(run):
-    frame = run.metrics_frame()
+    frame = run.to_frame()
     assert list(frame.columns) == ["unit", "median", "min", "max", "n"]
     assert list(frame.index) == list(run.metrics)
     assert frame.loc["peak_torque", "median"] == run.metrics["peak_torque"].median
@@ -182,4 +182,4 @@ def test_a_failed_run_says_why(tmp_path):
     assert run.failure.startswith("failed in repetition 0 at t = ")
     assert run.failure in repr(run)
     assert "failed in repetition 0" in run._repr_html_()
-    assert len(run.metrics_frame()) == len(run.metrics)
+    assert len(run.to_frame()) == len(run.metrics)

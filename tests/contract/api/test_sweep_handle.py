@@ -67,7 +67,7 @@ def test_as_text_and_as_a_page(sweep):
 
 
 def test_the_table_has_a_row_for_each_cell_and_metric(sweep):
-    tidy = sweep.table(["peak_torque", "energy"])
+    tidy = sweep.to_frame(["peak_torque", "energy"])
     keys = ["robot", "controller", "seed"]
     assert list(tidy.columns) == [*keys, "metric", "unit", "median", "low", "high", "n", "status", "caveats"]
     assert len(tidy) == 16
@@ -76,43 +76,49 @@ def test_the_table_has_a_row_for_each_cell_and_metric(sweep):
         part = tidy[tidy["metric"] == name].reset_index(drop=True)
         for column in ("median", "low", "high", "n"):
             np.testing.assert_array_equal(part[column], wide[f"{name}.{column}"])
-    assert set(sweep.table()["metric"]) == set(measure_sweep(sweep.stored).values)
-    assert sweep.table("energy").equals(sweep.table(["energy"]))
+    assert set(sweep.to_frame()["metric"]) == set(measure_sweep(sweep.stored).values)
+    assert sweep.to_frame("energy").equals(sweep.to_frame(["energy"]))
 
 
 def test_values_of_each_repetition(sweep):
-    values = sweep.values("peak_torque")
-    assert list(values.columns) == ["robot", "controller", "seed", "repetition", "peak_torque"]
+    values = sweep.to_frame("peak_torque", level="repetitions")
+    assert list(values.columns) == ["robot", "controller", "seed", "repetition", "metric", "unit", "value"]
     assert len(values) == 48
+    assert (set(values["metric"]), set(values["unit"])) == ({"peak_torque"}, {"N m"})
+    assert len(sweep.to_frame(["peak_torque", "energy"], level="repetitions")) == 96
     chosen = values[(values["robot"] == "mini") & (values["controller"] == "computed_torque") & (values["seed"] == 1)]
     run = sweep.run(robot="mini", controller="computed_torque", seed=1)
-    assert tuple(chosen["peak_torque"]) == run.metrics["peak_torque"].values
+    assert tuple(chosen["value"]) == run.metrics["peak_torque"].values
 
 
 def test_a_comparison_is_in_pairs_of_equal_seeds(sweep):
-    found = sweep.compare("controller", within="robot", metrics=["peak_torque"])
+    found = sweep.compare(by="controller", within="robot", metrics=["peak_torque"])
     assert list(found.columns) == [
         "robot", "first", "second", "metric", "unit", "difference", "low", "high", "n", "effect", "p", "word",
     ]  # fmt: skip
     assert len(found) == 2
-    values = sweep.values("peak_torque")
-    values = values.set_index(["robot", "controller", "seed", "repetition"])["peak_torque"].sort_index()
+    values = sweep.to_frame("peak_torque", level="repetitions")
+    values = values.set_index(["robot", "controller", "seed", "repetition"])["value"].sort_index()
     for _, row in found.iterrows():
         differences = values[row["robot"], row["second"]] - values[row["robot"], row["first"]]
         assert row["n"] == len(differences) == 12
         means = np.add.outer(differences.to_numpy(), differences.to_numpy())[np.triu_indices(len(differences))] / 2
         assert row["difference"] == pytest.approx(np.median(means), rel=1e-12)  # Hodges and Lehmann
         assert row["low"] <= row["difference"] <= row["high"]
-    assert len(sweep.compare("controller", within=["robot", "seed"], metrics="peak_torque")) == 4
+    assert len(sweep.compare(by="controller", within=["robot", "seed"], metrics="peak_torque")) == 4
 
 
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        (lambda sweep: sweep.table("peak"), "no metric 'peak'"),
-        (lambda sweep: sweep.values("peak_torqe"), r"did you mean peak_torque\?"),
-        (lambda sweep: sweep.compare("robt"), r"no axis 'robt' \(did you mean robot\?\)"),
-        (lambda sweep: sweep.compare("robot", metrics="peak"), "no metric 'peak'"),
+        (lambda sweep: sweep.to_frame("peak"), "no metric 'peak'"),
+        (lambda sweep: sweep.to_frame("peak_torqe", "repetitions"), r"did you mean peak_torque\?"),
+        (
+            lambda sweep: sweep.to_frame(level="cell"),
+            r"level: no 'cell' \(did you mean cells\?\); allowed: cells, repet",
+        ),
+        (lambda sweep: sweep.compare(by="robt"), r"no axis 'robt' \(did you mean robot\?\)"),
+        (lambda sweep: sweep.compare(by="robot", metrics="peak"), "no metric 'peak'"),
         (lambda sweep: sweep.run(robt="macro"), r"'robt' was not swept \(did you mean robot\?\)"),
         (lambda sweep: sweep.run(robot="makro"), r"robot has no value 'makro' \(did you mean macro\?\)"),
         (
@@ -148,11 +154,11 @@ def test_a_sweep_that_is_not_all_made_says_so(sweep, tmp_path):
     shutil.rmtree(outputs / "runs" / part.run(robot="mini", controller="computed_torque", seed=1).hash)
     assert "1 not made yet" in repr(part)
     assert "1 not made yet" in part._repr_html_()
-    for asked in (part.table, lambda: part.values("energy"), lambda: part.compare("robot")):
+    for asked in (part.to_frame, lambda: part.to_frame(level="repetitions"), lambda: part.compare(by="robot")):
         with pytest.raises(runner.RunnerError, match="1 of its 8 runs are not made yet; the same call"):
             asked()
     assert part.run(robot="mini", controller="computed_torque", seed=0).status == "ok"
     runner.sweep(
         *SHORT, repetitions=6, outputs=outputs, workers=0, robot="macro,mini", controller=CONTROLLERS, seed="0,1"
     )
-    assert len(part.table("energy")) == 8
+    assert len(part.to_frame("energy")) == 8

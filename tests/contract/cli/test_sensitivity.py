@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+import runner
 from runner import store
 from runner.analysis.sensitivity import GROUPS, of_run
 from runner.base.errors import RunnerError
@@ -106,7 +107,7 @@ def test_another_repetition_has_its_own_noise(cli, run):
 
 
 def test_from_python_it_is_arrays(run):
-    found = of_run(store.open_run(run), ["masses"])
+    found = runner.open_run(run).sensitivity("masses")
     assert found.derivatives["peak_torque"].shape == (2,)
     assert [parameter.name for parameter in found.parameters] == ["mass.q2", "mass.q3"]
 
@@ -114,4 +115,4 @@ def test_from_python_it_is_arrays(run):
 def test_the_command_names_all_groups(cli, capsys):
     with pytest.raises(SystemExit, match="0"):
         cli("sensitivity", "--help")
-    assert f"which parameters: {', '.join(GROUPS)}; again" in " ".join(capsys.readouterr().out.split())
+    assert f"groups of parameters: {', '.join(GROUPS)}; default: all" in " ".join(capsys.readouterr().out.split())

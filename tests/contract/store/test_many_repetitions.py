@@ -107,7 +107,7 @@ def test_python_reads_it(many):
     assert list(metric.values) == many.values("energy").tolist()
     assert str(metric).count("J") == 1
     assert found.metrics["steady_state_error"].values == (None,) * MANY
-    assert found.metrics_frame().loc[["energy", "steady_state_error"], "n"].tolist() == [MANY, 0]
+    assert found.to_frame().loc[["energy", "steady_state_error"], "n"].tolist() == [MANY, 0]
     assert len(found.trace(MANY - 1)) == 6  # simulated again, with the metrics that are stored
 
 
