@@ -41,10 +41,10 @@ def test_scripts_for_slurm_make_their_runs(tmp_path, number, runs):
     assert len([*(tmp_path / "outputs" / "runs").iterdir()]) == runs
 
 
-# It makes a sweep twice; what `runner check` does with a reference is tested on its own.
+# It makes a sweep twice; what `runner check` does with a baseline is tested on its own.
 @pytest.mark.slow
 def test_the_workflow_for_github_holds_on_the_same_sweep(tmp_path):
-    follow(steps(DOCS / "ci.md", until="1. Learn what is good"), tmp_path)
+    follow(steps(DOCS / "ci.md", until="1. Save a baseline"), tmp_path)
     (text,) = scripts("ci.md", "yaml")
     step = yaml.safe_load(text)["jobs"]["arm"]["steps"][-1]
     ended = run_script(step["run"], tmp_path / "checkout", {"GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md")})

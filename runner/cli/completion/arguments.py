@@ -129,7 +129,7 @@ def _works(command: str) -> Iterable[str]:
     return (*work_names(), *(("audit", "all") if command == "reproduce" else ()))
 
 
-_FILES = ("DIR", "FILE", "FOLDER", "URDF")
+_FILES = ("DIR", "FILE", "URDF")
 # By how the attribute begins that an argument is kept in; each gets the command.
 _NAMED: Mapping[str, Callable[[str], Iterable[str]]] = {
     "topic": _topics,
