@@ -241,7 +241,10 @@ def _signature(function: Callable[..., Any]) -> str:
 
 
 def _commands() -> Iterator[str]:
-    yield "`runner OVERRIDES` makes one run, `runner -m OVERRIDES` a sweep; `runner --help` shows both.\n\n"
+    yield (
+        "`runner OVERRIDES` or `runner run OVERRIDES` makes one run. `runner -m OVERRIDES` or `runner sweep OVERRIDES` "
+        "makes a sweep. `runner --help` shows both.\n\n"
+    )
     for name in COMMANDS:
         parser = _parser(name)
         yield f"### runner {name}\n\n{inspect.cleandoc(parser.description or '')}\n\n"
