@@ -10,7 +10,7 @@ from runner.api.door import door
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.base.errors import RunnerError
-from runner.cli.columns import letter
+from runner.reporting.comparison.side import letter
 from runner.store.latest import find_folder
 
 if TYPE_CHECKING:

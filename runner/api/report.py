@@ -58,7 +58,7 @@ def report(
     Raises:
         RunnerError: for a folder that holds none of these, an unknown metric or an unknown format.
     """
-    from runner.cli.report import write
+    from runner.reporting.stored import write
 
     given = [things] if isinstance(things, Thing) else list(things)
     if not given:

@@ -36,8 +36,3 @@ def answer_cells(answer: "Answer") -> list[str]:
         "-" if answer.p_value is None else f"{answer.p_value:.2g}",
         answer.word,
     ]
-
-
-def letter(place: int) -> str:
-    """Return what one of several folders is called: A, B, ..., Z, then its number."""
-    return chr(ord("A") + place) if place < 26 else str(place + 1)

@@ -5,7 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from runner.base.texts import one_line
-from runner.cli.columns import COMPARED, aligned, answer_cells, letter, number
+from runner.cli.columns import COMPARED, aligned, answer_cells, number
+from runner.reporting.comparison.side import letter
 
 if TYPE_CHECKING:
     from runner.reporting.comparison.side import Side

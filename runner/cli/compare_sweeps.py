@@ -5,12 +5,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from runner.base.texts import one_line
-from runner.cli.columns import COMPARED, aligned, answer_cells, letter, number
+from runner.cli.columns import COMPARED, aligned, answer_cells, number
 from runner.reporting.answers import EXPLAINED, Asked, judge
 from runner.reporting.comparison.beyond import Beyond, Value
 from runner.reporting.comparison.caveats import SideCaveat, caveats_of
 from runner.reporting.comparison.cells import label_text
-from runner.reporting.comparison.side import open_side, stored_part
+from runner.reporting.comparison.side import letter, open_side, stored_part
 from runner.reporting.comparison.summary import cells_told, size_told
 from runner.reporting.comparison.sweeps import MetricComparison, SweepComparison, compare_sweeps
 from runner.reporting.comparison.words import NOISE_ALONE, POOLED

@@ -87,7 +87,7 @@ def _document(path: Path) -> "tuple[Document, Path]":
     if work is not None:
         return _of_work(*work)
     from runner import store
-    from runner.cli.report import compose_report
+    from runner.reporting.stored import compose_report
 
     if store.is_run(path) and not store.is_sweep(path):
         _tell_failure(store.open_run(path))

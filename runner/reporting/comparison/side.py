@@ -86,3 +86,8 @@ def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:
     kept = [cell for cell, name in enumerate(sweep.hashes) if ends[name]]
     hashes = [sweep.hashes[cell] for cell in kept]
     return replace(sweep, overrides=[sweep.overrides[cell] for cell in kept], hashes=hashes), finished.damage
+
+
+def letter(place: int) -> str:
+    """Return what one of several folders is called: A, B, ..., Z, then its number."""
+    return chr(ord("A") + place) if place < 26 else str(place + 1)

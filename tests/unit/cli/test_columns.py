@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from runner.cli.columns import COMPARED, aligned, answer_cells, letter
+from runner.cli.columns import COMPARED, aligned, answer_cells
 from runner.reporting.answers import Asked, judge
+from runner.reporting.comparison.side import letter
 from runner.statistics import compare_paired
 
 
