@@ -16,7 +16,7 @@ from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.metrics import measure
 from runner.metrics.caveats import Watch, look_together, setting_of, signals_of
-from runner.metrics.summary import units_of
+from runner.plugins.metric_units import units_of
 from runner.sensing import encoder_errors
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate

@@ -36,8 +36,8 @@ from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch_config import NotchConfig
 from runner.environments import ENVIRONMENTS
-from runner.metrics.summary import families
 from runner.plants import PLANTS
+from runner.plugins.metric_units import families
 from runner.plugins.registry import Registry
 from runner.robots.mismatch import MismatchConfig
 from runner.schema.model import StrictModel

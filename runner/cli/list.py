@@ -66,7 +66,7 @@ def _list_plants(config_dirs: Sequence[Path]) -> dict[str, str]:
 
 
 def _list_metrics(_: Sequence[Path]) -> dict[str, str]:
-    from runner.metrics.summary import families  # numpy, which the other topics answer without
+    from runner.plugins.metric_units import families  # numpy, which the other topics answer without
 
     found: dict[str, str] = {}
     for family in families():

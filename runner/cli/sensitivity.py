@@ -84,7 +84,7 @@ def _notes(found: "Sensitivity") -> Iterator[str]:
 
 
 def _unit(name: str) -> str:
-    from runner.metrics import unit_of
+    from runner.plugins.metric_units import unit_of
 
     return unit_of(name) or "1"
 

@@ -9,6 +9,7 @@ from pydantic import field_validator, model_validator
 from runner.base.errors import nearest
 from runner.base.texts import quoted
 from runner.config.compose.meanings import Units
+from runner.plugins.metric_units import unit_of, units
 from runner.schema.model import StrictModel
 
 _METRICS = "metrics"
@@ -57,8 +58,6 @@ class SpecConfig(StrictModel):
         """Refuse what is no metric at all; which of them a run has shows when it has ended."""
         if not isinstance(value, Mapping) or not value:
             return value
-        from runner.metrics import unit_of, units
-
         known = units()
         wrong = [f"{quoted(name)}{nearest(str(name), known)}" for name in value if unit_of(str(name)) is None]
         if wrong:
@@ -68,8 +67,6 @@ class SpecConfig(StrictModel):
     @classmethod
     def find_units(cls, path: Sequence[str]) -> Units | None:
         """Return the units of a key: an end of a bound counts in the unit of its metric."""
-        from runner.metrics import unit_of
-
         if len(path) != len(("metrics", "NAME", "max")) or path[0] != _METRICS or path[2] not in ("min", "max"):
             return None
         unit = unit_of(path[1])

@@ -6,7 +6,7 @@ Names of single joints or axes carry a suffix (`peak_torque_q1`, `max_tracking_e
 """
 
 from runner.metrics.context import MetricContext
-from runner.metrics.summary import Columns, Summary, evaluate, measure, of_run, summarize_arrays, unit_of, units
+from runner.metrics.summary import Columns, Summary, evaluate, measure, of_run, summarize_arrays
 
 __all__ = [
     "Columns",
@@ -16,6 +16,4 @@ __all__ = [
     "measure",
     "of_run",
     "summarize_arrays",
-    "unit_of",
-    "units",
 ]

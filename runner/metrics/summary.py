@@ -1,23 +1,22 @@
 """Metrics of runs, and over the repetitions of one."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from importlib import import_module
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError
 from runner.base.trace import Trace, Traces
-from runner.metrics import contact, effort, positioning, reaching, tracking
+from runner.metrics import positioning, tracking
 from runner.metrics.context import MetricContext
-from runner.metrics.family import MetricFamily, OwnFamily
-from runner.plugins.discovery import added, load
+from runner.metrics.family import OwnFamily
+from runner.plugins import metric_units
 from runner.plugins.guard import watch_metrics
 from runner.trajectories.shifted import Shifted
 
-_FAMILIES: tuple[OwnFamily, ...] = (positioning, tracking, effort, reaching, contact)
+_FAMILIES: list[OwnFamily] = [import_module(name) for name in metric_units.FAMILIES]
 MOST_LISTED = 2000
 """Repetitions up to which a record lists a metric's values; above it has their quantiles, and they stand beside it."""
 
@@ -59,31 +58,6 @@ class Summary:
         return {"unit": self.unit, **ends, "quantiles": dict(self.quantiles)}
 
 
-def families() -> tuple[OwnFamily | MetricFamily, ...]:
-    """Return the metric families, ours and then those of the user's.
-
-    Raises:
-        ConfigError: where one of these cannot be imported, or has no UNITS or `evaluate`.
-    """
-    return (*_FAMILIES, *_added())
-
-
-def _added() -> Sequence[MetricFamily]:
-    return [_load_family(point.name, point.value) for point in added("metric")]
-
-
-def _load_family(name: str, place: str) -> MetricFamily:
-    module = load("metric", name, place)
-    if not (isinstance(module, MetricFamily) and isinstance(module.UNITS, Mapping) and callable(module.evaluate)):
-        raise ConfigError([f"metric {name}: module {place} needs UNITS, a unit for each name, and evaluate"])
-    return module
-
-
-def units() -> dict[str, str]:
-    """Return the unit of each metric by name, without the suffixes of joints and axes."""
-    return {name: unit for family in families() for name, unit in family.UNITS.items()}
-
-
 def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = None) -> dict[str, float | None]:
     """Return all metrics of one run; a run that failed has none. See `measure` for ours.
 
@@ -104,7 +78,7 @@ def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = N
 def evaluate_added(trace: Trace, context: MetricContext, notices: list[str]) -> dict[str, float | None]:
     """Return the metrics of one run that families of the user's give; see `evaluate`."""
     values: dict[str, float | None] = {}
-    for family in _added():
+    for family in metric_units.added_families():
         values |= watch_metrics(family, trace, context, notices)
     return values
 
@@ -168,13 +142,13 @@ class Columns:
     def summarize(self) -> dict[str, Summary]:
         """Return the metrics over the repetitions; of one that was not taken a metric has no value."""
         names = tuple(self._columns)
-        pairs = zip(names, units_of(names), strict=True)
+        pairs = zip(names, metric_units.units_of(names), strict=True)
         return {name: _summarize(unit, self._columns[name]) for name, unit in pairs}
 
 
 def summarize_arrays(names: tuple[str, ...], values: FloatArray) -> dict[str, Summary]:
     """Summarize the metrics of a job's repetitions, given as an array of shape (repetitions, names), NaN for none."""
-    pairs = zip(names, units_of(names), values.T, strict=True)
+    pairs = zip(names, metric_units.units_of(names), values.T, strict=True)
     return {name: _summarize(unit, own) for name, unit, own in pairs}
 
 
@@ -228,25 +202,3 @@ def _quantiles(ordered: FloatArray) -> dict[str, float | None]:
             value += rest / 100.0 * (float(ordered[place + 1]) - value)
         found[level] = value if math.isfinite(value) else None
     return found
-
-
-def units_of(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the units of metrics, whose names may carry a stage in front and a joint or axis behind."""
-    return _units_among(names, tuple(units().items()))
-
-
-@lru_cache(maxsize=64)
-def _units_among(names: tuple[str, ...], known: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
-    by_name = dict(known)
-    return tuple(by_name[_base(name, by_name)] for name in names)
-
-
-def unit_of(name: str) -> str | None:
-    """Return the unit of a metric, whose name may carry a stage in front and a joint or axis behind; None for none."""
-    known = units()
-    return known.get(_base(name, known))
-
-
-def _base(name: str, known: Iterable[str]) -> str:
-    """Return the metric that a name is of: the longest known one within it; the name itself where there is none."""
-    return max((base for base in known if f"_{base}_" in f"_{name}_"), key=len, default=name)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 
 from runner.base.quantities import quantity
-from runner.metrics import unit_of
+from runner.plugins.metric_units import unit_of
 from runner.recordings.compare import RecordingComparison
 
 Number = Callable[[float | None], str]

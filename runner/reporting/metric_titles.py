@@ -4,7 +4,7 @@ import re
 from collections.abc import Mapping
 
 from runner.base.quantities import labelled
-from runner.metrics.summary import families, units
+from runner.plugins.metric_units import families, units
 
 TITLES = {
     "settling_time": "settling time",

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import nearest
 from runner.base.quantities import number, quantity, ranged
 from runner.config.spec import Bound
-from runner.metrics import unit_of
+from runner.plugins.metric_units import unit_of
 from runner.reporting.metric_titles import title
 from runner.statistics.spec.history import History, ends_of, set_after
 

@@ -49,7 +49,7 @@ _TABLE = """
         flexible_around flexible_config flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links
         friction kinds=plants.kinds kinematic load motion=plants.motion motor_friction motors=sensing.motors mujoco
         mujoco_model payload_changes plant=plants.plant rk4 rk4_flexible_links servo set_points touched
-    plugins: registry
+    plugins: metric_units registry
     plugins/guard: __init__=guard.__init__ belief controller=guard.controller environment=guard.environment faults
         metrics plant=guard.plant read_only sensing trajectory=guard.trajectory
     robots: __init__=robots.__init__ armature=robots.armature beams by_joint cantilever chain denavit_hartenberg

@@ -15,7 +15,8 @@ from runner.base.errors import StoreError
 from runner.base.trace import Failure, Trace
 from runner.metrics.caveats import Found
 from runner.metrics.plant_error import PlantError
-from runner.metrics.summary import Summary, over_repetitions, units_of
+from runner.metrics.summary import Summary, over_repetitions
+from runner.plugins.metric_units import units_of
 from runner.statistics.spec import bounds_of, judge
 from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically

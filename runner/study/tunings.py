@@ -30,7 +30,7 @@ from pydantic import Field, PositiveInt, model_validator
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.metrics.summary import unit_of, units
+from runner.plugins.metric_units import unit_of, units
 from runner.study.arithmetic import Level
 from runner.study.given import GivenPart
 from runner.study.grid import FlatOverrides, Grid, Overrides

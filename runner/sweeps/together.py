@@ -7,7 +7,8 @@ import numpy as np
 
 from runner import store
 from runner.base.errors import StoreError
-from runner.metrics.summary import MOST_LISTED, units_of
+from runner.metrics.summary import MOST_LISTED
+from runner.plugins.metric_units import units_of
 from runner.simulation.batch import Batcher
 from runner.simulation.batch_jobs import Job, Simulated, simulate_together
 from runner.store.json_texts import JsonTexts

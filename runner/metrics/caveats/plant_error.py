@@ -5,7 +5,7 @@ from typing import NamedTuple
 from runner.metrics.caveats.caveat import Caveat
 from runner.metrics.caveats.rule import percent
 from runner.metrics.plant_error import PARTED, PLANT, PlantError, sufficient_step
-from runner.metrics.summary import unit_of
+from runner.plugins.metric_units import unit_of
 
 NAME, KEY = "plant_error", "share"
 _OF_BAND = 0.01  # of the settling band: smaller differences do not matter

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from runner.base.quantities import above_rounding, quantity
 from runner.config.compose.user_settings import outputs_dir
-from runner.metrics import unit_of
+from runner.plugins.metric_units import unit_of
 from runner.recordings import files_of, words
 from runner.recordings.compare import RecordingComparison
 from runner.recordings.recording import Recording

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from runner.base.quantities import spread
-from runner.metrics.summary import units
+from runner.plugins.metric_units import units
 from runner.reporting.document import Block, Origin, Section, Table
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.markup import literal, literals

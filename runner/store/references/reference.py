@@ -14,7 +14,7 @@ from runner.base.errors import StoreError, nearest
 from runner.base.limits import read_text
 from runner.config.compose.messages import describe
 from runner.config.spec import Bound
-from runner.metrics import unit_of, units
+from runner.plugins.metric_units import unit_of, units
 
 if TYPE_CHECKING:
     from runner.store import Run

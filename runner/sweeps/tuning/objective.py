@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from runner.base.errors import RunnerError, nearest
-from runner.metrics.summary import unit_of, units
+from runner.plugins.metric_units import unit_of, units
 from runner.store import Run
 
 Direction = Literal["minimize", "maximize"]

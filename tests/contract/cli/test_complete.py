@@ -7,7 +7,7 @@ from runner.cli.completion.line import read_line
 from runner.cli.list import TOPICS
 from runner.cli.main import COMMANDS
 from runner.config.compose.options import group_options
-from runner.metrics.summary import units
+from runner.plugins.metric_units import units
 
 
 def words(line):

@@ -2,7 +2,7 @@
 
 from runner.cli.list import TOPICS
 from runner.config.compose.options import group_options
-from runner.metrics import units
+from runner.plugins.metric_units import units
 
 
 def test_an_overview_of_all_topics(cli):

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from runner.base.errors import SimulationError
-from runner.metrics import evaluate, summary
+from runner.metrics import evaluate
+from runner.plugins import metric_units
 from runner.simulation.assembly import metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
@@ -36,7 +37,7 @@ def test_a_metric_that_goes_wrong_has_no_value_and_the_others_stay(
         return give()
 
     family.evaluate = evaluate_own
-    monkeypatch.setattr(summary, "_added", lambda: (family,))
+    monkeypatch.setattr(metric_units, "added_families", lambda: (family,))
     config = checked_config("robot=macro", "duration=0.1")
     loop = closed_loop("robot=macro", "duration=0.1")
     notices = []
@@ -62,7 +63,7 @@ def test_a_metric_that_changes_the_trace_is_a_failure_that_names_the_place(
         getattr(trace, what)[:] = 0.0
 
     family.evaluate = evaluate_own
-    monkeypatch.setattr(summary, "_added", lambda: (family,))
+    monkeypatch.setattr(metric_units, "added_families", lambda: (family,))
     config, loop = checked_config("robot=macro", "duration=0.1"), closed_loop("robot=macro", "duration=0.1")
     trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
     with pytest.raises(SimulationError, match=r"metrics of mine: .*read-only \(test_metrics.py, line \d+, in evaluate"):

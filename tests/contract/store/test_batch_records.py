@@ -6,8 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.metrics import summarize_arrays, unit_of
+from runner.metrics import summarize_arrays
 from runner.metrics.caveats import Caveat, Found
+from runner.plugins.metric_units import unit_of
 from runner.store import Finished, Outcome
 from runner.store.json_texts import JsonTexts
 from runner.store.shards import ShardRow, ShardRun, read_columns, read_outcomes, shard_name, write_shard

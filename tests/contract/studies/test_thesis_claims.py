@@ -4,7 +4,7 @@ import pytest
 from pydantic import ValidationError
 
 from runner.config.compose.options import group_options
-from runner.metrics import unit_of
+from runner.plugins.metric_units import unit_of
 from runner.reporting.claims import CONTRADICTION, FACTOR, PublishedClaim, judge, load_claims
 
 CLAIMS = load_claims("thesis")

@@ -14,7 +14,8 @@ from runner.controllers.macro_mini.stage_loops import CarrierController, RiderCo
 from runner.controllers.operational_space.operational_space import OperationalSpace
 from runner.controllers.operational_space.whole_body import WholeBody
 from runner.controllers.torque_law import PinocchioArm
-from runner.metrics import evaluate, units
+from runner.metrics import evaluate
+from runner.plugins.metric_units import units
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.robot import end_points
 from runner.simulation.assembly import assemble, metric_context

@@ -5,7 +5,7 @@ import pytest
 from support.one_run import of_one
 
 from runner.metrics import MetricContext, effort
-from runner.metrics.summary import unit_of
+from runner.plugins.metric_units import unit_of
 from runner.trajectories.goal import Goal
 
 evaluate = of_one(effort)

@@ -8,8 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.base.trace import Failure
-from runner.metrics import Columns, MetricContext, evaluate, units
+from runner.metrics import Columns, MetricContext, evaluate
 from runner.metrics.summary import MOST_LISTED
+from runner.plugins.metric_units import units
 from runner.trajectories.goal import Goal
 from runner.trajectories.quintic import Quintic
 

@@ -1,0 +1,60 @@
+"""Units of metrics, built-in and user-supplied."""
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from importlib import import_module
+from types import ModuleType
+
+from runner.base.errors import ConfigError
+from runner.plugins.discovery import added, load
+
+FAMILIES = tuple(f"runner.metrics.{name}" for name in ("positioning", "tracking", "effort", "reaching", "contact"))
+"""Modules of the built-in families of metrics, in the order in which reports list them."""
+
+
+def families() -> list[ModuleType]:
+    """Return the modules of all families of metrics, the built-in ones first.
+
+    Raises:
+        ConfigError: if a user-supplied one cannot be imported, or has no UNITS or `evaluate`.
+    """
+    return [*map(import_module, FAMILIES), *added_families()]
+
+
+def added_families() -> list[ModuleType]:
+    """Return the modules of the user-supplied families of metrics; see `families`."""
+    return [_load(point.name, point.value) for point in added("metric")]
+
+
+def _load(name: str, place: str) -> ModuleType:
+    module = load("metric", name, place)
+    if not (isinstance(getattr(module, "UNITS", None), Mapping) and callable(getattr(module, "evaluate", None))):
+        raise ConfigError([f"metric {name}: module {place} needs UNITS, a unit for each name, and evaluate"])
+    return module
+
+
+def units() -> dict[str, str]:
+    """Return the unit of each metric by name, without the suffixes of joints and axes."""
+    return {name: unit for family in families() for name, unit in family.UNITS.items()}
+
+
+def units_of(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the units of metrics, whose names may carry a stage in front and a joint or axis behind."""
+    return _units_among(names, tuple(units().items()))
+
+
+@lru_cache(maxsize=64)
+def _units_among(names: tuple[str, ...], known: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
+    by_name = dict(known)
+    return tuple(by_name[_base(name, by_name)] for name in names)
+
+
+def unit_of(name: str) -> str | None:
+    """Return the unit of a metric, whose name may carry a stage in front and a joint or axis behind; None for none."""
+    known = units()
+    return known.get(_base(name, known))
+
+
+def _base(name: str, known: Iterable[str]) -> str:
+    """Return the metric that a name is of: the longest known one within it; the name itself where there is none."""
+    return max((base for base in known if f"_{base}_" in f"_{name}_"), key=len, default=name)
