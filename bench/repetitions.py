@@ -43,7 +43,7 @@ def _seconds(repetitions: int) -> float:
 def _memory(repetitions: int) -> float:
     """Return how many bytes `limits.memory` counts."""
     config = validate(compose([*_OVERRIDES, f"repetitions={repetitions}"]).resolved)
-    return memory_of_run(config.arm, config.timing.ticks, repetitions, config.feels)
+    return memory_of_run(config.arm, config.timing.ticks, repetitions, config.has_contact)
 
 
 def _peak() -> float:

@@ -17,7 +17,7 @@ def check_observer(config: RunConfig) -> None:
     if config.commands != "torque":
         kind = config.controller.kind
         problem = f"it corrects torques, and {kind} commands joint positions; take a controller that gives torques"
-    elif any(loop.feels for loop in config.loops):
+    elif any(loop.uses_wrench for loop in config.loops):
         kind = config.controller.kind
         problem = f"it takes a touch for a disturbance, which {kind} is to feel; take a controller that feels nothing"
     elif _parted(config):

@@ -46,7 +46,7 @@ def _refused(config: RunConfig, loop: Loop) -> list[str]:
         problems.append(f"{config.controller.kind} commands joint positions; take a controller that gives torques")
     elif loop.follows_joints:
         problems.append("the trajectory is one of joints, which ask for no tip; take one of the tip, or []")
-    elif loop.feels:
+    elif loop.uses_wrench:
         problems.append(f"{config.controller.kind} finds the wall by the encoders; take a law that feels no force")
     if config.parallel:
         problems.append(

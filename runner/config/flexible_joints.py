@@ -8,7 +8,7 @@ from runner.controllers.joint_space.motor_pd import MotorPdConfig
 from runner.plants import Plant
 from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
-from runner.plants.kinds import MayBend
+from runner.plants.kinds import HasFlexibleJoints
 from runner.plants.motion import find_motion
 from runner.plants.motors import MotorSide
 from runner.plants.plant import innermost
@@ -24,7 +24,7 @@ def find_flexibility(config: RunConfig) -> Flexibility | None:
     Raises:
         ConfigError: see FlexibleJointsConfig.by_joint.
     """
-    joints = config.plant.flexible_joints if isinstance(config.plant, MayBend) else None
+    joints = config.plant.flexible_joints if isinstance(config.plant, HasFlexibleJoints) else None
     return None if joints is None else joints.by_joint(config.arm)
 
 
@@ -40,7 +40,7 @@ def believe_motors(config: RunConfig, believed: Robot) -> Robot:
 def find_motor_side(config: RunConfig, plant: Plant, believed: Robot) -> MotorSide | None:
     """Return what drives and encoders know of the motors of a plant; None where joints are rigid."""
     springs = innermost(plant)
-    joints = config.plant.flexible_joints if isinstance(config.plant, MayBend) else None
+    joints = config.plant.flexible_joints if isinstance(config.plant, HasFlexibleJoints) else None
     if not isinstance(springs, FlexibleJoints):
         return None
     known = joints is not None and joints.static_deflection == "known"
@@ -96,7 +96,7 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
     if config.joint_torques is not None:
         problems.append("torque sensors are read at rigid joints; take joint_torque_sensor.noise=null")
-    joints = plant.flexible_joints if isinstance(plant, MayBend) else None
+    joints = plant.flexible_joints if isinstance(plant, HasFlexibleJoints) else None
     theta = joints is not None and joints.encoders == "motor" and joints.static_deflection == "unknown"
     if isinstance(config.controller, MotorPdConfig) and not theta:
         problems.append(

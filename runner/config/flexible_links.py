@@ -35,7 +35,7 @@ def check_flexible_links(config: RunConfig) -> None:
         return
     config.plant.motors(config.arm)
     problems = []
-    if config.feels:
+    if config.has_contact:
         problems.append("a force on the tip would act on rigid links; take environment=free and a law that feels none")
     if config.loaded:
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")

@@ -13,7 +13,7 @@ from runner.schema.model import StrictModel
 _GB = 1e9  # bytes
 _NUMBER = 8  # bytes
 # Numbers that a run keeps of each tick, its stored trace and the metrics' arrays included: measured, rounded up.
-_OF_EACH_TICK, _OF_EACH_JOINT, _OF_WHAT_IS_FELT = 24, 13, 75
+_OF_EACH_TICK, _OF_EACH_JOINT, _OF_CONTACT = 24, 13, 75
 # Metrics of an arm, of each of its joints, and of each stage that carries another; and bytes of each in a repetition:
 # as it is gathered, and as it is stored.
 _METRICS, _METRICS_OF_JOINT, _METRICS_OF_CARRIER = 22, 4, 9
@@ -34,16 +34,16 @@ class LimitsConfig(StrictModel):
     memory: PositiveFloat | None
 
 
-def memory_of_run(arm: Robot, ticks: int, repetitions: int, feels: bool) -> float:
+def memory_of_run(arm: Robot, ticks: int, repetitions: int, has_contact: bool) -> float:
     """Return the memory that a run takes beside the program, in bytes.
 
     Args:
         arm: The robot.
         ticks: Number of control ticks.
         repetitions: Number of repetitions.
-        feels: Whether the tip may feel something.
+        has_contact: True if the tip may touch something, or if a controller uses the external wrench.
     """
-    numbers = _OF_EACH_TICK + _OF_EACH_JOINT * arm.model.nq + (_OF_WHAT_IS_FELT if feels else 0)
+    numbers = _OF_EACH_TICK + _OF_EACH_JOINT * arm.model.nq + (_OF_CONTACT if has_contact else 0)
     at_once = max(ticks, min(ticks * repetitions, TICKS_AT_ONCE))
     return _NUMBER * numbers * at_once + _of_repetition(arm) * repetitions
 
@@ -54,13 +54,13 @@ def _of_repetition(arm: Robot) -> float:
     return float(_OF_EACH_METRIC * metrics)
 
 
-def check_memory(limits: LimitsConfig, arm: Robot, timing: Timing, repetitions: int, feels: bool) -> None:
+def check_memory(limits: LimitsConfig, arm: Robot, timing: Timing, repetitions: int, has_contact: bool) -> None:
     """Check that a run fits into memory; see memory_of_run.
 
     Raises:
         ConfigError: if it would take more than `limits.memory`; gives the estimate, and how many repetitions would fit.
     """
-    needed, half = memory_of_run(arm, timing.ticks, repetitions, feels), half_of_memory()
+    needed, half = memory_of_run(arm, timing.ticks, repetitions, has_contact), half_of_memory()
     own = math.inf if limits.memory is None else _GB * limits.memory
     if needed > min(own, half):
         fit = repetitions + int((min(own, half) - needed) // _of_repetition(arm))

@@ -14,7 +14,7 @@ def check_notch(config: RunConfig) -> None:
     """
     if config.notch is None:
         return
-    if config.commands != "torque" or any(loop.feels for loop in config.loops):
+    if config.commands != "torque" or any(loop.uses_wrench for loop in config.loops):
         kind, what = config.controller.kind, "commands joint positions" if config.commands != "torque" else "feels"
         raise ConfigError(
             [f"notch: {kind} {what}; take a controller that gives torques and feels nothing, or notch=none"]

@@ -34,7 +34,7 @@ def check_schedule(config: RunConfig) -> None:
     if PLANTS.commands(config.plant.kind) == "position":
         fit = " or plant=".join(kind for kind in PLANTS.names() if PLANTS.commands(kind) == "torque")
         raise ConfigError([f"{key} of plant={config.plant.kind}, whose joints no mass moves; take plant={fit}, or []"])
-    if config.feels:
+    if config.has_contact:
         raise ConfigError(
             [
                 f"{key} where the tip touches something or its sensor is read, which would have to tell the payload "

@@ -93,9 +93,9 @@ class RunConfig:
         return not self.plugged and not self.endpoint_sensor.read_by
 
     @property
-    def feels(self) -> bool:
-        """Whether the tip may feel something."""
-        return self.environment.kind != "free" or any(loop.feels for loop in self.loops)
+    def has_contact(self) -> bool:
+        """True if the tip may touch something, or if a controller uses the external wrench."""
+        return self.environment.kind != "free" or any(loop.uses_wrench for loop in self.loops)
 
     @property
     def warnings(self) -> list[str]:

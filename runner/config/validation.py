@@ -31,7 +31,7 @@ from runner.config.timing import Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig
-from runner.plants.kinds import HasServo, TurnsBases
+from runner.plants.kinds import HasServo, RotatesMountedBase
 from runner.plugins.registry import KindConfig
 from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot, end_points
@@ -128,7 +128,7 @@ def _checked(config: RunConfig) -> RunConfig:
     check_reading(config)
     endpoint_ticks(config)
     check_repeats(config)
-    check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.feels)
+    check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.has_contact)
     return config
 
 
@@ -163,7 +163,7 @@ def _check_mass(arm: Robot, plant: PlantConfig) -> None:
 
 
 def _is_parallel(arm: Robot, plant: PlantConfig) -> bool:
-    turns = plant.wrist_rotation if isinstance(plant, TurnsBases) else "real"
+    turns = plant.wrist_rotation if isinstance(plant, RotatesMountedBase) else "real"
     return len(arm.stages) > 1 and turns == "parallel"
 
 

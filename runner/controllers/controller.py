@@ -57,21 +57,21 @@ class PositionController(Protocol):
         ...
 
 
-class FeelingController(Protocol):
-    """A control law, of torques or of joint positions, that feels what its tip touches.
+class WrenchFeedbackController(Protocol):
+    """A control law, of torques or of joint positions, that uses the external wrench on the tip.
 
     Attributes:
-        felt: Wrench of the world on the tip as it believes it: force in N, moment about the tip in N m, along the
-            base's axes, shape (6,).
+        external_wrench: Controller's estimate of the environment's wrench on the tip: force in N, moment about the tip
+            in N m, along the base's axes, shape (6,).
     """
 
-    felt: FloatArray
+    external_wrench: FloatArray
 
-    def feel(self, reading: FloatArray) -> None:
+    def update_wrench(self, reading: FloatArray) -> None:
         """Take the wrist sensor's reading, force in N and moment in N m along its own axes, shape (6,)."""
 
-    def notices(self) -> list[str]:
-        """Return what a user should know of how the last run went, a text for each."""
+    def messages(self) -> list[str]:
+        """Return messages for the user about the last run."""
         ...
 
 
@@ -84,7 +84,7 @@ class Loop:
         joints: The joints that it commands, within the robot's.
         period: Time between two of its ticks, in s.
         controller: The control law; it is given the measurement of every joint.
-        feels: Whether it is given the wrist sensor's reading too, by its `feel`.
+        uses_wrench: True if its `update_wrench` also gets the wrist sensor's reading.
         follows_joints: Whether its reference is the desired motion of the joints, shape (3, nq), in place of the tip's.
     """
 
@@ -92,10 +92,10 @@ class Loop:
     joints: slice
     period: float
     controller: Controller | PositionController
-    feels: bool = False
+    uses_wrench: bool = False
     follows_joints: bool = False
 
     @property
-    def feeling(self) -> FeelingController | None:
-        """The control law as one that feels; None where it does not."""
-        return cast(FeelingController, self.controller) if self.feels else None
+    def wrench_feedback(self) -> WrenchFeedbackController | None:
+        """The control law, if it uses the external wrench; else None."""
+        return cast(WrenchFeedbackController, self.controller) if self.uses_wrench else None

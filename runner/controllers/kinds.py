@@ -61,7 +61,7 @@ class FollowsJoints(Protocol):
 
 
 @runtime_checkable
-class KnowsLimits(Protocol):
+class SupportsTorqueLimits(Protocol):
     """A controller that is told the torque limits of the joints it commands."""
 
     def with_limits(self, limits: FloatArray) -> Controller:
@@ -102,8 +102,8 @@ class ChecksStability(Protocol):
 
 
 @runtime_checkable
-class LeadsByForce(ChecksStability, Protocol):
-    """A config of such controllers that says, too, where they feel, and what they take off the reading."""
+class CommandsForce(ChecksStability, Protocol):
+    """A config of such controllers with the point of the wrench, and the compensation of the reading."""
 
     wrench_frame: str
     compensation: str
@@ -153,7 +153,7 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
         return wanted
 
     def tell_limits(self, config: ControllerConfig, loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
-        """Return a config's loops with controllers that know their torque limits; see KnowsLimits.
+        """Return a config's loops with controllers that know their torque limits; see SupportsTorqueLimits.
 
         Args:
             config: The config.
@@ -167,8 +167,12 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
 
     def _told(self, config: ControllerConfig, loop: Loop, limits: FloatArray) -> Controller | PositionController:
         if not isinstance(loop.controller, WatchedController):
-            return loop.controller.with_limits(limits) if isinstance(loop.controller, KnowsLimits) else loop.controller
+            return (
+                loop.controller.with_limits(limits)
+                if isinstance(loop.controller, SupportsTorqueLimits)
+                else loop.controller
+            )
         own = loop.controller.watched
-        if not isinstance(own, KnowsLimits):
+        if not isinstance(own, SupportsTorqueLimits):
             return loop.controller
         return WatchedController(self.ask(config, lambda _, handed: own.with_limits(handed), limits), len(limits))

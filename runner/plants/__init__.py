@@ -6,7 +6,7 @@ from runner.plants.plant import (
     ContactPlant,
     Plant,
     PositionPlant,
-    TellsContact,
+    ReportsContact,
     ToolReactionPlant,
     innermost,
 )
@@ -19,7 +19,7 @@ __all__ = [
     "Plant",
     "PlantConfig",
     "PositionPlant",
-    "TellsContact",
+    "ReportsContact",
     "TellsEndPoints",
     "ToolReactionPlant",
     "innermost",

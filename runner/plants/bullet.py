@@ -78,7 +78,7 @@ class Bullet:
             self.reset(self.q, self.dq)
         else:
             self._remove_damping_and_motors()
-        self._tool_mount = self._feel_tool()
+        self._tool_mount = self._enable_tool_sensor()
         self.set_gravity(model.gravity)
         # Bullet splits one stepSimulation into the steps: bit-identical to as many calls, and cheaper. Its own
         # "substeps" start at 2; 0 means none.
@@ -89,7 +89,7 @@ class Bullet:
             physicsClientId=self._client,
         )
 
-    def _feel_tool(self) -> int | None:
+    def _enable_tool_sensor(self) -> int | None:
         """Let Bullet compute the reaction in the tool's mount, at its origin in world axes; return that joint."""
         index = self._joint_indices().get(TOOL_MOUNT)
         if index is not None:
@@ -217,7 +217,7 @@ def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) 
 
 
 def modes(config: BulletConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-    """Return how flexible joints ring with their motors held; see Rings."""
+    """Return how flexible joints ring with their motors held; see HasModes."""
     return [] if config.flexible_joints is None else config.flexible_joints.modes(robot, q)
 
 

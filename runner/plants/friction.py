@@ -7,7 +7,7 @@ import pinocchio as pin
 from scipy.linalg.lapack import dposv
 
 from runner.base.arrays import FloatArray
-from runner.plants.plant import Plant, PlantAround, TellsContact
+from runner.plants.plant import Plant, PlantWrapper, ReportsContact
 from runner.robots.model import RobotModel
 
 _NO_CONTACT = np.zeros(6)
@@ -41,7 +41,7 @@ class Frictional:
     def __init__(self, plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
         self.plant = plant
         """What friction brakes."""
-        self._contacts = plant if isinstance(plant, TellsContact) else None
+        self._contacts = plant if isinstance(plant, ReportsContact) else None
         self.q, self.dq = plant.q, plant.dq
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()
@@ -140,7 +140,7 @@ class TellsFriction(Protocol):
 def friction_of(plant: Plant) -> FloatArray:
     """Return what friction took from the torques of a plant in the last tick, shape (nq,), in N m."""
     while not isinstance(plant, TellsFriction):
-        if not isinstance(plant, PlantAround):
+        if not isinstance(plant, PlantWrapper):
             return np.zeros(len(plant.q))
         plant = plant.plant
     return plant.friction

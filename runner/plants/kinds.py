@@ -28,7 +28,7 @@ class PlantConfig(KindConfig, Protocol):
 
 
 @runtime_checkable
-class TurnsBases(Protocol):
+class RotatesMountedBase(Protocol):
     """A config of plants that says whether a carrier turns its rider's base; with one that does not, it does."""
 
     wrist_rotation: Literal["real", "parallel"]
@@ -42,7 +42,7 @@ class ComputesLate(Protocol):
 
 
 @runtime_checkable
-class MayBend(Protocol):
+class HasFlexibleJoints(Protocol):
     """A config of plants whose joints may have springs between motors and links; None where they are rigid."""
 
     flexible_joints: FlexibleJointsConfig | None
@@ -81,7 +81,7 @@ class MovesByRungeKutta(Protocol):
 
 
 @runtime_checkable
-class Rings(Protocol):
+class HasModes(Protocol):
     """A module whose plants may be flexible, and tells how they ring."""
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
@@ -90,7 +90,7 @@ class Rings(Protocol):
 
 
 @runtime_checkable
-class StandsIn(Protocol):
+class IsFallback(Protocol):
     """A config of plants that may stand in for another kind, which is missing; None where nothing is missing."""
 
     in_place_of: str | None
@@ -143,9 +143,9 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         return module.motion(config, robot) if isinstance(module, MovesByRungeKutta) else None
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-        """Return how a plant rings about a posture with its motors held, where a kind of ours may ring; see Rings."""
+        """Return the modes of a built-in plant about a posture with its motors held, if it may ring; see HasModes."""
         module = self.module(config.kind)
-        return module.modes(config, robot, q) if self.is_ours(config.kind) and isinstance(module, Rings) else []
+        return module.modes(config, robot, q) if self.is_ours(config.kind) and isinstance(module, HasModes) else []
 
     def moves_exactly(self, config: PlantConfig) -> bool:
         """Tell whether a step moves positions exactly under a held force; see MovesExactly."""

@@ -177,7 +177,7 @@ def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) 
 
 
 def modes(config: MujocoConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-    """Return how flexible joints ring with their motors held; see Rings."""
+    """Return how flexible joints ring with their motors held; see HasModes."""
     return [] if config.flexible_joints is None else config.flexible_joints.modes(robot, q)
 
 

@@ -55,7 +55,7 @@ def read_spec(urdf: str, min_inertia: float, armature: Mapping[str, float]) -> A
         joint.armature = armature.get(joint.name, 0.0)
     _put_up_wall(spec)
     for mounted in root.iterfind(f"joint[@name='{TOOL_MOUNT}']/child"):
-        _feel(spec, mounted.get("link", ""))
+        _add_tool_sensors(spec, mounted.get("link", ""))
     return spec
 
 
@@ -111,7 +111,7 @@ def _put_up_wall(spec: Any) -> None:
         spec.add_pair(name=name, geomname1=WALL, geomname2=name, condim=1)
 
 
-def _feel(spec: Any, tool: str) -> None:
+def _add_tool_sensors(spec: Any, tool: str) -> None:
     """Put sensors of the reaction in a tool's mount at its origin."""
     spec.body(tool).add_site(name=TOOL_MOUNT)
     for name, kind in ((FORCE, mujoco.mjtSensor.mjSENS_FORCE), (MOMENT, mujoco.mjtSensor.mjSENS_TORQUE)):

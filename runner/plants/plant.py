@@ -46,7 +46,7 @@ class PositionPlant(Plant, Protocol):
 
 
 @runtime_checkable
-class PlantAround(Protocol):
+class PlantWrapper(Protocol):
     """What acts on another plant, as servos and friction do."""
 
     @property
@@ -56,7 +56,7 @@ class PlantAround(Protocol):
 
 
 @runtime_checkable
-class TellsContact(Protocol):
+class ReportsContact(Protocol):
     """A plant that tells what the world puts on the arm while it moves it."""
 
     def contact_wrench(self) -> FloatArray:
@@ -68,7 +68,7 @@ class TellsContact(Protocol):
 
 
 @runtime_checkable
-class ContactPlant(TellsContact, Protocol):
+class ContactPlant(ReportsContact, Protocol):
     """A plant that makes the contact of a tool with a wall itself.
 
     One that does not gets the wall's force on the tool as joint torques, held for a tick. A tip without a tool touches
@@ -100,6 +100,6 @@ class ToolReactionPlant(Protocol):
 
 def innermost(plant: Plant) -> Plant:
     """Return the plant that moves the arm, below servos and friction."""
-    while isinstance(plant, PlantAround):
+    while isinstance(plant, PlantWrapper):
         plant = plant.plant
     return plant

@@ -114,7 +114,7 @@ def motion(config: Rk4Config, robot: Robot) -> Motion | None:
 
 
 def modes(config: Rk4Config, robot: Robot, q: FloatArray) -> list[Mode]:
-    """Return how flexible joints ring with their motors held; see Rings."""
+    """Return how flexible joints ring with their motors held; see HasModes."""
     return [] if config.flexible_joints is None else config.flexible_joints.modes(robot, q)
 
 

@@ -87,7 +87,7 @@ class Touched:
         return load
 
     def contact_wrench(self) -> FloatArray:
-        """Return the wrench of the surface on the arm in the state that it has now; see TellsContact."""
+        """Return the wrench of the surface on the arm in the state that it has now; see ReportsContact."""
         return self._wrench
 
     @property

@@ -59,7 +59,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         on_error.callback(plant.close)
         if isinstance(environment, Wall):
             environment = None if touched else put_up(environment, config, plant)
-        interaction = Interaction(arm, environment, timing.tick) if config.feels else None
+        interaction = Interaction(arm, environment, timing.tick) if config.has_contact else None
         compiled = _compile(config, loops)
         on_error.pop_all()
     return ClosedLoop(
@@ -91,7 +91,7 @@ def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, Float
     Raises:
         ConfigError: see assemble.
     """
-    if config.commands != "torque" or config.feels or config.loaded or not config.compilable:
+    if config.commands != "torque" or config.has_contact or config.loaded or not config.compilable:
         return None
     if PLANTS.motion(config.plant, config.arm) is None:
         return None
@@ -106,7 +106,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
         config: The checked config.
         repetition: Number of the repetition, of which the beliefs follow.
     """
-    if config.commands != "torque" or config.feels or not config.compilable or is_flexible(config):
+    if config.commands != "torque" or config.has_contact or not config.compilable or is_flexible(config):
         return None
     if config.timing.delay is None:
         return None
@@ -149,7 +149,7 @@ def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledComm
     if config.commands != "torque" or not config.compilable or is_flexible(config):
         return None
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
-    motion = None if config.feels or config.loaded else PLANTS.motion(config.plant, config.arm)
+    motion = None if config.has_contact or config.loaded else PLANTS.motion(config.plant, config.arm)
     whole = None if motion is None else compile_whole(commands, motion, config.timing)
     return compile_commands(commands) if whole is None else whole
 

@@ -1,4 +1,4 @@
-"""What the tip feels in one run: the world's wrench, the wrist sensor's reading of it, and the record of both."""
+"""Contact of the tip in one run: the environment's wrench, the wrist sensor's reading of it, and the record of both."""
 
 from dataclasses import fields
 
@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.trace import ContactSignals
 from runner.environments.interaction import Interaction
-from runner.plants import TellsContact, ToolReactionPlant, innermost
+from runner.plants import ReportsContact, ToolReactionPlant, innermost
 from runner.sensing import WristSensor
 from runner.simulation.closed_loop import ClosedLoop
 
@@ -15,7 +15,7 @@ _NOTHING = np.zeros(6)
 
 
 class Contact:
-    """The interaction of one run: it loads the sensor, lets the controllers feel its reading, and keeps a record.
+    """The interaction of one run: it loads the sensor, passes its reading to the controllers, and keeps a record.
 
     Args:
         closed: The closed loop.
@@ -25,11 +25,11 @@ class Contact:
 
     def __init__(self, closed: ClosedLoop, interaction: Interaction, wrist: WristSensor) -> None:
         moved = innermost(closed.plant)
-        self._contacts = moved if isinstance(moved, TellsContact) else None
+        self._contacts = moved if isinstance(moved, ReportsContact) else None
         self._reactions = moved if isinstance(moved, ToolReactionPlant) else None
         self._interaction = interaction
         self._wrist = wrist
-        self._feeling = [loop.feeling for loop in closed.loops if loop.feeling is not None]
+        self._controllers = [loop.wrench_feedback for loop in closed.loops if loop.wrench_feedback is not None]
         self._signals = ContactSignals(*(np.zeros((closed.ticks + 1, 6)) for _ in range(5)))
         interaction.reset(closed.q_start)
 
@@ -43,10 +43,10 @@ class Contact:
         reaction = None if self._reactions is None else self._reactions.tool_reaction()
         if reaction is not None:
             signals.reaction[k] = interaction.to_flange_axes(reaction)
-        for controller in self._feeling:
-            controller.feel(reading)
-        if self._feeling:
-            signals.felt[k] = self._feeling[0].felt  # of its last tick
+        for controller in self._controllers:
+            controller.update_wrench(reading)
+        if self._controllers:
+            signals.felt[k] = self._controllers[0].external_wrench  # of its last tick
         return torques
 
     def signals(self, kept: slice) -> ContactSignals:

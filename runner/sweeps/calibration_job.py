@@ -113,12 +113,12 @@ def judge(outcomes: Sequence[Outcome]) -> dict[str, Any] | None:
 
 
 def _provenance(config: CalibrationConfig, composed: Composed, outcomes: Sequence[Outcome]) -> dict[str, Any]:
-    notices = next((outcome.notices for outcome in outcomes if outcome.notices), ())
+    messages = next((outcome.messages for outcome in outcomes if outcome.messages), ())
     return {
         **provenance.made(composed, "calibrate"),
         "choices": {group: choice for group, choice in composed.choices.items() if group in config.resolved},
         "flange": config.arm.flange,
         "joints": list(config.arm.model.joint_names),
         "seed": config.settings.seed,
-        "warnings": [*config.robot.warnings, *notices],
+        "warnings": [*config.robot.warnings, *messages],
     }

@@ -53,7 +53,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
     failure: tuple[int, Failure] | None = None
     columns, ticks, laws = Columns(config.settings.repetitions), [], []
     clocked = 0
-    notices: list[str] = []
+    messages: list[str] = []
     told: list[str] = []
     try:
         for repetition in range(config.settings.repetitions):
@@ -62,7 +62,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
                 last.close()
             ran, said = _simulate(loop, config, repetition)
             trace, measured = _judge(ran, context, told)
-            notices = notices or said
+            messages = messages or said
             if first is None:
                 first, of_first = trace, measured
             if trace.failure is not None and failure is None:
@@ -89,7 +89,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
         repetitions=config.settings.repetitions,
         failure=failure,
         timing=timing(np.concatenate(ticks), *seconds, np.concatenate(laws) if laws else None),
-        provenance=job_provenance(config, composed, [*notices, *dict.fromkeys(told)]),
+        provenance=job_provenance(config, composed, [*messages, *dict.fromkeys(told)]),
         plant_error=error,
     )
 
@@ -151,5 +151,6 @@ def _simulate(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[T
     """Simulate a repetition; return its trace, and what the controllers and the wrist's sensor tell of it."""
     made = make_sensors(closed, config, repetition)
     trace, wrist = simulate(closed, *made), made[1]
-    told = [notice for loop in closed.loops if loop.feeling is not None for notice in loop.feeling.notices()]
+    users = [loop.wrench_feedback for loop in closed.loops if loop.wrench_feedback is not None]
+    told = [message for controller in users for message in controller.messages()]
     return trace, told + ([] if wrist is None else wrist.overloads())

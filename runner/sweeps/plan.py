@@ -119,7 +119,7 @@ def check(plan: Plan) -> Checked:
             names[cells] = _names(composed, config, block)
             repetitions = config.settings.repetitions
             costs[cells] = config.timing.ticks * repetitions
-            memory = max(memory, memory_of_run(config.arm, config.timing.ticks, repetitions, config.feels))
+            memory = max(memory, memory_of_run(config.arm, config.timing.ticks, repetitions, config.has_contact))
             start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
             described = resolve(composed.resolved, config.timing.step, start)
             resolved.add(described, composed.overrides, block.cells)

@@ -170,7 +170,7 @@ def _why_not(config: RunConfig) -> str:
         return "plant.flexible_joints: runs of arms with flexible joints are not compiled; take plant=rk4"
     if is_flexible(config):
         return "plant.links: runs of arms whose links bend are not compiled; take plant=rk4"
-    if config.feels:
+    if config.has_contact:
         return f"environment {config.environment.kind}: runs in which the tip feels something are not compiled whole"
     if config.plugged:
         kinds = ", ".join(f"{group}={part.kind}" for group, part in config.plugged.items())

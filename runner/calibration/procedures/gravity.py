@@ -84,7 +84,7 @@ class Weighing:
         """Calibrate once; see Procedure."""
         bench, config = self._bench, self._config
         poses, covariances = bench.read_poses(self.postures, config.repeatability, generator)
-        readings, notices = self._read(generator)
+        readings, messages = self._read(generator)
         found = identify_gravity(
             readings,
             poses[:, :3, :3],
@@ -95,7 +95,7 @@ class Weighing:
         force, moment = self._residual(found)
         conditions = found.condition_numbers
         measures = dict(zip(self.measures, (*conditions, force, moment), strict=True))
-        return Outcome(found.values, found.values - self.truth, found.covariance, measures, notices)
+        return Outcome(found.values, found.values - self.truth, found.covariance, measures, messages)
 
     def _choose(self, candidates: FloatArray) -> FloatArray:
         config, flange = self._config, self._bench.flange

@@ -18,14 +18,14 @@ class Outcome:
         errors: Estimate less truth, in the order of its `errors`, shape (n,).
         covariance: Of the errors as the calibration gives it, shape (n, n).
         measures: Values of its `measures` by name.
-        notices: What a user should know of it.
+        messages: Messages for the user.
     """
 
     estimates: FloatArray
     errors: FloatArray
     covariance: FloatArray
     measures: Mapping[str, float]
-    notices: Sequence[str] = ()
+    messages: Sequence[str] = ()
 
 
 class Procedure(Protocol):

@@ -65,7 +65,7 @@ class AdmittanceControl:
     f is what the wrist's sensor feels of the world, its bias and the tool off, seen from the tip (Meca500 report,
     sections 4 to 6), so that a force through the tip turns nothing. Orientation: that of home, turned by e. Where the
     joints cannot follow, at their limits or at a singular posture, the filter is put where the arm is, as fast as
-    it is, and stays stable there; `notices` tells when it was.
+    it is, and stays stable there; `messages` reports when it was.
 
     Args:
         robot: The robot.
@@ -81,7 +81,7 @@ class AdmittanceControl:
         self._orientation = robot.model.tip_pose(robot.home)[:3, :3]
         self._reading = np.zeros(6)
         self._approach = Approach(config.period, config.tip_speed)
-        self.felt = np.zeros(6)
+        self.external_wrench = np.zeros(6)
 
     def reset(self, q: FloatArray) -> None:
         """Rest where the arm stands; see PositionController."""
@@ -89,16 +89,16 @@ class AdmittanceControl:
         self._motion.reset(q)
         self._compensation.reset()
         self._approach.reset(self._motion.tip.translation)
-        self._reading, self.felt = np.zeros(6), np.zeros(6)
+        self._reading, self.external_wrench = np.zeros(6), np.zeros(6)
 
-    def feel(self, reading: FloatArray) -> None:
-        """Take the wrist sensor's reading; see FeelingController."""
+    def update_wrench(self, reading: FloatArray) -> None:
+        """Take the wrist sensor's reading; see WrenchFeedbackController."""
         self._reading = reading
 
     def joint_positions(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the next command; see PositionController.joint_positions."""
         at_tip, at_flange = self._compensation.external(q, dq, self._reading)
-        self.felt = at_tip
+        self.external_wrench = at_tip
         translation, rotation = self._filter.translation, self._filter.rotation
         self._filter.step(at_tip if self._at_tip else at_flange)
         rest = self._approach.follow(reference[0] + self._config.period * reference[1])
@@ -110,9 +110,9 @@ class AdmittanceControl:
             self._filter.place(held, turned, way / self._config.period)  # as fast as the arm: it slows, not stops
         return command
 
-    def notices(self) -> list[str]:
-        """Return where joints or the reach have held the tool back; see FeelingController."""
-        return self._motion.notices()
+    def messages(self) -> list[str]:
+        """Return where joints or the reach have held the tool back; see WrenchFeedbackController."""
+        return self._motion.messages()
 
 
 CONFIG = AdmittanceConfig
@@ -125,7 +125,7 @@ def build(config: AdmittanceConfig, robot: Robot) -> tuple[Loop, ...]:
         ConfigError: for an arm of fewer than six joints, or a law that no mass on a damper and a spring has.
     """
     controller = AdmittanceControl(robot, config)
-    return (Loop(robot.stage_names[-1], slice(0, robot.model.nq), config.period, controller, feels=True),)
+    return (Loop(robot.stage_names[-1], slice(0, robot.model.nq), config.period, controller, uses_wrench=True),)
 
 
 def start_posture(config: AdmittanceConfig, robot: Robot, start: FloatArray) -> FloatArray | None:

@@ -19,8 +19,8 @@ class ForceReading(Protocol):
     def reset(self) -> None:
         """Forget an earlier run."""
 
-    def feel(self, reading: FloatArray) -> None:
-        """Take the wrist sensor's reading, shape (6,); see FeelingController."""
+    def update_wrench(self, reading: FloatArray) -> None:
+        """Take the wrist sensor's reading, shape (6,); see WrenchFeedbackController."""
 
     def read_joint_torques(self, reading: FloatArray) -> None:
         """Take the mean torques on the links since the last tick, shape (nq,); see ReadsJointTorques."""
@@ -48,7 +48,7 @@ class WristReading:
         self._compensation.reset()
         self._reading = np.zeros(6)
 
-    def feel(self, reading: FloatArray) -> None:
+    def update_wrench(self, reading: FloatArray) -> None:
         """Take the reading; see ForceReading."""
         self._reading = reading
 
@@ -86,7 +86,7 @@ class JointTorqueReading:
         self._before: tuple[FloatArray, FloatArray] | None = None
         self._acted: FloatArray | None = None
 
-    def feel(self, reading: FloatArray) -> None:
+    def update_wrench(self, reading: FloatArray) -> None:
         """Do nothing."""
 
     def read_joint_torques(self, reading: FloatArray) -> None:

@@ -69,8 +69,8 @@ class HybridForce:
         self._tip, self._config, self._period, self._reading = acting.tip, config, acting.period, reading
         self._normal = _unit(config.normal)
         _check_directions(acting, self._normal)
-        self.felt: FloatArray = np.zeros(6)
-        """See FeelingController."""
+        self.external_wrench: FloatArray = np.zeros(6)
+        """See WrenchFeedbackController."""
         self.reset()
 
     @property
@@ -81,11 +81,11 @@ class HybridForce:
     def reset(self) -> None:
         """Forget an earlier run; see Controller."""
         self._reading.reset()
-        self._sum, self.felt = 0.0, np.zeros(6)
+        self._sum, self.external_wrench = 0.0, np.zeros(6)
 
-    def feel(self, reading: FloatArray) -> None:
-        """Take the wrist sensor's reading; see FeelingController."""
-        self._reading.feel(reading)
+    def update_wrench(self, reading: FloatArray) -> None:
+        """Take the wrist sensor's reading; see WrenchFeedbackController."""
+        self._reading.update_wrench(reading)
 
     def read_joint_torques(self, reading: FloatArray) -> None:
         """Take the joint torque sensors' reading; see ReadsJointTorques."""
@@ -94,8 +94,8 @@ class HybridForce:
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the torques of the law above; see Controller.torque."""
         config = self._config
-        self.felt = self._reading.wrench(q, dq)
-        f = float(self.felt[:3] @ self._normal)
+        self.external_wrench = self._reading.wrench(q, dq)
+        f = float(self.external_wrench[:3] @ self._normal)
         seen = self._tip.see(q, dq, reference)
         n = seen.axes @ self._normal
         if f > 0.0:
@@ -106,8 +106,8 @@ class HybridForce:
         push += 2.0 * config.force_damping * mass * rate * float(n @ seen.velocity)
         return self._tip.torque(seen, seen.asked - n * (n @ seen.asked), -push * n)
 
-    def notices(self) -> list[str]:
-        """Return nothing; see FeelingController."""
+    def messages(self) -> list[str]:
+        """Return nothing; see WrenchFeedbackController."""
         return []
 
 
@@ -126,7 +126,7 @@ def build(config: HybridForceConfig, robot: Robot) -> tuple[Loop, ...]:
         if config.force_source == "wrist"
         else JointTorqueReading(robot, acting.period)
     )
-    return acting.loops(HybridForce(acting, config, reading), feels=True)
+    return acting.loops(HybridForce(acting, config, reading), uses_wrench=True)
 
 
 def _unit(normal: list[float]) -> FloatArray:

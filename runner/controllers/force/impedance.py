@@ -72,4 +72,4 @@ def build(config: ImpedanceConfig, robot: Robot) -> tuple[Loop, ...]:
         ConfigError: where a value misses a stage, or the arm has too few joints.
     """
     acting = find_acting(config, robot)
-    return acting.loops(Impedance(acting.tip, config), feels=False)
+    return acting.loops(Impedance(acting.tip, config), uses_wrench=False)

@@ -201,9 +201,9 @@ class Acting(NamedTuple):
     period: float
     below: tuple[Loop, ...]
 
-    def loops(self, controller: Controller, feels: bool) -> tuple[Loop, ...]:
+    def loops(self, controller: Controller, uses_wrench: bool) -> tuple[Loop, ...]:
         """Return the loops of a robot whose tip a controller leads, which may be given the wrist sensor's reading."""
-        return (*self.below, Loop(self.name, self.tip.joints, self.period, controller, feels=feels))
+        return (*self.below, Loop(self.name, self.tip.joints, self.period, controller, uses_wrench=uses_wrench))
 
 
 def find_acting(config: TipForceConfig, robot: Robot) -> Acting:

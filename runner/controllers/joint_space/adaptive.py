@@ -123,7 +123,7 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         return VelocityGain(self.numbers.rate, self.numbers.rate)
 
     def with_limits(self, limits: FloatArray) -> "Adaptive":
-        """Return the law that is told its torque limits; see KnowsLimits."""
+        """Return the law that is told its torque limits; see SupportsTorqueLimits."""
         return self.with_numbers(limits=limits)
 
     def own_start(self) -> FloatArray:

@@ -93,7 +93,7 @@ class IterativeLearning:
         return self._law.velocity_gain
 
     def with_limits(self, limits: FloatArray) -> "IterativeLearning":
-        """Return the law that is told its torque limits; see KnowsLimits."""
+        """Return the law that is told its torque limits; see SupportsTorqueLimits."""
         told = copy(self)
         told._limits = limits
         told.reset()

@@ -93,7 +93,7 @@ class JointPid(JointLaw[JointPidNumbers]):
         return VelocityGain(self.numbers.k_v, 0.0)
 
     def with_limits(self, limits: FloatArray) -> "JointPid":
-        """Return the law that is told its torque limits; see KnowsLimits."""
+        """Return the law that is told its torque limits; see SupportsTorqueLimits."""
         return self.with_numbers(limits=limits)
 
     def command(

@@ -85,6 +85,6 @@ class LimitedMotion:
         if not at_bound.any():
             self._held.setdefault("the posture, singular or nearly so", time)
 
-    def notices(self) -> list[str]:
+    def messages(self) -> list[str]:
         """Return what has held the tip back, each with the time when it first did."""
         return [f"{what} has held the tool back, first at t = {time:.4g} s" for what, time in self._held.items()]

@@ -83,7 +83,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
     from runner.metrics.caveats.file import left_out_of
     from runner.metrics.caveats.time_constants import slowest_part
     from runner.metrics.caveats.touch import force_contact, servo_contact
-    from runner.plants.kinds import StandsIn
+    from runner.plants.kinds import IsFallback
 
     model = config.arm.model
     units, position_limits, mass = _of_model(model)
@@ -103,11 +103,11 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         torques=config.commands == "torque",
         ticks_per_torque=ticks,
         tracked=config.path.tracked,
-        yields=config.environment.kind != "free" and any(loop.feels for loop in config.loops),
+        yields=config.environment.kind != "free" and any(loop.uses_wrench for loop in config.loops),
         noise=config.noise,
         mismatch=config.mismatch,
         mass=mass,
-        in_place_of=config.plant.in_place_of if isinstance(config.plant, StandsIn) else None,
+        in_place_of=config.plant.in_place_of if isinstance(config.plant, IsFallback) else None,
         contact=None if q_start is None or "wrist_sensor" in config.plugged else servo_contact(config, q_start),
         touch=None if q_start is None or "wrist_sensor" in config.plugged else force_contact(config, q_start),
         velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,

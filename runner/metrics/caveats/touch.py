@@ -8,7 +8,7 @@ from runner.base.arrays import FloatArray
 from runner.config.run import RunConfig
 from runner.controllers.force.force_stability import touch_radius
 from runner.controllers.force.hybrid_force import HybridForceConfig
-from runner.controllers.kinds import LeadsByForce
+from runner.controllers.kinds import CommandsForce
 from runner.environments.wall import WallConfig
 from runner.plants import PLANTS
 from runner.plants.kinds import HasServo
@@ -25,7 +25,7 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         q_start: Joint positions at the start, shape (nq,), in rad.
     """
     plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
-    if not isinstance(wall, WallConfig) or not isinstance(law, LeadsByForce) or not isinstance(plant, HasServo):
+    if not isinstance(wall, WallConfig) or not isinstance(law, CommandsForce) or not isinstance(plant, HasServo):
         return None
     if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
         return None

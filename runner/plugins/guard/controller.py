@@ -45,19 +45,19 @@ class WatchedController:
         return self._command(self._controller.joint_positions, time, q, dq, reference)
 
     @property
-    def felt(self) -> FloatArray:
-        """The wrench that it believes to feel; see FeelingController."""
-        felt = ask(lambda: self._controller.felt, self._time)
-        return checked(felt, (6,), self._controller.feel, self._time)
+    def external_wrench(self) -> FloatArray:
+        """The estimate of the external wrench; see WrenchFeedbackController."""
+        external_wrench = ask(lambda: self._controller.external_wrench, self._time)
+        return checked(external_wrench, (6,), self._controller.update_wrench, self._time)
 
-    def feel(self, reading: FloatArray) -> None:
-        """Let it feel; see FeelingController."""
-        ask(self._controller.feel, self._time, read_only(reading))
+    def update_wrench(self, reading: FloatArray) -> None:
+        """Pass on the reading; see WrenchFeedbackController."""
+        ask(self._controller.update_wrench, self._time, read_only(reading))
 
-    def notices(self) -> list[str]:
-        """Return what it has to tell; see FeelingController."""
+    def messages(self) -> list[str]:
+        """Return its messages; see WrenchFeedbackController."""
         try:
-            return [str(notice) for notice in ask(lambda: self._controller.notices(), self._time)]
+            return [str(notice) for notice in ask(lambda: self._controller.messages(), self._time)]
         except SimulationError as error:
             return [error.reason]
 

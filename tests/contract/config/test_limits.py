@@ -59,7 +59,7 @@ def test_a_sweep_that_costs_too_much_is_not_begun(cli, tmp_path):
 def test_null_allows_half_of_the_memory_and_any_time(checked_config, monkeypatch):
     asked = ("robot=macro", "duration=30000", "limits.memory=null", "limits.cpu_hours=null")
     config = checked_config(*asked)
-    needed = memory_of_run(config.arm, config.timing.ticks, 1, config.feels)
+    needed = memory_of_run(config.arm, config.timing.ticks, 1, config.has_contact)
     monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: needed)
     check_cpu_time(checked_config(*asked).limits, 1e12, 1)
     monkeypatch.setattr("runner.config.limits.half_of_memory", lambda: needed - 1.0)
@@ -85,7 +85,11 @@ def test_hours_are_compared():
 
 def test_what_may_be_felt_takes_memory(macro, one_stage, macro_urdf):
     robot = one_stage(macro_urdf, macro)
-    assert memory_of_run(robot, 1000, 1, feels=True) > memory_of_run(robot, 1000, 1, feels=False) > 8 * 1000 * 50
+    assert (
+        memory_of_run(robot, 1000, 1, has_contact=True)
+        > memory_of_run(robot, 1000, 1, has_contact=False)
+        > 8 * 1000 * 50
+    )
 
 
 def test_limits_are_no_part_of_a_result(checked_config):

@@ -87,25 +87,25 @@ def test_limits_do_not_reach_into_the_users_own_array():
     assert own.tolist() == [1.0, 2.0, 3.0]
 
 
-class Feels(Law):
-    felt = np.zeros(6)
+class UsesWrench(Law):
+    external_wrench = np.zeros(6)
 
-    def feel(self, reading):
+    def update_wrench(self, reading):
         reading[0] = 0.0
 
-    def notices(self):
+    def messages(self):
         return 1 / 0
 
 
-def test_forces_that_a_law_feels_and_tells_are_watched():
-    law = WatchedController(Feels(None), 3)
-    with pytest.raises(SimulationError, match=r"read-only \(test_controller.py, line \d+, in feel\)"):
-        law.feel(np.ones(6))
-    (notice,) = law.notices()
-    assert re.fullmatch(r"ZeroDivisionError: division by zero \(test_controller.py, line \d+, in notices\)", notice)
-    law._controller.felt = np.zeros(3)
-    with pytest.raises(SimulationError, match=r"Feels.feel .* gave an array of shape \(3,\)"):
-        _ = law.felt
+def test_a_law_that_uses_the_wrench_is_watched():
+    law = WatchedController(UsesWrench(None), 3)
+    with pytest.raises(SimulationError, match=r"read-only \(test_controller.py, line \d+, in update_wrench\)"):
+        law.update_wrench(np.ones(6))
+    (message,) = law.messages()
+    assert re.fullmatch(r"ZeroDivisionError: division by zero \(test_controller.py, line \d+, in messages\)", message)
+    law._controller.external_wrench = np.zeros(3)
+    with pytest.raises(SimulationError, match=r"UsesWrench.update_wrench .* gave an array of shape \(3,\)"):
+        _ = law.external_wrench
 
 
 def test_our_own_laws_are_not_watched(checked_config):

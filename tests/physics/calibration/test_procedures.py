@@ -114,9 +114,9 @@ def test_what_compensation_leaves_is_nothing_for_an_exact_sensor_and_grows_with_
 def test_an_overloaded_sensor_saturates_and_says_so():
     done = procedure("calibration=gravity", "robot.tool.mass=3")
     outcome = repeat(done)
-    assert any("beyond the sensor's range of 20 N; its reading stayed there" in notice for notice in outcome.notices)
+    assert any("beyond the sensor's range of 20 N; its reading stayed there" in message for message in outcome.messages)
     assert abs(outcome.errors[5]) > 0.1  # the bias takes up what the range cuts off
-    assert not repeat(procedure("calibration=gravity")).notices
+    assert not repeat(procedure("calibration=gravity")).messages
 
 
 def test_equal_generators_give_equal_outcomes():
