@@ -4,7 +4,7 @@ import numpy as np
 
 from bench.arms import Arm, assembled
 from bench.turns import Block
-from runner.simulation.compiled.closed_loop import Whole, run_all
+from runner.simulation.compiled.closed_loop import LoopProgram, run_all
 from runner.simulation.sensors import make_encoders
 
 SIZES = (1, 40, 1000)
@@ -14,17 +14,17 @@ TICKS = 400
 def batches(arm: Arm, law: str) -> dict[int, Block]:
     """Return batches of runs of a law by their size, each run with noise of its own; none where it is not compiled."""
     config, closed = assembled(arm, law, "rk4", 1, TICKS)
-    whole = closed.compiled
-    if not isinstance(whole, Whole):
+    loop_program = closed.compiled
+    if not isinstance(loop_program, LoopProgram):
         return {}
-    commands, times = whole.commands, np.arange(TICKS + 1, dtype=np.float64) * closed.tick
+    commands, times = loop_program.commands, np.arange(TICKS + 1, dtype=np.float64) * closed.tick
     shared = commands.shared(times, closed.trajectory.sample(times))
     runs = [make_encoders(closed, config.noise, config.settings.seed, run) for run in range(max(SIZES))]
     errors = [np.array([encoder.errors for encoder in loop]) for loop in zip(*runs, strict=True)]
     start = commands.start(np.tile(closed.q_start, (len(runs), 1)), [each[:, 0] for each in errors])
 
     def block(size: int) -> Block:
-        values, own = np.tile(whole.values, (size, 1)), [each[:size] for each in errors]
-        return Block(lambda: run_all(whole, values, shared, own, start[:size]), size * TICKS)
+        values, own = np.tile(loop_program.values, (size, 1)), [each[:size] for each in errors]
+        return Block(lambda: run_all(loop_program, values, shared, own, start[:size]), size * TICKS)
 
     return {size: block(size) for size in SIZES}

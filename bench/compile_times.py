@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from bench.arms import ARMS, Arm, assembled
-from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
+from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
 from runner.symbolic import program
 
 
@@ -19,14 +19,14 @@ def main() -> bool:
 
 
 def _judge(arm: Arm, law: str) -> bool:
-    whole = assembled(arm, law, "rk4", 1, 1)[1].compiled
-    if not isinstance(whole, Whole):
+    loop_program = assembled(arm, law, "rk4", 1, 1)[1].compiled
+    if not isinstance(loop_program, LoopProgram):
         print(f"  {arm.name}, {law}: not compiled  MISSED")
         return False
     works: dict[str, Callable[[], object]] = {
-        "law alone": lambda: CompiledCommands(whole.commands),
-        "tick on rk4": lambda: whole.program(1),
-        "tick of a batch": lambda: whole.program(program.LANES),
+        "law alone": lambda: CompiledCommands(loop_program.commands),
+        "tick on rk4": lambda: loop_program.program(1),
+        "tick of a batch": lambda: loop_program.program(program.LANES),
     }
     met = []
     for what, work in works.items():

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation.assembly import assemble
-from runner.simulation.compiled.closed_loop import Whole
+from runner.simulation.compiled.closed_loop import LoopProgram
 
 _LAWS = {
     "adaptive": ("robot=macro", "controller=adaptive"),
@@ -79,6 +79,6 @@ def _compiled(*overrides: str) -> str:
     try:
         if closed.compiled is None:
             return "Python"
-        return "whole run" if isinstance(closed.compiled, Whole) else "the law"
+        return "whole run" if isinstance(closed.compiled, LoopProgram) else "the law"
     finally:
         closed.close()

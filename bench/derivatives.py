@@ -25,11 +25,19 @@ def main() -> bool:
     met = True
     for name, overrides in RUNS.items():
         found = slopes_of(compose(overrides), GROUPS, 0)
-        config, whole, setting, slopes = found.scene.config, found.scene.whole, found.scene.setting, found.settings
+        config, loop_program, setting, slopes = (
+            found.scene.config,
+            found.scene.loop_program,
+            found.scene.setting,
+            found.settings,
+        )
         times = np.arange(config.timing.ticks + 1) * config.timing.tick
-        shared, errors = whole.commands.shared(times, config.path.sample(times)), [e[None] for e in setting.errors]
-        run = _best(lambda: run_all(whole, whole.values[None], shared, errors, setting.start[None]))  # noqa: B023
-        all_ = _best(lambda: tangents(whole, setting, slopes, shared))  # noqa: B023
+        shared, errors = (
+            loop_program.commands.shared(times, config.path.sample(times)),
+            [e[None] for e in setting.errors],
+        )
+        run = _best(lambda: run_all(loop_program, loop_program.values[None], shared, errors, setting.start[None]))  # noqa: B023
+        all_ = _best(lambda: tangents(loop_program, setting, slopes, shared))  # noqa: B023
         each = all_ / run / len(slopes)
         good = each <= TARGET[name]
         met &= good

@@ -12,7 +12,7 @@ from runner.base.errors import ConfigError, SimulationError
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop, PositionController
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
-from runner.robots.task_space import task_directions
+from runner.robots.task_space import task_basis
 from runner.trajectories import Trajectory
 
 _AT_LIMIT = 1e-6  # rad or m
@@ -52,7 +52,7 @@ def check_path(
     problem = (
         _find_end(times, q, stuck)
         or _find_stop(arm.model, trajectory, times, q, tolerance)
-        or _find_haste(arm.model, trajectory, times, q)
+        or _check_speed(arm.model, trajectory, times, q)
         or _find_departure(arm.model, trajectory, times, q, tolerance)
     )
     if problem:
@@ -98,7 +98,7 @@ def _find_stop(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: 
         for limit in limits
         if abs(value - limit) < _AT_LIMIT
     ]
-    J = task_directions(model, pose=False) @ model.tip_jacobian(q[row])[:3]
+    J = task_basis(model, pose=False) @ model.tip_jacobian(q[row])[:3]
     smallest = float(np.linalg.svd(J, compute_uv=False)[-1])
     if smallest < _SINGULAR * model.reach:
         reasons.append(
@@ -122,7 +122,7 @@ def _departure(time: float, distance: FloatArray) -> str:
     return f"trajectory: at t = {time:.4g} s the tip leaves the path, by {distance.max():.4g} m at most"
 
 
-def _find_haste(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: FloatArray) -> str:
+def _check_speed(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: FloatArray) -> str:
     speeds = np.abs(np.diff(q, axis=0)) / (times[1] - times[0])
     share = speeds / model.velocity_limits
     if share.max(initial=0.0) <= 1.0 + 1e-9:

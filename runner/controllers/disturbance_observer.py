@@ -135,7 +135,7 @@ class MomentumObserver:
             torque: What the law asks for, shape (n,), in N m.
             memory: What the observer kept.
         """
-        n, h, less = len(numbers.limits), numbers.period, arm.maths.less
+        n, h, less = len(numbers.limits), numbers.period, arm.backend.less
         r, before, acted, to_come = memory[:n], memory[n : 2 * n], memory[2 * n : 3 * n], memory[3 * n :]
         p, b = (values[self._first : self._end] for values in arm.momentum(q, dq, numbers.gravity))
         d = (p - 0.5 * h * b - before) / h - acted
@@ -144,7 +144,7 @@ class MomentumObserver:
         held = np.array([_within(arm, *pair) for pair in zip(asked, numbers.limits, strict=True)])
         if self._late:  # the first torque acts from the start
             first = np.concatenate([held] * self._late)
-            to_come = arm.maths.choose(less(time, 0.5 * h), lambda: first, lambda: to_come)
+            to_come = arm.backend.choose(less(time, 0.5 * h), lambda: first, lambda: to_come)
         return asked, np.concatenate([r, p + 0.5 * h * b, to_come, held])
 
 
@@ -290,5 +290,5 @@ def observed(
 
 def _within(arm: Arm, torque: Scalar, limit: Scalar) -> Scalar:
     """Return a torque within its limit."""
-    most = arm.maths.maximum
+    most = arm.backend.maximum
     return -most(-most(torque, -limit), -limit)

@@ -11,7 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
 from runner.plugins.guard import WatchedController
-from runner.symbolic.maths import FLOATS, Array, Maths, Scalar
+from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
 
 
 class NotchNumbers(NamedTuple):
@@ -56,13 +56,13 @@ class Notch:
         return 2 * len(self.numbers.b[0])
 
     def filter(
-        self, maths: Maths, numbers: NotchNumbers, time: Scalar, torque: Array, memory: Array
+        self, backend: Backend, numbers: NotchNumbers, time: Scalar, torque: Array, memory: Array
     ) -> tuple[Array, Array]:
         """Return what passes of some torques, shape (n,), in N m, and what the notch keeps."""
         (b0, b1, b2), (a1, a2), n = numbers.b, numbers.a, len(torque)
         late = (b2 - a2) * torque
         rest = np.concatenate([(b1 - a1) * torque + late, late])
-        memory = maths.choose(maths.less(time, 0.5 * numbers.period), lambda: rest, lambda: memory)
+        memory = backend.choose(backend.less(time, 0.5 * numbers.period), lambda: rest, lambda: memory)
         passed = b0 * torque + memory[:n]
         return passed, np.concatenate([b1 * torque - a1 * passed + memory[n:], b2 * torque - a2 * passed])
 
@@ -122,7 +122,7 @@ class NotchedLaw(TorqueLaw[NotchedNumbers]):
         """Return what passes of the law's torques, and what both keep; see TorqueLaw."""
         own = len(memory) - self._notch.remembers
         torque, kept = self._law.evaluate(arms, numbers.law, time, q, dq, reference, memory[:own])
-        passed, seen = self._notch.filter(arms[0].maths, numbers.notch, time, torque, memory[own:])
+        passed, seen = self._notch.filter(arms[0].backend, numbers.notch, time, torque, memory[own:])
         return passed, np.concatenate([kept, seen])
 
 
@@ -145,7 +145,7 @@ class NotchedController:
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return what passes of the controller's torques; see Controller."""
         torque = self._controller.torque(time, q, dq, reference)
-        passed, self._memory = self._notch.filter(FLOATS, self._notch.numbers, time, torque, self._memory)
+        passed, self._memory = self._notch.filter(NUMPY, self._notch.numbers, time, torque, self._memory)
         return passed
 
 

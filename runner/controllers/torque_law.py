@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
-from runner.symbolic.maths import FLOATS, Array, Maths, Scalar
+from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
 
 
 class Tip(NamedTuple):
@@ -34,7 +34,7 @@ class Arm(Protocol):
     """What a law may ask of its arm, over floats or whatever scalar its arguments hold."""
 
     @property
-    def maths(self) -> Maths:
+    def backend(self) -> Backend:
         """The functions over these scalars."""
         ...
 
@@ -42,11 +42,11 @@ class Arm(Protocol):
         """Return the tip's motion, its Jacobian included, at joint positions and velocities, shapes (nq,)."""
         ...
 
-    def place(self, q: Array) -> tuple[Array, Array]:
+    def tip_pose(self, q: Array) -> tuple[Array, Array]:
         """Return where the tip is, x and R of Tip, at joint positions, shape (nq,); valid as long as a Tip."""
         ...
 
-    def motion(self, q: Array, dq: Array) -> tuple[Array, Array, Array]:
+    def tip_pose_and_twist(self, q: Array, dq: Array) -> tuple[Array, Array, Array]:
         """Return where the tip is and its velocity, shape (6,), linear before angular, in m/s and rad/s."""
         ...
 
@@ -85,19 +85,19 @@ class PinocchioArm:
 
     Args:
         model: The arm.
-        has_weight: Whether gravity acts on it.
+        gravity_compensation: Whether gravity acts on it.
     """
 
-    maths = FLOATS
+    backend = NUMPY
 
-    def __init__(self, model: RobotModel, has_weight: bool = True) -> None:
+    def __init__(self, model: RobotModel, gravity_compensation: bool = True) -> None:
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()
         self._tip = model.tip_frame
         self._zero = np.zeros(model.nq)
-        self._has_weight, self._own_gravity, self._turned = has_weight, model.gravity, False
+        self._gravity_compensation, self._own_gravity, self._turned = gravity_compensation, model.gravity, False
         self._gravity: FloatArray = self._model.gravity.linear  # a view: what is written there acts
-        if not has_weight:
+        if not gravity_compensation:
             self._gravity[:] = 0.0
         # Views into Pinocchio's data: each update of the frame refreshes them, without a new object per tick.
         self._x: FloatArray = self._data.oMf[self._tip].translation
@@ -113,13 +113,13 @@ class PinocchioArm:
         motion = pin.getFrameClassicalAcceleration(model, data, tip, pin.LOCAL_WORLD_ALIGNED)
         return Tip(self._x, self._R, J, motion.vector)
 
-    def place(self, q: FloatArray) -> tuple[Array, Array]:
+    def tip_pose(self, q: FloatArray) -> tuple[Array, Array]:
         """Return where the tip is; see Arm."""
         pin.forwardKinematics(self._model, self._data, q)
         pin.updateFramePlacement(self._model, self._data, self._tip)
         return self._x, self._R
 
-    def motion(self, q: FloatArray, dq: FloatArray) -> tuple[Array, Array, Array]:
+    def tip_pose_and_twist(self, q: FloatArray, dq: FloatArray) -> tuple[Array, Array, Array]:
         """Return where the tip is and its velocity; see Arm."""
         model, data, tip = self._model, self._data, self._tip
         pin.forwardKinematics(model, data, q, dq)
@@ -164,7 +164,7 @@ class PinocchioArm:
 
     def _turn(self, gravity: FloatArray | None) -> None:
         """Let a gravity act on what has weight; None is the arm's own."""
-        if self._has_weight and (self._turned or gravity is not None):
+        if self._gravity_compensation and (self._turned or gravity is not None):
             self._gravity[:] = self._own_gravity if gravity is None else gravity
             self._turned = gravity is not None
 
@@ -175,7 +175,7 @@ N = TypeVar("N", bound=tuple[Any, ...])
 class TorqueLaw(ABC, Generic[N]):
     """A torque law; a Controller by Pinocchio.
 
-    A derived class writes `evaluate` with the arms' functions, `arm.maths` and NumPy's operators. What decides by an
+    A derived class writes `evaluate` with the arms' functions, `arm.backend` and NumPy's operators. What decides by an
     `if` of Python is fixed when the law is made; a number that may change from run to run stands in `numbers`.
 
     Args:

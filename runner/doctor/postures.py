@@ -6,7 +6,7 @@ from runner.base.arrays import FloatArray
 from runner.base.texts import few
 from runner.doctor.finding import Finding
 from runner.robots.model import RobotModel
-from runner.robots.task_space import task_directions
+from runner.robots.task_space import task_basis
 from runner.robots.tree import UrdfTree
 from runner.robots.urdf_values import number
 from runner.robots.workspace import analyse
@@ -57,7 +57,7 @@ def _scaled(M: FloatArray) -> FloatArray:
 
 def check_tasks(model: RobotModel) -> list[Finding]:
     """Return which tasks the arm has joints enough for."""
-    position, pose = (len(task_directions(model, turned)) for turned in (False, True))
+    position, pose = (len(task_basis(model, turned)) for turned in (False, True))
     if not position:
         text = f"no joint moves '{model.tip_name}' from its place: the axes pass through it"
         return [Finding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")]
@@ -80,7 +80,7 @@ def _singular_values(model: RobotModel, postures: FloatArray, pose: bool) -> Flo
 
     Turns count as the way that they move a point a reach away, and so do slides against turns.
     """
-    directions = task_directions(model, pose)
+    directions = task_basis(model, pose)
     rows = np.where(directions[:, :3].any(axis=1), 1.0, model.reach)
     columns = np.where(model.slides, model.reach, 1.0)
     J = [rows[:, None] * (directions @ model.tip_jacobian(q)[: directions.shape[1]]) * columns for q in postures]
@@ -89,7 +89,7 @@ def _singular_values(model: RobotModel, postures: FloatArray, pose: bool) -> Flo
 
 def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
     """Return how much of some postures, shape (N, nq), is nearly singular for the tip's position."""
-    if model.nq < len(task_directions(model, pose=False)):
+    if model.nq < len(task_basis(model, pose=False)):
         return []
     values = _singular_values(model, postures, pose=False)
     smallest = values[:, -1]

@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.doctor.finding import Finding
 from runner.doctor.postures import SINGULAR, smallest_singular_values
 from runner.robots.model import RobotModel
-from runner.robots.task_space import distance_beside, task_directions
+from runner.robots.task_space import distance_beside, task_basis
 
 _STEP = 0.15  # of the reach, from home to goal
 _FAR = 1.0  # rad: farther no joint turns to the goal
@@ -71,7 +71,7 @@ def judge_home(model: RobotModel, given: Mapping[str, float]) -> tuple[FloatArra
 def _home(model: RobotModel, postures: FloatArray) -> FloatArray:
     middle = postures.mean(axis=0)
     candidates = np.round(middle + 0.8 * (postures - middle), 2)
-    pose = model.nq >= len(task_directions(model, pose=True))
+    pose = model.nq >= len(task_basis(model, pose=True))
     score = smallest_singular_values(model, candidates, pose) / model.reach
     lowest = [min(model.frame_poses(q, (*model.joint_names, model.tip_name))[1:, 2, 3]) for q in candidates]
     score = score - np.where(np.array(lowest) < min(0.0, float(model.shoulder[2])) - 1e-9, 1.0, 0.0)
@@ -97,8 +97,8 @@ def _goal(model: RobotModel, home: FloatArray, postures: FloatArray) -> FloatArr
 
 
 def _natural_frequency(model: RobotModel, home: FloatArray, goal: FloatArray) -> float:
-    J = task_directions(model, pose=False) @ model.tip_jacobian(home)[:3]
-    step = task_directions(model, pose=False) @ (goal - model.tip_position(home))
+    J = task_basis(model, pose=False) @ model.tip_jacobian(home)[:3]
+    step = task_basis(model, pose=False) @ (goal - model.tip_position(home))
     torque = np.abs(model.mass_matrix(home) @ np.linalg.lstsq(J, step, rcond=None)[0])  # at omega_n = 1 rad/s
     spare = _SPARE * (model.effort_limits - np.abs(model.gravity_torque(home)))
     with np.errstate(divide="ignore"):

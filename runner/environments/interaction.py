@@ -5,7 +5,7 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.environments import Environment, LoadsJoints, PushesLinks
-from runner.environments.pushed_links import PushedLinks
+from runner.environments.pushed_links import LinkForces
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.wrench import cross, wrench_transform
@@ -31,7 +31,7 @@ class Interaction:
         self._data = self._model.createData()
         self._environment = environment
         acts: object = environment
-        self._pushed = PushedLinks(acts, self._model) if isinstance(acts, PushesLinks) else None
+        self._pushed = LinkForces(acts, self._model) if isinstance(acts, PushesLinks) else None
         self._loads = acts if isinstance(acts, LoadsJoints) else None
         self._tick = tick
         self._tip = robot.model.tip_frame

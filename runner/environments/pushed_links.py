@@ -10,7 +10,7 @@ from runner.environments import PushesLinks
 from runner.sensing.wrench import cross_matrix
 
 
-class PushedLinks:
+class LinkForces:
     r"""The points at which an environment pushes links, and its forces there.
 
     .. math:: \tau = \sum_i (J_{v,i} - [r_i]_\times J_{\omega,i})^T f_i

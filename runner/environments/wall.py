@@ -82,10 +82,10 @@ class Wall:
         force = self.config.stiffness * depth - self.config.damping * float(velocity @ self.normal)
         push = max(force, 0.0) * self.normal
         if self.config.friction:
-            push = push + self._rub(self.config.friction * max(force, 0.0), tip, velocity)
+            push = push + self._friction(self.config.friction * max(force, 0.0), tip, velocity)
         return np.concatenate([push, np.zeros(3)])
 
-    def _rub(self, limit: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
+    def _friction(self, limit: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return the force along the face, shape (3,), in N, and let the place where the tip sticks slide."""
         stiffness, n = self.config.stiffness, self.normal
         place, drag = tip - (tip @ n) * n, self.config.damping * (velocity - (velocity @ n) * n)

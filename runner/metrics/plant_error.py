@@ -26,7 +26,7 @@ Metrics = Mapping[str, float | None]
 
 
 @dataclass(frozen=True)
-class Worth:
+class ErrorEstimate:
     """What the step is worth in one metric.
 
     Attributes:
@@ -66,7 +66,7 @@ class PlantError:
     end: float | None = None
     parted: float | None = None
     failure: str = ""
-    metrics: Mapping[str, Worth] = field(default_factory=dict)
+    metrics: Mapping[str, ErrorEstimate] = field(default_factory=dict)
 
     def record(self) -> dict[str, Any]:
         """Return what metrics.json holds of it."""
@@ -76,7 +76,7 @@ class PlantError:
         return {"plant": PLANT, **kept}
 
 
-def hindrance(environment: str) -> str:
+def reason_not_comparable(environment: str) -> str:
     """Return why Runge-Kutta is no measure of a run in an environment, given by its kind; empty where it is."""
     return _WALL if environment == "wall" else ""
 
@@ -111,7 +111,7 @@ def compare(trace: Trace, metrics: Metrics, other: Trace, others: Metrics, band:
         end=float(distance[finite[-1]]),
         parted=parted,
         failure="" if other.failure is None else other.failure.reason,
-        metrics={name: _worth(value, others.get(name), parted is None) for name, value in metrics.items()},
+        metrics={name: _estimate_error(value, others.get(name), parted is None) for name, value in metrics.items()},
     )
 
 
@@ -123,11 +123,11 @@ def _parting(trace: Trace, other: Trace, distance: np.ndarray, band: float) -> f
     return min(times, default=None)
 
 
-def _worth(value: float | None, other: float | None, comparable: bool) -> Worth:
+def _estimate_error(value: float | None, other: float | None, comparable: bool) -> ErrorEstimate:
     if not comparable or value is None or other is None:
-        return Worth(other)
+        return ErrorEstimate(other)
     difference = abs(value - other)
-    return Worth(other, difference, difference / abs(value) if value else 0.0 if difference == 0.0 else None)
+    return ErrorEstimate(other, difference, difference / abs(value) if value else 0.0 if difference == 0.0 else None)
 
 
 def sufficient_step(step: float, share: float, wanted: float, period: float) -> float | None:

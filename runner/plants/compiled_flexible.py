@@ -12,7 +12,7 @@ from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import known
 from runner.symbolic.code import ROWS, STATE, Part
 from runner.symbolic.engine import MOST_JOINTS, evaluator
-from runner.symbolic.places import Places
+from runner.symbolic.places import Slots
 from runner.symbolic.structure import any_number, arm_pattern
 from runner.symbolic.vectors import Vector
 
@@ -45,7 +45,7 @@ class _FlexibleMover(Mover):
     """
 
     def __init__(
-        self, algebra: ArmAlgebra, on: Sequence[int], links: int, springs: Springs, given: Vector, at: Places
+        self, algebra: ArmAlgebra, on: Sequence[int], links: int, springs: Springs, given: Vector, at: Slots
     ) -> None:
         super().__init__(algebra, 0, links + len(on), links + len(on), at)
         self._links, self._on, self._springs = links, on, springs
@@ -93,7 +93,7 @@ class CompiledFlexibleStep(ArmCode):
     def _scalars(self, number: Callable[[float], Any]) -> tuple[Any, ...]:
         return *super()._scalars(number), Springs(*(known(own, number) for own in self._springs))
 
-    def _express(self, at: Places) -> list[Part]:
+    def _express(self, at: Slots) -> list[Part]:
         parts, n, on = list[Part](), self._model.nq, self._on
         gravity, h, constants, springs = self._scalars(at.number)
         at.take(STATE, 2 * (n + len(on)))

@@ -12,7 +12,7 @@ from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import ArmConstants, constants_of, known
 from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat
 from runner.symbolic.expression import Value, absolute, both, equal, less, places, select
-from runner.symbolic.places import Places
+from runner.symbolic.places import Slots
 from runner.symbolic.program import Expressed, Frame, program
 from runner.symbolic.structure import Values, any_number, arm_pattern
 from runner.symbolic.vectors import Matrix, Vector, add, product, scale, subtract, times, transpose
@@ -84,7 +84,7 @@ def motion_pattern(motion: "Motion") -> str:
     return repr((motion_scalars(motion, 0.5, 0.5, any_number), [arm.joints for arm in motion.arms]))
 
 
-def expressed_motion(motion: "Motion", numbers: MotionScalars, at: Places, torques: Sequence[Value]) -> list[Part]:
+def expressed_motion(motion: "Motion", numbers: MotionScalars, at: Slots, torques: Sequence[Value]) -> list[Part]:
     """Return what leads from the state of one tick to that of the next.
 
     Args:
@@ -124,7 +124,7 @@ class Mover:
         at: Gives places.
     """
 
-    def __init__(self, algebra: ArmAlgebra, joint: int, nq: int, count: int, at: Places) -> None:
+    def __init__(self, algebra: ArmAlgebra, joint: int, nq: int, count: int, at: Slots) -> None:
         self._algebra, self._count, self._at = algebra, count, at
         self._first = joint, nq + joint
         self._q, self._v = (places(STATE, first, count) for first in self._first)
@@ -242,7 +242,7 @@ class ArmCode(ABC):
         """The code with its arrays."""
 
         def express() -> Expressed:
-            at = Places()
+            at = Slots()
             return Expressed([], self._express(at), at.widths, [])
 
         values = Values()
@@ -256,7 +256,7 @@ class ArmCode(ABC):
         """Return the pattern of the code, and what is compiled; see program."""
 
     @abstractmethod
-    def _express(self, at: Places) -> list[Part]:
+    def _express(self, at: Slots) -> list[Part]:
         """Return what the code does, whose numbers are taken as `_scalars` takes them."""
 
     def _scalars(self, number: Callable[[float], Any]) -> tuple[Any, ...]:
@@ -274,7 +274,7 @@ class CompiledStep(ArmCode):
     def _names(self) -> tuple[str, str]:
         return f"step {arm_pattern(self._model)}", f"the motion of {self._model.nq} joints"
 
-    def _express(self, at: Places) -> list[Part]:
+    def _express(self, at: Slots) -> list[Part]:
         parts, n = list[Part](), self._model.nq
         gravity, h, constants = self._scalars(at.number)
         at.take(STATE, 2 * n)
@@ -297,7 +297,7 @@ class CompiledLinksTorque(ArmCode):
     def _names(self) -> tuple[str, str]:
         return f"links' torque {arm_pattern(self._model)}", f"the armature of {self._model.nq} joints"
 
-    def _express(self, at: Places) -> list[Part]:
+    def _express(self, at: Slots) -> list[Part]:
         n = self._model.nq
         gravity, _, constants = self._scalars(at.number)
         q, v = (at.take(STATE, n)[1] for _ in range(2))

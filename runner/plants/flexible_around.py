@@ -15,7 +15,7 @@ from runner.robots.robot import Robot
 from runner.schema.per_joint import FrictionConfig
 
 
-class FlexibleAround(FlexibleJoints):
+class SeriesElastic(FlexibleJoints):
     r"""An arm with flexible joints, of which an engine moves the links.
 
     In each step of length h springs and dampers act by what they are at its start, on the links and, by semi-implicit
@@ -88,7 +88,7 @@ def flexible_around(
     """
     flexibility = joints.by_joint(robot)
     links = links_of(robot.model, flexibility.flexible)
-    plant = FlexibleAround(make(links), links, flexibility, step, steps_per_tick)
+    plant = SeriesElastic(make(links), links, flexibility, step, steps_per_tick)
     viscous, coulomb = friction_by_joint(robot, friction)
     rubs = viscous.any() or coulomb.any()
     return MotorFriction(plant, viscous, coulomb, step * steps_per_tick) if rubs else plant

@@ -74,10 +74,10 @@ class FlexibleJointsConfig(StrictModel):
             raise ConfigError(problems)
         motors = np.where(flexible, np.where(given, motors, arm.model.armature), 0.0)
         held = np.diag(links_of(arm.model, flexible).mass_matrix(arm.home))
-        damping, fed_back = np.zeros((2, len(springs)))
+        damping, torsion_feedback = np.zeros((2, len(springs)))
         damping[flexible] = 2.0 * self.damping_ratio * np.sqrt(springs[flexible] * held[flexible])
-        fed_back[flexible] = 2.0 * self.torsion_damping * np.sqrt(springs[flexible] * motors[flexible])
-        return Flexibility(springs, motors, damping, self._find_brake_time(arm, flexible), fed_back)
+        torsion_feedback[flexible] = 2.0 * self.torsion_damping * np.sqrt(springs[flexible] * motors[flexible])
+        return Flexibility(springs, motors, damping, self._find_brake_time(arm, flexible), torsion_feedback)
 
     def modes(self, arm: Robot, q: FloatArray) -> list[Mode]:
         """Return how a robot's joints ring about a posture with their motors held, by frequency; see HasModes."""

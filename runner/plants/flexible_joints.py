@@ -19,15 +19,15 @@ class Flexibility:
         motors: B, inertia of each motor after its gear, shape (nq,), in kg m^2; 0 where the joint is rigid.
         damping: D of each joint, shape (nq,), in N m s/rad; 0 where it is rigid.
         brake_time: When the brake of each motor closes, shape (nq,), in s; infinite where it stays open.
-        fed_back: K_f of each joint, shape (nq,), in N m s/rad: what its drive asks of the motor against the rate at
-            which its spring turns.
+        torsion_feedback: K_f of each joint, shape (nq,), in N m s/rad: torque that its drive asks of the motor against
+            the rate of the spring's torsion.
     """
 
     stiffness: FloatArray
     motors: FloatArray
     damping: FloatArray
     brake_time: FloatArray
-    fed_back: FloatArray
+    torsion_feedback: FloatArray
 
     @property
     def flexible(self) -> np.ndarray:

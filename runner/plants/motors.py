@@ -41,4 +41,4 @@ class MotorSide:
 
     def damping(self) -> FloatArray:
         """Return what drives add to the torques that laws ask for, shape (nq,), in N m."""
-        return self._plant.flexibility.fed_back * (self._plant.dq - self._plant.dtheta)
+        return self._plant.flexibility.torsion_feedback * (self._plant.dq - self._plant.dtheta)

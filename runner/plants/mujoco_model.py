@@ -53,7 +53,7 @@ def read_spec(urdf: str, min_inertia: float, armature: Mapping[str, float]) -> A
             _give_inertia(body, 0.0)
     for joint in spec.joints:
         joint.armature = armature.get(joint.name, 0.0)
-    _put_up_wall(spec)
+    _add_wall(spec)
     for mounted in root.iterfind(f"joint[@name='{TOOL_MOUNT}']/child"):
         _add_tool_sensors(spec, mounted.get("link", ""))
     return spec
@@ -101,7 +101,7 @@ def _give_inertia(body: Any, least: float) -> None:
     body.inertia, body.iquat = moments, [along.w, along.x, along.y, along.z]
 
 
-def _put_up_wall(spec: Any) -> None:
+def _add_wall(spec: Any) -> None:
     """Let the arm's shapes touch nothing but a frictionless wall, the plane z = 0 of the base until it is moved."""
     for number, geom in enumerate(spec.geoms):
         geom.name, geom.contype, geom.conaffinity = f"{WALL} {number}", 0, 0

@@ -72,7 +72,7 @@ class ContactPlant(ReportsContact, Protocol):
     """A plant that makes the contact of a tool with a wall itself.
 
     One that does not gets the wall's force on the tool as joint torques, held for a tick. A tip without a tool touches
-    walls by `Touched`, on any plant.
+    walls by `WithTipContact`, on any plant.
     """
 
     def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> None:

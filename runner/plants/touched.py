@@ -23,7 +23,7 @@ class Surface(Protocol):
         ...
 
 
-class Touched:
+class WithTipContact:
     r"""A plant of which the tip, a point, touches a surface: its force is held for an integration step.
 
     The force f(x, v) of a step from q_n is taken at

@@ -32,10 +32,10 @@ def describe_plant(run: Run, metrics: Sequence[str] = ()) -> str:
         head += f" Links bend ({bent}); pictures show the arm with straight ones, and the tip where it is."
     if kind not in COMPARED:
         return head
-    return f"{head} {_worth(run, metrics or key_names(run))}"
+    return f"{head} {_estimate_error(run, metrics or key_names(run))}"
 
 
-def _worth(run: Run, metrics: Sequence[str]) -> str:
+def _estimate_error(run: Run, metrics: Sequence[str]) -> str:
     error = run.plant_error
     if error is None:
         return "The error of the integration step was not measured: plant_error=true measures it."

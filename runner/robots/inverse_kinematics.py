@@ -11,7 +11,7 @@ from scipy.linalg.lapack import dgesv
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.robots.model import RobotModel
-from runner.robots.task_space import task_directions
+from runner.robots.task_space import task_basis
 
 TOLERANCE = 1e-12  # m; Newton's last step squares it, so that an arm starts at its trajectory's start to rounding
 _STEPS = 200  # way-points from home to the target; each needs a few Newton steps
@@ -66,7 +66,7 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
     if np.array_equal(start, target):
         return np.array(home, dtype=float)
     paths = (_straight(start, target), _around(model.shoulder, start, target))
-    directions = task_directions(model, pose=False)
+    directions = task_basis(model, pose=False)
     branch, found, reached, tip = _branch(model, home), [], [], _Tip(model)
     for path in paths:
         q = _follow(model, (_position_task(tip, point, directions) for point in path), home)
@@ -115,7 +115,7 @@ def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> Flo
     turn = pin.log3(start[:3, :3].T @ pose[:3, :3])
     points = _straight(start[:3, 3], pose[:3, 3])
     turned = [start[:3, :3] @ pin.exp3(turn * (step + 1) / _STEPS) for step in range(_STEPS - 1)] + [pose[:3, :3]]
-    directions, tip = task_directions(model, pose=True), _Tip(model)
+    directions, tip = task_basis(model, pose=True), _Tip(model)
     q = _follow(model, (_pose_task(tip, p, R, directions) for p, R in zip(points, turned, strict=True)), home)
     task = _pose_task(tip, pose[:3, 3], pose[:3, :3], directions)
     if np.linalg.norm(task(q)[0]) > _REACHED:

@@ -13,7 +13,7 @@ _NONE = 1e-9  # of the largest singular value: a direction in which nothing move
 
 
 @lru_cache(maxsize=16)
-def task_directions(model: RobotModel, pose: bool) -> FloatArray:
+def task_basis(model: RobotModel, pose: bool) -> FloatArray:
     """Return the directions, fixed in the base frame, in which joints can move an arm's tip from any of its postures.
 
     A spatial arm has all three, and the answer is the identity. The tip of an arm whose axes are parallel stays in a
@@ -38,7 +38,7 @@ def task_directions(model: RobotModel, pose: bool) -> FloatArray:
 
 def distance_beside(model: RobotModel, points: FloatArray) -> FloatArray:
     """Return how far points, shape (N, 3), lie beside the plane or line that holds the tip, shape (N,), in m."""
-    directions = task_directions(model, pose=False)
+    directions = task_basis(model, pose=False)
     if len(directions) == 3:
         return np.zeros(len(points))
     away = points - model.tip_position(np.mean(model.usual_range, axis=0))

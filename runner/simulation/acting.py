@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 
 
-class Acting:
+class CommandTiming:
     """The commands that act.
 
     A loop's command is a row of its joints, of the tick in which it was given; until its next one it stands in every
@@ -36,6 +36,6 @@ class Acting:
         return np.concatenate(parts, axis=1)
 
 
-def evenly_late(joints: int, delay: int, ticks: int) -> Acting:
+def constant_delay(joints: int, delay: int, ticks: int) -> CommandTiming:
     """Return that all commands act so many ticks late, in some ticks."""
-    return Acting([slice(0, joints)], [np.maximum(np.arange(ticks) - delay, 0)])
+    return CommandTiming([slice(0, joints)], [np.maximum(np.arange(ticks) - delay, 0)])

@@ -23,13 +23,13 @@ from runner.plants import PLANTS, Plant, PositionPlant
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo
-from runner.plants.touched import Touched
+from runner.plants.touched import WithTipContact
 from runner.robots.mismatch import believe
 from runner.robots.robot import Robot
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
-from runner.simulation.compiled.compile import compile_commands, compile_whole, describe_whole, find_commands
-from runner.simulation.walls import put_up, touches_by_tip
+from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
+from runner.simulation.compiled.compile import compile_commands, compile_program, describe_program, find_commands
+from runner.simulation.walls import add_wall, touches_by_tip
 from runner.trajectories.joint_motion import TipOfJoints
 
 _BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
@@ -58,7 +58,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         plant = _make_plant(config, believed, loops[0].period, touched)
         on_error.callback(plant.close)
         if isinstance(environment, Wall):
-            environment = None if touched else put_up(environment, config, plant)
+            environment = None if touched else add_wall(environment, config, plant)
         interaction = Interaction(arm, environment, timing.tick) if config.has_contact else None
         compiled = _compile(config, loops)
         on_error.pop_all()
@@ -81,7 +81,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
     )
 
 
-def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, FloatArray] | None:
+def assemble_program(config: RunConfig, repetition: int = 0) -> tuple[LoopProgram, FloatArray] | None:
     """Return a closed loop that is compiled as a whole, and where it starts, shape (nq,), in rad; None where none is.
 
     Args:
@@ -96,10 +96,10 @@ def assemble_whole(config: RunConfig, repetition: int = 0) -> tuple[Whole, Float
     if PLANTS.motion(config.plant, config.arm) is None:
         return None
     compiled = _compile(config, _believe(config, repetition)[1])
-    return (compiled, find_start(config)) if isinstance(compiled, Whole) else None
+    return (compiled, find_start(config)) if isinstance(compiled, LoopProgram) else None
 
 
-def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
+def describe_loop(config: RunConfig, repetition: int = 0) -> LoopProgram | None:
     """Return a closed loop whose code could be made as a whole, without making it; None where there is none.
 
     Args:
@@ -113,7 +113,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> Whole | None:
     loops = _believe(config, repetition)[1]
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
     motion = PLANTS.motion(config.plant, config.arm)
-    return None if commands is None or motion is None else describe_whole(commands, motion, config.timing)
+    return None if commands is None or motion is None else describe_program(commands, motion, config.timing)
 
 
 def find_start(config: RunConfig) -> FloatArray:
@@ -144,14 +144,14 @@ def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...
     return believed, observed(config.disturbance_observer, believed, loops, config.torque_limits, config.timing)
 
 
-def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> Whole | CompiledCommands | None:
+def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> LoopProgram | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
     if config.commands != "torque" or not config.compilable or is_flexible(config):
         return None
     commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
     motion = None if config.has_contact or config.loaded else PLANTS.motion(config.plant, config.arm)
-    whole = None if motion is None else compile_whole(commands, motion, config.timing)
-    return compile_commands(commands) if whole is None else whole
+    loop_program = None if motion is None else compile_program(commands, motion, config.timing)
+    return compile_commands(commands) if loop_program is None else loop_program
 
 
 def _make_plant(
@@ -191,7 +191,7 @@ def _make_touched_plant(config: RunConfig, wall: Wall) -> Plant:
     timing = config.timing
     plant = PLANTS.build(config.plant, config.arm, timing.step, 1)
     lead = 0.5 if PLANTS.moves_exactly(config.plant) else 0.0
-    return Touched(plant, config.arm.model, wall, timing.step, timing.steps_per_tick, lead)
+    return WithTipContact(plant, config.arm.model, wall, timing.step, timing.steps_per_tick, lead)
 
 
 def metric_context(config: RunConfig) -> MetricContext:

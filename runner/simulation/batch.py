@@ -20,8 +20,8 @@ from runner.metrics import MetricContext
 from runner.plugins.discovery import added
 from runner.robots.robot import Robot, end_points
 from runner.sensing.encoders import encoder_errors
-from runner.simulation.assembly import assemble_whole, metric_context, reach_of
-from runner.simulation.compiled.closed_loop import Signals, Whole, run_all
+from runner.simulation.assembly import assemble_program, metric_context, reach_of
+from runner.simulation.compiled.closed_loop import LoopProgram, Signals, run_all
 from runner.simulation.failures import ended_well, find_failure
 from runner.trajectories.trajectory import joint_reference
 
@@ -32,19 +32,19 @@ _MEMORY = Memory(4096)  # the controllers of runs
 
 
 @dataclass(frozen=True)
-class Wanted:
+class RunSpec:
     """A repetition of a run.
 
     Attributes:
         config: The run's checked config.
         repetition: Number of the repetition.
-        whole: Its closed loop.
+        loop_program: Its closed loop.
         q_start: Where the arm starts, shape (nq,), in rad.
     """
 
     config: RunConfig
     repetition: int
-    whole: Whole
+    loop_program: LoopProgram
     q_start: FloatArray
 
     @property
@@ -55,9 +55,16 @@ class Wanted:
     @property
     def code(self) -> Hashable:
         """What runs have in common that are simulated together."""
-        whole = self.whole
-        every = tuple(loop.every for loop in whole.commands.loops)
-        return whole.pattern, every, whole.delay, whole.steps, whole.tick, int(math.log(self.rows) / _GROWTH)
+        loop_program = self.loop_program
+        every = tuple(loop.every for loop in loop_program.commands.loops)
+        return (
+            loop_program.pattern,
+            every,
+            loop_program.delay,
+            loop_program.steps,
+            loop_program.tick,
+            int(math.log(self.rows) / _GROWTH),
+        )
 
     @property
     def scene(self) -> Hashable:
@@ -68,7 +75,7 @@ class Wanted:
 
 
 @dataclass(frozen=True)
-class Together:
+class BatchResult:
     """Runs that ended well and are measured together.
 
     Attributes:
@@ -82,14 +89,14 @@ class Together:
     context: MetricContext
 
 
-class Batcher:
+class BatchSimulator:
     """Simulates runs together; it keeps what runs have in common, as long as their configs share the same objects."""
 
     def __init__(self) -> None:
         self.memory = Memory(_MOST_KEPT)
         """What follows from parts that runs share."""
 
-    def repetitions(self, config: RunConfig, chosen: range | None = None) -> list[Wanted] | None:
+    def repetitions(self, config: RunConfig, chosen: range | None = None) -> list[RunSpec] | None:
         """Return repetitions of a run as they can be simulated together; None where they cannot be.
 
         Args:
@@ -104,26 +111,26 @@ class Batcher:
         numbers = range(config.settings.repetitions) if chosen is None else chosen
         if config.mismatch.spread == 0.0:
             alike = self._loop(config, numbers[0])
-            return None if alike is None else [Wanted(config, number, *alike) for number in numbers]
+            return None if alike is None else [RunSpec(config, number, *alike) for number in numbers]
         found = []
         for number in numbers:
             own = self._loop(config, number)
             if own is None:
                 return None
-            found.append(Wanted(config, number, *own))
+            found.append(RunSpec(config, number, *own))
         return found
 
-    def _loop(self, config: RunConfig, repetition: int) -> tuple[Whole, FloatArray] | None:
-        """Return the closed loop of a repetition, and where it starts; see assemble_whole."""
+    def _loop(self, config: RunConfig, repetition: int) -> tuple[LoopProgram, FloatArray] | None:
+        """Return the closed loop of a repetition, and where it starts; see assemble_program."""
         # Beliefs are drawn for each repetition; all else follows from these parts.
         drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else ()
         parts = (
             *("whole", config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
             *(config.path, config.mismatch, config.robot, config.environment, *_times(config.timing), *drawn),
         )
-        return self.memory.known(parts, lambda: assemble_whole(config, repetition))
+        return self.memory.known(parts, lambda: assemble_program(config, repetition))
 
-    def simulate(self, runs: Sequence[Wanted]) -> Iterator[Together | tuple[int, Trace]]:
+    def simulate(self, runs: Sequence[RunSpec]) -> Iterator[BatchResult | tuple[int, Trace]]:
         """Simulate runs; yield those that ended well, many at a time, and the place and trace of each that failed."""
         for places in _grouped(range(len(runs)), lambda place: runs[place].code):
             first = runs[places[0]]
@@ -133,16 +140,16 @@ class Batcher:
                 part = places[begin : begin + most]
                 ticks = sum(runs[place].config.timing.ticks for place in part)
                 for found in self._simulate([runs[place] for place in part]):
-                    if isinstance(found, Together):
+                    if isinstance(found, BatchResult):
                         yield replace(found, places=[part[index] for index in found.places])
                     else:
                         yield part[found[0]], found[1]
                 add_ticks(ticks)
 
-    def _simulate(self, runs: Sequence[Wanted]) -> Iterator[Together | tuple[int, Trace]]:
+    def _simulate(self, runs: Sequence[RunSpec]) -> Iterator[BatchResult | tuple[int, Trace]]:
         """Simulate runs that share their code; places are those in this sequence."""
-        began, rows, whole = time.perf_counter(), max(run.rows for run in runs), runs[0].whole
-        times = np.arange(rows, dtype=np.float64) * whole.tick
+        began, rows, loop_program = time.perf_counter(), max(run.rows for run in runs), runs[0].loop_program
+        times = np.arange(rows, dtype=np.float64) * loop_program.tick
         paths = [self._desired(run, times) for run in runs]
         alike = all(path is paths[0] for path in paths)
         errors = [
@@ -151,11 +158,11 @@ class Batcher:
                 [(run.config.settings.seed, run.repetition, number) for run in runs],
                 (rows - 1) // loop.every + 1,
             )
-            for number, loop in enumerate(whole.commands.loops)
+            for number, loop in enumerate(loop_program.commands.loops)
         ]
         signals = run_all(
-            whole,
-            np.array([run.whole.values for run in runs]),
+            loop_program,
+            np.array([run.loop_program.values for run in runs]),
             self._shared(runs if not alike else runs[:1], times, paths),
             errors,
             _start(runs, [wrong[:, 0] for wrong in errors]),
@@ -175,24 +182,24 @@ class Batcher:
                     yield place, traces.run(index).ended(failure)
             if good:
                 kept = traces if len(good) == len(places) else traces.part(good)
-                yield Together([places[index] for index in good], kept, metric_context(one.config))
+                yield BatchResult([places[index] for index in good], kept, metric_context(one.config))
 
-    def _shared(self, runs: Sequence[Wanted], times: FloatArray, paths: Sequence[FloatArray]) -> FloatArray:
+    def _shared(self, runs: Sequence[RunSpec], times: FloatArray, paths: Sequence[FloatArray]) -> FloatArray:
         """Return what ticks are given of time and path, of one run for all alike or of each."""
-        commands, one = runs[0].whole.commands, len(runs) == 1
+        commands, one = runs[0].loop_program.commands, len(runs) == 1
         joints = [joint_reference(run.config.path, times) for run in runs] if commands.follow_joints else []
         return commands.shared(
             times, paths[0] if one else np.array(paths), (joints[0] if one else np.array(joints)) if joints else None
         )
 
-    def _desired(self, run: Wanted, times: FloatArray) -> FloatArray:
+    def _desired(self, run: RunSpec, times: FloatArray) -> FloatArray:
         path = run.config.path
-        return self.memory.known(("desired", path, len(times), run.whole.tick), lambda: path.sample(times))
+        return self.memory.known(("desired", path, len(times), run.loop_program.tick), lambda: path.sample(times))
 
     def _traces(
         self,
         signals: Signals,
-        runs: Sequence[Wanted],
+        runs: Sequence[RunSpec],
         places: Sequence[int],
         desired: FloatArray,
         times: FloatArray,
@@ -202,7 +209,7 @@ class Batcher:
         one = runs[places[0]]
         config, own = one.config, slice(None) if len(places) == len(runs) else list(places)
         t = times[: one.rows]
-        acted = np.maximum(np.arange(len(t)) - one.whole.delay, 0) if one.whole.delay else slice(len(t))
+        acted = np.maximum(np.arange(len(t)) - one.loop_program.delay, 0) if one.loop_program.delay else slice(len(t))
         arm, model = config.arm, config.arm.model
         home = self.memory.recall(_home_points, arm, config.parallel)
         return Traces(
@@ -226,12 +233,12 @@ def _times(timing: Timing) -> tuple[object, ...]:
     return (timing.tick, timing.step, timing.steps_per_tick, timing.even, timing.ticks, *timing.late)
 
 
-def _start(runs: Sequence[Wanted], errors: Sequence[FloatArray]) -> FloatArray:
+def _start(runs: Sequence[RunSpec], errors: Sequence[FloatArray]) -> FloatArray:
     """Return the state in which each run begins, as its own loops have it; see Commands.start."""
     states: dict[int, FloatArray] = {}
-    for own in _grouped(range(len(runs)), lambda place: id(runs[place].whole)):
+    for own in _grouped(range(len(runs)), lambda place: id(runs[place].loop_program)):
         q = np.array([runs[place].q_start for place in own])
-        found = runs[own[0]].whole.commands.start(q, [wrong[own] for wrong in errors])
+        found = runs[own[0]].loop_program.commands.start(q, [wrong[own] for wrong in errors])
         states |= dict(zip(own, found, strict=True))
     return np.array([states[place] for place in range(len(runs))])
 

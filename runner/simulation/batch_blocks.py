@@ -18,7 +18,7 @@ import numpy as np
 from runner import store
 from runner.config.limits import TICKS_AT_ONCE
 from runner.plugins.discovery import has_users_parts
-from runner.simulation.batch import Batcher
+from runner.simulation.batch import BatchSimulator
 from runner.simulation.batch_jobs import Job, Simulated, simulate_together
 from runner.store.writing import timing
 
@@ -43,7 +43,7 @@ def simulate_blocks(job: Job, threads: int = 1, ticks: int = TICKS) -> store.Run
         ConfigError: see assemble.
     """
     wall, cpu = time.perf_counter(), time.process_time()
-    config, batcher = job[0], Batcher()
+    config, batcher = job[0], BatchSimulator()
     count, size = config.settings.repetitions, max(1, ticks // config.timing.ticks)
     blocks = [range(start, min(start + size, count)) for start in range(0, count, size)]
     threads = threads if config.timing.ticks <= ticks else 1
@@ -67,7 +67,7 @@ def simulate_blocks(job: Job, threads: int = 1, ticks: int = TICKS) -> store.Run
     return replace(result, timing=clock)
 
 
-def _simulate(job: Job, batcher: Batcher, block: range) -> Simulated | None:
+def _simulate(job: Job, batcher: BatchSimulator, block: range) -> Simulated | None:
     """Simulate some repetitions of a run; see simulate_blocks."""
     runs = batcher.repetitions(job[0], block)
     if runs is None:

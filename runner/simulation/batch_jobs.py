@@ -16,7 +16,7 @@ from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.metrics import measure, summarize_arrays
 from runner.metrics.caveats import Found, Setting, Watch, look_together, setting_of, signals_of
-from runner.simulation.batch import Batcher, Wanted
+from runner.simulation.batch import BatchSimulator, RunSpec
 from runner.store.provenance import job_provenance
 from runner.store.writing import timing
 
@@ -83,7 +83,7 @@ class _Gathered:
         watch: Looks for reasons why its result may not be what it seems.
     """
 
-    def __init__(self, place: int, job: Job, runs: Sequence[Wanted], batcher: Batcher) -> None:
+    def __init__(self, place: int, job: Job, runs: Sequence[RunSpec], batcher: BatchSimulator) -> None:
         self._place, self._job, self.first = place, job, runs[0].repetition
         self.watch = Watch(_setting(job[0], runs[0].q_start, batcher), job[0].caveats)
         self._names: tuple[str, ...] = ()
@@ -121,7 +121,7 @@ class _Gathered:
         )
 
 
-def _setting(config: RunConfig, q_start: FloatArray, batcher: Batcher) -> Setting:
+def _setting(config: RunConfig, q_start: FloatArray, batcher: BatchSimulator) -> Setting:
     """Return the setting of a run, which those that differ in nothing but the seed share."""
     parts = (
         *("setting", config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
@@ -145,7 +145,7 @@ def seconds_together(
         within: Entered once all is assembled and compiled; may end the measurement.
         clock: Tells the time, in s.
     """
-    config, batcher = job[0], Batcher()
+    config, batcher = job[0], BatchSimulator()
     repetitions = range(min(config.settings.repetitions, max(1, ticks // config.timing.ticks)))
     runs = batcher.repetitions(config, repetitions)
     if runs is None:
@@ -172,7 +172,7 @@ def warm_time(make: Callable[[], object], clock: Callable[[], float]) -> float:
 
 
 def simulate_together(
-    jobs: Sequence[Job], runs: Sequence[Sequence[Wanted]], batcher: Batcher
+    jobs: Sequence[Job], runs: Sequence[Sequence[RunSpec]], batcher: BatchSimulator
 ) -> Iterator[list[Simulated]]:
     """Simulate runs; yield those that are complete, some at a time.
 

@@ -9,7 +9,7 @@ from runner.plants import Plant, PositionPlant
 from runner.plants.motors import MotorSide
 from runner.plugins.registry import Commands
 from runner.robots.robot import Robot
-from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
+from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
 from runner.trajectories import Trajectory
 
 
@@ -29,7 +29,7 @@ class ClosedLoop:
         interaction: What the tip feels of the world; None where there is nothing to feel.
         q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
         parallel: Whether riding stages keep the orientation of home, as the plant has it.
-        delay: Ticks from a command until it acts; None where they differ, as the run's `Acting` tells.
+        delay: Ticks from a command until it acts; None where they differ, see CommandTiming.
         motor_side: What drives and encoders know of the motors of flexible joints; None where joints are rigid.
         believed: The robot as its controllers believe it to be.
         compiled: The closed loop as compiled code, or what its loops ask; None where neither is to be had.
@@ -49,7 +49,7 @@ class ClosedLoop:
     delay: int | None
     believed: Robot
     motor_side: MotorSide | None = None
-    compiled: Whole | CompiledCommands | None = None
+    compiled: LoopProgram | CompiledCommands | None = None
 
     def close(self) -> None:
         """Release what the plant holds."""

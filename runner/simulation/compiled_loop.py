@@ -9,9 +9,9 @@ import numpy as np
 from runner.base.errors import SimulationError
 from runner.sensing import Encoders, JointEncoders
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.compiled.closed_loop import CompiledCommands, Whole, run_all
+from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram, run_all
 from runner.simulation.contact import Contact
-from runner.simulation.drive import make_drive
+from runner.simulation.drive import make_plant_input
 from runner.simulation.failures import find_failure
 from runner.simulation.recorder import CHECK_EVERY, Recorder
 
@@ -35,7 +35,13 @@ def run_commands(
     errors = [cast(JointEncoders, each).errors for each in encoders]
     run = compiled.begin(recorder.times, recorder.desired, errors, closed.q_start, recorder.joints)
     recorder.q, recorder.dq, recorder.commands, recorder.end_points = run.q, run.dq, run.torque, run.end_points
-    drive, plant, tick, clock, now = make_drive(closed, recorder), closed.plant, run.tick, recorder.clock, recorder.now
+    drive, plant, tick, clock, now = (
+        make_plant_input(closed, recorder),
+        closed.plant,
+        run.tick,
+        recorder.clock,
+        recorder.now,
+    )
     load, k = None, 0
     recorder.asked = asked = np.zeros_like(clock)
     plant.reset(closed.q_start, np.zeros_like(closed.q_start))
@@ -57,20 +63,22 @@ def run_commands(
         recorder.stop(k, error)
 
 
-def run_whole(whole: Whole, closed: ClosedLoop, encoders: Sequence[Encoders], recorder: Recorder) -> None:
+def run_program(
+    loop_program: LoopProgram, closed: ClosedLoop, encoders: Sequence[Encoders], recorder: Recorder
+) -> None:
     """Run a closed loop that is compiled as a whole.
 
     Args:
-        whole: Its code.
+        loop_program: Its code.
         closed: The closed loop.
         encoders: The joint measurement of each loop, ours.
         recorder: Holds times and reference, and takes the rows.
     """
-    began, commands = time.perf_counter_ns(), whole.commands
+    began, commands = time.perf_counter_ns(), loop_program.commands
     errors = [cast(JointEncoders, each).errors for each in encoders]
     signals = run_all(
-        whole,
-        whole.values[None],
+        loop_program,
+        loop_program.values[None],
         commands.shared(recorder.times, recorder.desired, recorder.joints),
         [wrong[None] for wrong in errors],
         commands.start(closed.q_start[None], [wrong[:1] for wrong in errors]),

@@ -9,14 +9,14 @@ from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.recorder import Recorder
 
 
-class Drive(Protocol):
+class PlantInput(Protocol):
     """What carries the loops' commands to the plant."""
 
     def advance(self, k: int, load: FloatArray | None) -> None:
         """Move the plant from tick k to the next one, under the world's joint torques, shape (nq,), in N m."""
 
 
-class TorqueDrive:
+class TorqueInput:
     """The loops' torques and the world's act on the plant together.
 
     Args:
@@ -25,15 +25,15 @@ class TorqueDrive:
     """
 
     def __init__(self, plant: Plant, recorder: Recorder) -> None:
-        self._plant, self._acting, self._commands = plant, recorder.acting, recorder.commands
+        self._plant, self._timing, self._commands = plant, recorder.command_timing, recorder.commands
 
     def advance(self, k: int, load: FloatArray | None) -> None:
-        """Move the plant; see Drive."""
-        acting = self._acting.at(self._commands, k)
-        self._plant.advance(acting) if load is None else push(self._plant, acting, load)
+        """Move the plant; see PlantInput."""
+        command = self._timing.at(self._commands, k)
+        self._plant.advance(command) if load is None else push(self._plant, command, load)
 
 
-class PositionDrive:
+class PositionInput:
     """The plant follows joint positions, and tells the torques that it took.
 
     Args:
@@ -42,19 +42,19 @@ class PositionDrive:
     """
 
     def __init__(self, plant: PositionPlant, recorder: Recorder) -> None:
-        self._plant, self._acting, self._commands = plant, recorder.acting, recorder.commands
+        self._plant, self._timing, self._commands = plant, recorder.command_timing, recorder.commands
         self._torques = recorder.torques
 
     def advance(self, k: int, load: FloatArray | None) -> None:
-        """Move the plant; see Drive."""
+        """Move the plant; see PlantInput."""
         if load is not None:
             self._plant.load[:] = load
-        self._plant.advance(self._acting.at(self._commands, k))
+        self._plant.advance(self._timing.at(self._commands, k))
         self._torques[k] = self._torques[k + 1] = self._plant.tau
 
 
-def make_drive(closed: ClosedLoop, recorder: Recorder) -> Drive:
+def make_plant_input(closed: ClosedLoop, recorder: Recorder) -> PlantInput:
     """Return what drives the plant of a closed loop, as its loops command it."""
     if closed.commands == "position":
-        return PositionDrive(cast(PositionPlant, closed.plant), recorder)
-    return TorqueDrive(closed.plant, recorder)
+        return PositionInput(cast(PositionPlant, closed.plant), recorder)
+    return TorqueInput(closed.plant, recorder)

@@ -8,13 +8,13 @@ from runner.base.errors import SimulationError
 from runner.base.progress.ticks import counted
 from runner.base.trace import Trace
 from runner.sensing import Encoders, TorqueSensors, WristSensor
-from runner.simulation.acting import Acting, evenly_late
+from runner.simulation.acting import CommandTiming, constant_delay
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.command import Command
-from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
-from runner.simulation.compiled_loop import run_commands, run_whole
+from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
+from runner.simulation.compiled_loop import run_commands, run_program
 from runner.simulation.contact import Contact
-from runner.simulation.drive import make_drive
+from runner.simulation.drive import make_plant_input
 from runner.simulation.endpoint import MeasuredTip
 from runner.simulation.joint_torques import JointTorques
 from runner.simulation.recorder import Recorder
@@ -29,7 +29,7 @@ def simulate(
     wrist: WristSensor | None = None,
     torques: TorqueSensors | None = None,
     tips: Mapping[str, MeasuredTip] | None = None,
-    acting: Acting | None = None,
+    command_timing: CommandTiming | None = None,
 ) -> Trace:
     """Run the control loops once.
 
@@ -44,13 +44,15 @@ def simulate(
         encoders: The joint measurement of each loop, with a draw for each of its ticks.
         wrist: The force/torque sensor, with a draw for each tick; needed where there is something to feel.
         torques: The torque sensors in the joints, likewise; needed where a control law reads them.
-        acting: Which commands act in each tick; else all act as late as the closed loop says.
+        command_timing: Which commands act in each tick; else all act as late as the closed loop says.
         tips: What loops know of the tip beside their encoders, by loop; needed where one reads a sensor of the tip.
 
     Returns:
         The trace; one that ends early carries a failure.
     """
-    recorder = Recorder(closed, acting or evenly_late(closed.robot.model.nq, closed.delay or 0, closed.ticks + 1))
+    recorder = Recorder(
+        closed, command_timing or constant_delay(closed.robot.model.nq, closed.delay or 0, closed.ticks + 1)
+    )
     contact = None
     try:
         recorder.desired[:] = closed.trajectory.sample(recorder.times)
@@ -59,8 +61,8 @@ def simulate(
             contact = Contact(closed, closed.interaction, wrist)
         # A diverging run ends as a failure, not as a warning.
         with counted(recorder.clock, closed.ticks), np.errstate(over="ignore", invalid="ignore"):
-            if isinstance(closed.compiled, Whole):
-                run_whole(closed.compiled, closed, encoders, recorder)
+            if isinstance(closed.compiled, LoopProgram):
+                run_program(closed.compiled, closed, encoders, recorder)
             elif isinstance(closed.compiled, CompiledCommands):
                 run_commands(closed.compiled, closed, encoders, contact, recorder)
             else:
@@ -80,7 +82,7 @@ def _run(
     recorder: Recorder,
 ) -> None:
     """Run control loops that are asked one by one."""
-    drive, load, k, now = make_drive(closed, recorder), None, 0, recorder.now
+    drive, load, k, now = make_plant_input(closed, recorder), None, 0, recorder.now
     recorder.asked = asked = np.zeros_like(recorder.clock)
     closed.plant.reset(closed.q_start, np.zeros_like(closed.q_start))
     try:

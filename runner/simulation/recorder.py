@@ -10,7 +10,7 @@ from runner.base.errors import SimulationError
 from runner.base.trace import Failure, Trace
 from runner.plants import TellsEndPoints, innermost
 from runner.robots.robot import end_points
-from runner.simulation.acting import Acting
+from runner.simulation.acting import CommandTiming
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.contact import Contact
 from runner.simulation.failures import find_divergence
@@ -24,7 +24,7 @@ class Recorder:
 
     Args:
         closed: The closed loop whose run is recorded.
-        acting: Which commands act in each tick.
+        command_timing: Which commands act in each tick.
 
     Attributes:
         times: Time of each row, shape (T,), in s.
@@ -33,7 +33,7 @@ class Recorder:
             the tip alone.
         command: What the loops ask for now, shape (nq,): torques in N m, or joint positions in rad.
         commands: What they asked for in each tick, shape (T, nq).
-        acting: As above.
+        command_timing: As above.
         torques: Torques of a plant that follows positions, shape (T, nq), in N m.
         clock: When each tick began, shape (T,), in ns.
         asked: How long the control loops took in each tick, likewise; None where nobody tells.
@@ -43,9 +43,14 @@ class Recorder:
         end_points: End point of each stage, shape (stages, T, 3), in m; None until they are worked out.
     """
 
-    def __init__(self, closed: ClosedLoop, acting: Acting) -> None:
+    def __init__(self, closed: ClosedLoop, command_timing: CommandTiming) -> None:
         rows, nq = closed.ticks + 1, closed.robot.model.nq
-        self._closed, self._plant, self.acting, self.now = closed, closed.plant, acting, time.perf_counter_ns
+        self._closed, self._plant, self.command_timing, self.now = (
+            closed,
+            closed.plant,
+            command_timing,
+            time.perf_counter_ns,
+        )
         self.times: FloatArray = np.arange(rows, dtype=np.float64) * closed.tick
         self.desired: FloatArray = np.zeros((rows, 3, 3))
         self.joints: FloatArray | None = None
@@ -115,7 +120,7 @@ class Recorder:
         """Return the record, with what the tip felt."""
         closed, kept = self._closed, self._kept
         positions = closed.commands == "position"
-        acted = self.acting.throughout(self.commands)
+        acted = self.command_timing.throughout(self.commands)
         home = end_points(closed.robot, closed.robot.home[None], closed.parallel)[:, 0]
         return Trace(
             t=self.times[kept],

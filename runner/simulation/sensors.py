@@ -17,7 +17,7 @@ from runner.sensing import (
     TorqueSensors,
     WristSensor,
 )
-from runner.simulation.acting import Acting
+from runner.simulation.acting import CommandTiming
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.endpoint import MeasuredTip, make_measured_tips
 from runner.simulation.joint_torques import make_joint_torque_sensor
@@ -27,7 +27,9 @@ _COMPUTATION = 2**32 - 4  # in the seeds; the loops' places count from 0, others
 
 def make_sensors(
     closed: ClosedLoop, config: RunConfig, repetition: int
-) -> tuple[Sequence[Encoders], WristSensor | None, TorqueSensors | None, Mapping[str, MeasuredTip], Acting | None]:
+) -> tuple[
+    Sequence[Encoders], WristSensor | None, TorqueSensors | None, Mapping[str, MeasuredTip], CommandTiming | None
+]:
     """Make what differs between repetitions: encoders, sensors at wrist, joints and tip, and which commands act.
 
     Those of plug-ins get random numbers from the same seeds as ours.
@@ -51,10 +53,10 @@ def make_sensors(
         generator = np.random.default_rng([seed, repetition, len(closed.loops)])
         wrist = WRIST_SENSORS.build(plugged["wrist_sensor"], closed.ticks + 1, closed.tick, generator)
     torques, tips = make_joint_torque_sensor(closed, config, repetition), make_measured_tips(closed, config, repetition)
-    return encoders, wrist, torques, tips, make_acting(closed, config, repetition)
+    return encoders, wrist, torques, tips, make_command_timing(closed, config, repetition)
 
 
-def make_acting(closed: ClosedLoop, config: RunConfig, repetition: int) -> Acting | None:
+def make_command_timing(closed: ClosedLoop, config: RunConfig, repetition: int) -> CommandTiming | None:
     """Draw which commands act in each tick of one repetition; None where all act as late as the closed loop says.
 
     The draws follow from (seed, repetition) and the loop's place alone, and change no other.
@@ -68,7 +70,7 @@ def make_acting(closed: ClosedLoop, config: RunConfig, repetition: int) -> Actin
         )
         for place, (loop, late) in enumerate(zip(closed.loops, config.timing.late, strict=True))
     ]
-    return Acting([loop.joints for loop in closed.loops], rows)
+    return CommandTiming([loop.joints for loop in closed.loops], rows)
 
 
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:

@@ -35,7 +35,7 @@ def touches_by_tip(config: RunConfig) -> bool:
     return config.robot.tool is None and PLANTS.commands(config.plant.kind) == "torque"
 
 
-def put_up(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
+def add_wall(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
     """Put up a wall in a plant that makes contacts itself, and return what of it is left for the loop to do.
 
     Raises:

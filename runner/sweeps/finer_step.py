@@ -17,7 +17,7 @@ from runner.base.errors import RunnerError
 from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.metrics.plant_error import COMPARED, PLANT, hindrance, on_runge_kutta
+from runner.metrics.plant_error import COMPARED, PLANT, on_runge_kutta, reason_not_comparable
 from runner.simulation.batch_blocks import simulate_blocks, threads_allowed
 from runner.statistics.interval import SMALLEST_SAMPLE
 from runner.store import Run, Sweep
@@ -90,7 +90,7 @@ def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
 
 def _hindrance(config: RunConfig) -> str:
     kind = config.plant.kind
-    if reason := hindrance(config.environment.kind):
+    if reason := reason_not_comparable(config.environment.kind):
         return reason
     return "" if kind in COMPARED or kind.startswith(PLANT) else f"plant={kind} has no finer step"
 

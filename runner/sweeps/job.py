@@ -15,7 +15,7 @@ from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.metrics import Columns, MetricContext, evaluate
 from runner.metrics.caveats import PlantStep, Watch, setting_of, signals_of
-from runner.metrics.plant_error import COMPARED, PlantError, compare, hindrance, on_runge_kutta
+from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch_blocks import simulate_blocks
 from runner.simulation.batch_jobs import NO_DEADLINE, seconds_together, warm_time
@@ -127,7 +127,7 @@ def _plant_error(
     """Return what the plant's step is worth in repetition 0; None where nobody asks, or there is nothing to compare."""
     if not config.settings.plant_error or config.plant.kind not in COMPARED:
         return None
-    if reason := hindrance(config.environment.kind):
+    if reason := reason_not_comparable(config.environment.kind):
         return PlantError(None, reason)
     other = replace(composed, resolved=on_runge_kutta(config.resolved))
     try:

@@ -9,7 +9,7 @@ from runner import store
 from runner.base.errors import StoreError
 from runner.metrics.summary import MOST_LISTED
 from runner.plugins.metric_units import units_of
-from runner.simulation.batch import Batcher
+from runner.simulation.batch import BatchSimulator
 from runner.simulation.batch_jobs import Job, Simulated, simulate_together
 from runner.store.json_texts import JsonTexts
 from runner.store.provenance import command, job_provenance
@@ -38,7 +38,7 @@ def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -
     Raises:
         StoreError: if the disk does not take it.
     """
-    batcher, texts, made, failed = Batcher(), JsonTexts(), set[str](), False
+    batcher, texts, made, failed = BatchSimulator(), JsonTexts(), set[str](), False
     try:
         with deadline(rules.time_limit):
             few = [(name, job) for name, job in jobs if job[0].settings.repetitions <= MOST_LISTED]
@@ -66,7 +66,7 @@ def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -
     return made, failed
 
 
-def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: Batcher) -> Iterator[ShardRow]:
+def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> Iterator[ShardRow]:
     """Yield runs that ended well as rows of a shard."""
     alike: dict[tuple[object, ...], list[Named]] = {}
     for name, run in runs:
@@ -87,7 +87,7 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: Batcher) -> Iterator
             yield ShardRow(end, texts.of(composed.resolved), config.arm.urdf, record, metrics, run.values)
 
 
-def _provenance(job: Job, batcher: Batcher) -> dict[str, object]:
+def _provenance(job: Job, batcher: BatchSimulator) -> dict[str, object]:
     """Return where a run comes from, which is much the same for runs that share their parts."""
     config, composed = job
     parts = ("provenance", config.arm, config.plant, *astuple(config.timing), composed.choices, config.commands)

@@ -16,7 +16,7 @@ _AXES = np.eye(3)
 
 
 @dataclass(frozen=True)
-class Unfolded:
+class NoConstantFolding:
     """Makes scalars as a plain function does, and is asked for 0, 1 and -1, too.
 
     Attributes:
@@ -85,7 +85,7 @@ def constants_of(
     Args:
         model: The arm, which does not change any more.
         number: Makes the scalar that stands for a constant; it is not asked for 0, 1 and -1, which stay floats,
-            unless it is Unfolded.
+            unless it is NoConstantFolding.
         gravity: In the base frame, shape (3,), in m/s^2, as scalars; None is the model's.
         tip: Name of the frame that is taken for the tip; None is the model's.
     """
@@ -179,7 +179,7 @@ def known(values: Any, number: Callable[[float], Scalar]) -> Any:
 
 
 def _scalar(value: float, number: Callable[[float], Scalar]) -> Scalar:
-    return number(value) if value not in (0.0, 1.0, -1.0) or isinstance(number, Unfolded) else value
+    return number(value) if value not in (0.0, 1.0, -1.0) or isinstance(number, NoConstantFolding) else value
 
 
 def _rounded(values: Any) -> Any:

@@ -69,10 +69,10 @@ class Expression:
         return Expression("fmul", self, self)
 
     def __bool__(self) -> bool:
-        raise TypeError("it branches on a value: use maths.choose")
+        raise TypeError("it branches on a value: use backend.choose")
 
     def __lt__(self, other: object) -> bool:
-        raise TypeError("it compares values: use maths.less")
+        raise TypeError("it compares values: use backend.less")
 
     __gt__ = __le__ = __ge__ = __lt__
 

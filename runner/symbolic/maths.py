@@ -16,7 +16,7 @@ Scalar = Any
 Chosen = TypeVar("Chosen", bound=Array | tuple[Array, ...])
 
 
-class Maths(Protocol):
+class Backend(Protocol):
     """Functions over one kind of scalar.
 
     A law that uses these, and the operators and `dot` of NumPy's arrays, can be evaluated on floats and written as
@@ -73,8 +73,8 @@ class Maths(Protocol):
         ...
 
 
-class _Floats:
-    """The functions on floats; see Maths."""
+class _NumpyBackend:
+    """The functions on floats; see Backend."""
 
     def choose(self, condition: Scalar, yes: Callable[[], Chosen], no: Callable[[], Chosen]) -> Chosen:
         return yes() if condition else no()
@@ -121,4 +121,4 @@ class _Floats:
         return np.asarray(pin.log3(R))
 
 
-FLOATS: Maths = _Floats()
+NUMPY: Backend = _NumpyBackend()

@@ -4,8 +4,8 @@ from runner.symbolic.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE
 from runner.symbolic.expression import Expression, place
 
 
-class Places:
-    """Places in the spaces of one program; see runner/symbolic/code.py."""
+class Slots:
+    """Slots in the spaces of one program; see runner/symbolic/code.py."""
 
     def __init__(self) -> None:
         self.widths = {GIVEN: 0, ROWS: 0, STATE: 0, SCRATCH: 0, PARS: 0, TABLE: 3}

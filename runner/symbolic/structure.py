@@ -39,7 +39,7 @@ def scalars(numbers: Any, number: Callable[[float], Scalar]) -> Any:
     return known(numbers, number)
 
 
-def pattern_of(law: TorqueLaw[Any]) -> str:
+def law_cache_key(law: TorqueLaw[Any]) -> str:
     """Return a text that is the same for two laws whose code is the same.
 
     Raises:
@@ -57,7 +57,7 @@ def pattern_of(law: TorqueLaw[Any]) -> str:
     )
 
 
-def fixed_text(law: TorqueLaw[Any]) -> str:
+def structure_cache_key(law: TorqueLaw[Any]) -> str:
     """Return a text of what is fixed in a law's code: it is the same for laws that differ in their numbers alone.
 
     Raises:

@@ -8,7 +8,7 @@ from pydantic import PositiveFloat, PositiveInt
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
-from runner.trajectories.closed_figure import ClosedFigure, Easing
+from runner.trajectories.closed_figure import ClosedFigure, TimeScaling
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Direction, InPlane, Point, component, plane_axes
 
@@ -33,7 +33,7 @@ class CircleConfig(StrictModel):
     normal: Direction
     centre_direction: InPlane
     turns: PositiveInt
-    easing: Easing
+    easing: TimeScaling
     duration: PositiveFloat
 
 

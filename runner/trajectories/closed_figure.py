@@ -8,7 +8,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.trajectories.blend import quintic_blend
 
-Easing = Literal["quintic", "none"]
+TimeScaling = Literal["quintic", "none"]
 
 
 class ClosedCurve(Protocol):
@@ -45,7 +45,7 @@ class ClosedFigure:
 
     curve: ClosedCurve
     duration: float
-    easing: Easing
+    easing: TimeScaling
     tracked: bool = True
 
     @property

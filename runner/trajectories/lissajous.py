@@ -8,7 +8,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, ValidationInfo, fie
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
-from runner.trajectories.closed_figure import ClosedFigure, Easing
+from runner.trajectories.closed_figure import ClosedFigure, TimeScaling
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point
@@ -34,7 +34,7 @@ class LissajousConfig(StrictModel):
     amplitudes: Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]
     frequencies: Annotated[list[Annotated[int, Field(ge=0, le=100)]], Field(min_length=3, max_length=3)]
     phases: Point
-    easing: Easing
+    easing: TimeScaling
     duration: PositiveFloat
 
     @field_validator("amplitudes")

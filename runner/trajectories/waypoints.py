@@ -118,7 +118,7 @@ class Waypoints:
         return distance_to_curve(points, self.sample, np.concatenate([*between, self.times[-1:]]))
 
 
-def least_jerk(points: FloatArray, times: FloatArray) -> Waypoints:
+def minimum_jerk(points: FloatArray, times: FloatArray) -> Waypoints:
     """Return the motion of least jerk through points at times; see Waypoints for both."""
     return Waypoints(points, times, least_jerk_spline(points, times))
 
@@ -152,4 +152,4 @@ def build(config: WaypointsConfig, start: FloatArray) -> Trajectory:
         )
     shares = np.cumsum(lengths) / lengths.sum() if config.time_shares is None else np.array(config.time_shares)
     times = config.duration * np.concatenate([[0.0], shares[:-1], [1.0]])
-    return least_jerk(points, times)
+    return minimum_jerk(points, times)

@@ -21,8 +21,8 @@ from runner.config.validation import validate
 from runner.metrics import measure, of_run
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4Config
-from runner.simulation.assembly import assemble_whole, metric_context
-from runner.simulation.batch import Batcher, Together, Wanted
+from runner.simulation.assembly import assemble_program, metric_context
+from runner.simulation.batch import BatchResult, BatchSimulator, RunSpec
 from runner.simulation.compiled.directed import tangents
 from runner.symbolic.engine import evaluator
 from runner.trajectories.trajectory import joint_reference
@@ -86,10 +86,10 @@ def analyse(composed: Composed, groups: Sequence[str] = GROUPS, repetition: int 
     if not parameters:
         why = "".join(f"; {', '.join(names)}: {reason}" for reason, names in slopes.left_out.items())
         raise RunnerError(f"the run depends on no parameter of {', '.join(groups)}{why}; allowed: {', '.join(GROUPS)}")
-    whole = scene.whole
-    shared = whole.commands.shared(trace.t, trace.desired, joint_reference(scene.config.path, trace.t))
-    moved = tangents(whole, scene.setting, slopes.settings, shared)
-    acted = np.maximum(np.arange(len(trace.t)) - whole.delay, 0)
+    loop_program = scene.loop_program
+    shared = loop_program.commands.shared(trace.t, trace.desired, joint_reference(scene.config.path, trace.t))
+    moved = tangents(loop_program, scene.setting, slopes.settings, shared)
+    acted = np.maximum(np.arange(len(trace.t)) - loop_program.delay, 0)
     change = Change(moved.q, moved.dq, moved.torque[:, acted], moved.end_points)
     found = derivatives(trace, change, metric_context(scene.config))
     known = {name: metrics[name] for name in metrics if name in found}
@@ -131,14 +131,14 @@ def by_runge_kutta(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> 
     return validate({**resolved, "plant": {**kept, "kind": "rk4", "step": None}}, config_dirs)
 
 
-def simulated(run: Wanted) -> tuple[Trace, Mapping[str, float | None]]:
+def simulated(run: RunSpec) -> tuple[Trace, Mapping[str, float | None]]:
     """Return the trace and metrics of one run.
 
     Raises:
         RunnerError: where it ends early.
     """
-    (found,) = Batcher().simulate([run])
-    if not isinstance(found, Together):
+    (found,) = BatchSimulator().simulate([run])
+    if not isinstance(found, BatchResult):
         failure = found[1].failure
         assert failure is not None  # noqa: S101 - it is why the run is not among those that ended well
         raise RunnerError(f"the run has no derivatives: it ended at {failure.time:g} s, {failure.reason}")
@@ -153,7 +153,7 @@ def scene_of(config: RunConfig, repetition: int) -> Scene:
         ConfigError: where it cannot start.
     """
     why = _why_not(config)
-    found = None if why else assemble_whole(config, repetition)
+    found = None if why else assemble_program(config, repetition)
     if found is None:
         why = why or f"the law {config.controller.kind} has no compiled form, or the arm too many joints"
         raise RunnerError(f"no derivatives of this run: {why}")

@@ -8,7 +8,7 @@ import numpy as np
 from runner.analysis.sensitivity.analysis import Sensitivity
 from runner.base.arrays import FloatArray
 from runner.metrics import measure
-from runner.simulation.batch import Batcher, Together
+from runner.simulation.batch import BatchResult, BatchSimulator
 
 _LARGEST, _STEPS = 2.0**-8, 9  # of a parameter's value, and of the error; each step is half the one before
 _ROUNDING = 4e-15  # of metrics that follow from lengths, angles or torques of about 1 in SI units
@@ -47,8 +47,8 @@ def differences(found: Sensitivity, names: Sequence[str]) -> dict[str, Differenc
         for side in (-step, step)
     ]
     values = np.full((len(names), len(runs)), np.nan)
-    for part in Batcher().simulate(runs):
-        if isinstance(part, Together):
+    for part in BatchSimulator().simulate(runs):
+        if isinstance(part, BatchResult):
             measured = measure(part.traces, part.context)
             values[:, part.places] = [measured[name] for name in names]
     pairs = values.reshape(len(names), len(found.parameters), _STEPS, 2)

@@ -12,10 +12,10 @@ from runner.base.errors import ConfigError, RunnerError
 from runner.config.run import RunConfig
 from runner.sensing.encoders import encoder_errors
 from runner.simulation.assembly import describe_loop, find_start
-from runner.simulation.batch import Wanted
-from runner.simulation.compiled.closed_loop import Whole
+from runner.simulation.batch import RunSpec
+from runner.simulation.compiled.closed_loop import LoopProgram
 from runner.simulation.compiled.directed import Setting
-from runner.symbolic.structure import fixed_text
+from runner.symbolic.structure import structure_cache_key
 from runner.trajectories.trajectory import Trajectory, joint_reference
 
 _PART = 1.0 / 512.0  # of a parameter's value, between the nine at which numbers are taken
@@ -29,13 +29,13 @@ class NoDerivativeError(RunnerError):
     """A run has no derivative by a parameter; the message is the reason."""
 
 
-class Scene(Wanted):
+class Scene(RunSpec):
     """One repetition of a run, and the derivatives of the numbers that it depends on."""
 
     @property
     def setting(self) -> Setting:
         """The numbers that it depends on."""
-        loops, settings = self.whole.commands.loops, self.config.settings
+        loops, settings = self.loop_program.commands.loops, self.config.settings
         errors = [
             encoder_errors(
                 [self.config.noise],
@@ -44,8 +44,8 @@ class Scene(Wanted):
             )[0]
             for number, loop in enumerate(loops)
         ]
-        start = self.whole.commands.start(self.q_start[None], [wrong[:1] for wrong in errors])[0]
-        return Setting(self.whole.numbers, start, errors)
+        start = self.loop_program.commands.start(self.q_start[None], [wrong[:1] for wrong in errors])[0]
+        return Setting(self.loop_program.numbers, start, errors)
 
     def at(self, parameter: Parameter, value: float) -> "Scene":
         """Return the run with another value of a parameter; where the arm starts and the desired motion are held.
@@ -56,13 +56,15 @@ class Scene(Wanted):
         return self._changed(parameter.with_value(value))
 
     def _changed(self, config: RunConfig) -> "Scene":
-        whole = describe_loop(config, self.repetition)
-        if whole is None or config.timing != self.config.timing:
+        loop_program = describe_loop(config, self.repetition)
+        if loop_program is None or config.timing != self.config.timing:
             raise NoDerivativeError("it changes the ticks or steps of the run, which are held")
-        if _fixed(whole) != _fixed(self.whole):
+        if _fixed(loop_program) != _fixed(self.loop_program):
             raise NoDerivativeError(_CODE)
         # Metrics depend on the arm itself, such as on its home.
-        return replace(self, config=replace(config, arm=self.config.arm, path=self.config.path), whole=whole)
+        return replace(
+            self, config=replace(config, arm=self.config.arm, path=self.config.path), loop_program=loop_program
+        )
 
     def depends(self, config: RunConfig) -> bool:
         """Return True if another config gives another run.
@@ -71,7 +73,7 @@ class Scene(Wanted):
             NoDerivativeError: where it does so in a way that has no derivative.
             ConfigError: where it cannot start.
         """
-        times: FloatArray = np.arange(self.rows, dtype=np.float64) * self.whole.tick
+        times: FloatArray = np.arange(self.rows, dtype=np.float64) * self.loop_program.tick
         if not np.array_equal(_motion(self.config.path, times), _motion(config.path, times)):
             raise NoDerivativeError("it changes the desired motion, which is held")
         if not np.array_equal(find_start(config), self.q_start):
@@ -117,8 +119,8 @@ class Scene(Wanted):
         )
 
 
-def _fixed(whole: Whole) -> list[str]:
-    return [fixed_text(loop.law) for loop in whole.commands.loops]
+def _fixed(loop_program: LoopProgram) -> list[str]:
+    return [structure_cache_key(loop.law) for loop in loop_program.commands.loops]
 
 
 def _motion(path: Trajectory, times: FloatArray) -> FloatArray:

@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Loop
 from runner.controllers.force.force_reading import ForceReading, JointTorqueReading, ReadingName, WristReading
-from runner.controllers.force.tip_force import Acting, TipForceConfig, find_acting
+from runner.controllers.force.tip_force import ForceTask, TipForceConfig, find_force_task
 from runner.controllers.sampled_stability import VelocityGain
 from runner.robots.robot import Robot
 from runner.sensing.force_torque import ForceTorqueConfig
@@ -57,7 +57,7 @@ class HybridForce:
     of the depth d. Before the wall is felt the tip goes there at (1 + k_f) f_d / (2 xi m_n omega_c). F* is TipTask's.
 
     Args:
-        acting: What pushes.
+        task: What pushes.
         config: The law's numbers.
         reading: What reads the force.
 
@@ -65,10 +65,10 @@ class HybridForce:
         ConfigError: where the arm cannot push along the normal, or that leaves no direction to move in.
     """
 
-    def __init__(self, acting: Acting, config: HybridForceConfig, reading: ForceReading) -> None:
-        self._tip, self._config, self._period, self._reading = acting.tip, config, acting.period, reading
+    def __init__(self, task: ForceTask, config: HybridForceConfig, reading: ForceReading) -> None:
+        self._tip, self._config, self._period, self._reading = task.tip, config, task.period, reading
         self._normal = _unit(config.normal)
-        _check_directions(acting, self._normal)
+        _check_directions(task, self._normal)
         self.external_wrench: FloatArray = np.zeros(6)
         """See WrenchFeedbackController."""
         self.reset()
@@ -96,15 +96,15 @@ class HybridForce:
         config = self._config
         self.external_wrench = self._reading.wrench(q, dq)
         f = float(self.external_wrench[:3] @ self._normal)
-        seen = self._tip.see(q, dq, reference)
-        n = seen.axes @ self._normal
+        state = self._tip.task_state(q, dq, reference)
+        n = state.axes @ self._normal
         if f > 0.0:
             self._sum += self._period * (config.force - f)
-        mass = 1.0 / float(n @ seen.mobility @ n)
+        mass = 1.0 / float(n @ state.mobility @ n)
         rate = np.sqrt(config.wall_stiffness * (1.0 + config.force_gain) / mass)
         push = config.force + config.force_gain * (config.force - f) + config.integral_gain * self._sum
-        push += 2.0 * config.force_damping * mass * rate * float(n @ seen.velocity)
-        return self._tip.torque(seen, seen.asked - n * (n @ seen.asked), -push * n)
+        push += 2.0 * config.force_damping * mass * rate * float(n @ state.velocity)
+        return self._tip.torque(state, state.asked - n * (n @ state.asked), -push * n)
 
     def messages(self) -> list[str]:
         """Return nothing; see WrenchFeedbackController."""
@@ -120,13 +120,13 @@ def build(config: HybridForceConfig, robot: Robot) -> tuple[Loop, ...]:
     Raises:
         ConfigError: where a value misses a stage, the arm has too few joints, or cannot push and move.
     """
-    acting = find_acting(config, robot)
+    task = find_force_task(config, robot)
     reading: ForceReading = (
-        WristReading(robot, config.sensor, acting.period)
+        WristReading(robot, config.sensor, task.period)
         if config.force_source == "wrist"
-        else JointTorqueReading(robot, acting.period)
+        else JointTorqueReading(robot, task.period)
     )
-    return acting.loops(HybridForce(acting, config, reading), uses_wrench=True)
+    return task.loops(HybridForce(task, config, reading), uses_wrench=True)
 
 
 def _unit(normal: list[float]) -> FloatArray:
@@ -136,8 +136,8 @@ def _unit(normal: list[float]) -> FloatArray:
     return np.array(normal) / length
 
 
-def _check_directions(acting: Acting, normal: FloatArray) -> None:
-    directions = acting.tip.directions
+def _check_directions(task: ForceTask, normal: FloatArray) -> None:
+    directions = task.tip.directions
     if len(directions) == 3:
         return
     along = float(np.linalg.norm(directions @ normal))
@@ -145,7 +145,7 @@ def _check_directions(acting: Acting, normal: FloatArray) -> None:
     if along < 1.0 - 1e-6:
         raise ConfigError(
             [
-                f"controller.normal: {acting.name} cannot push along {normal.tolist()}, as its tip goes along "
+                f"controller.normal: {task.name} cannot push along {normal.tolist()}, as its tip goes along "
                 f"{names} alone; take a normal among these"
             ]
         )
@@ -153,6 +153,6 @@ def _check_directions(acting: Acting, normal: FloatArray) -> None:
         raise ConfigError(
             [
                 f"controller.normal: a force along {normal.tolist()} leaves no direction to move in, as the tip of "
-                f"{acting.name} goes along {names} alone; take an arm whose tip has two directions or more"
+                f"{task.name} goes along {names} alone; take an arm whose tip has two directions or more"
             ]
         )

@@ -7,7 +7,7 @@ from pydantic import Field, NonNegativeFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import Loop
-from runner.controllers.force.tip_force import TipForce, TipForceConfig, find_acting
+from runner.controllers.force.tip_force import TipForce, TipForceConfig, find_force_task
 from runner.robots.robot import Robot
 
 Three = Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]
@@ -56,10 +56,10 @@ class Impedance:
 
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the torques of the law above; see Controller.torque."""
-        seen = self._tip.see(q, dq, reference)
-        axes = seen.axes
-        force = axes @ self._stiffness @ axes.T @ seen.error + axes @ self._damping @ axes.T @ seen.lag
-        return self._tip.torque(seen, seen.desired, force)
+        state = self._tip.task_state(q, dq, reference)
+        axes = state.axes
+        force = axes @ self._stiffness @ axes.T @ state.error + axes @ self._damping @ axes.T @ state.lag
+        return self._tip.torque(state, state.desired, force)
 
 
 CONFIG = ImpedanceConfig
@@ -71,5 +71,5 @@ def build(config: ImpedanceConfig, robot: Robot) -> tuple[Loop, ...]:
     Raises:
         ConfigError: where a value misses a stage, or the arm has too few joints.
     """
-    acting = find_acting(config, robot)
-    return acting.loops(Impedance(acting.tip, config), uses_wrench=False)
+    task = find_force_task(config, robot)
+    return task.loops(Impedance(task.tip, config), uses_wrench=False)

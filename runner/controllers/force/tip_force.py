@@ -12,13 +12,13 @@ from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.controllers.macro_mini.macro_mini import build as build_stages
 from runner.controllers.operational_space.tip_task import TipTask
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
-from runner.controllers.operational_space.whole_body_posture import HeldJoints, HeldPosture
+from runner.controllers.operational_space.whole_body_posture import JointStiffness, PostureTask
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import PositivePerStage, by_stage
-from runner.symbolic.maths import FLOATS
+from runner.symbolic.maths import NUMPY
 
 
 class TipForceConfig(StrictModel):
@@ -47,7 +47,7 @@ class TipForceConfig(StrictModel):
     null_space_frequency: NonNegativeFloat
 
 
-class Seen(NamedTuple):
+class TaskState(NamedTuple):
     """The tip's task in one state, along the axes of the arm's own base; rows as the task has them.
 
     Attributes:
@@ -128,7 +128,9 @@ class TipForce:
         rides = own is None and len(robot.stages) > 1
         home = robot.home if own is None else own.home
         frequency = law.null_space_frequency
-        self._posture = HeldJoints(model, frequency, home, self._task.rows) if rides else HeldPosture(frequency, home)
+        self._posture = (
+            JointStiffness(model, frequency, home, self._task.rows) if rides else PostureTask(frequency, home)
+        )
 
     @property
     def velocity_gain(self) -> VelocityGain:
@@ -140,25 +142,25 @@ class TipForce:
         """Directions in which the arm can move its tip, in its own base frame, shape (rows, 3)."""
         return self._task.numbers.directions
 
-    def see(self, q: FloatArray, dq: FloatArray, reference: FloatArray) -> Seen:
+    def task_state(self, q: FloatArray, dq: FloatArray, reference: FloatArray) -> TaskState:
         """Return the task at the robot's measured state, shapes (nq,), and reference, shape (3, 3)."""
         numbers, own_q, own_dq = self._task.numbers, q[self.joints], dq[self.joints]
         tip = self._arm.tip(own_q, own_dq)
         J, dJ_dq = (values.copy() for values in self._task.jacobian(numbers, tip))
         R, carried, target, gravity = np.eye(3), np.zeros(3), reference, self._gravity
         if self._base is not None:
-            x, R, moves = (values.copy() for values in self._base.motion(q, dq))
+            x, R, moves = (values.copy() for values in self._base.tip_pose_and_twist(q, dq))
             way = reference[0] - x
             drift = reference[1] - moves[:3] - np.cross(moves[3:], way)
             target = np.array([way, drift, np.zeros(3)]) @ R  # R^T of each row
             carried = (moves[:3] + np.cross(moves[3:], R @ tip.x)) @ R
             gravity = R.T @ gravity
-        error = self._task.error(FLOATS, numbers, tip, target)
+        error = self._task.error(NUMPY, numbers, tip, target)
         velocity, axes = J @ own_dq, numbers.directions[:, :3] @ R.T
-        asked = self._task.acceleration(FLOATS, numbers, error, velocity, target)
+        asked = self._task.acceleration(NUMPY, numbers, error, velocity, target)
         wanted = target[1:] @ numbers.directions[:, :3].T if self._feedforward else np.zeros((2, self._task.rows))
-        M_inverse_J = FLOATS.solve_symmetric(self._arm.mass_matrix(own_q), J.T, "the mass matrix is singular")
-        return Seen(
+        M_inverse_J = NUMPY.solve_symmetric(self._arm.mass_matrix(own_q), J.T, "the mass matrix is singular")
+        return TaskState(
             axes,
             own_q,
             own_dq,
@@ -173,20 +175,22 @@ class TipForce:
             wanted[1],
         )
 
-    def torque(self, seen: Seen, acceleration: FloatArray, force: FloatArray) -> FloatArray:
+    def torque(self, state: TaskState, acceleration: FloatArray, force: FloatArray) -> FloatArray:
         """Return the torques of the law above for an acceleration and a force along the task's rows, shapes (rows,)."""
-        J, numbers = seen.J, self._task.numbers
-        ddq_0, spring = self._posture.ask(FLOATS, self._posture.numbers, J, seen.q, seen.dq)
-        F = acceleration - seen.dJ_dq - J @ ddq_0
+        J, numbers = state.J, self._task.numbers
+        ddq_0, spring = self._posture.acceleration_and_torque(NUMPY, self._posture.numbers, J, state.q, state.dq)
+        F = acceleration - state.dJ_dq - J @ ddq_0
         if spring is not None:
-            F = F - seen.M_inverse_J.T @ spring
-        mobility = self._task.damp(FLOATS, numbers, J, seen.error, seen.mobility)
-        moving = FLOATS.solve_symmetric(mobility, F, "the tip's Jacobian is singular")
-        torque: FloatArray = self._arm.inverse_dynamics(seen.q, seen.dq, ddq_0, seen.gravity) + J.T @ (moving + force)
+            F = F - state.M_inverse_J.T @ spring
+        mobility = self._task.damp(NUMPY, numbers, J, state.error, state.mobility)
+        moving = NUMPY.solve_symmetric(mobility, F, "the tip's Jacobian is singular")
+        torque: FloatArray = self._arm.inverse_dynamics(state.q, state.dq, ddq_0, state.gravity) + J.T @ (
+            moving + force
+        )
         return torque if spring is None else torque + spring
 
 
-class Acting(NamedTuple):
+class ForceTask(NamedTuple):
     """What acts on the world, and what carries it.
 
     Attributes:
@@ -206,7 +210,7 @@ class Acting(NamedTuple):
         return (*self.below, Loop(self.name, self.tip.joints, self.period, controller, uses_wrench=uses_wrench))
 
 
-def find_acting(config: TipForceConfig, robot: Robot) -> Acting:
+def find_force_task(config: TipForceConfig, robot: Robot) -> ForceTask:
     """Return what of a robot acts on the world.
 
     Raises:
@@ -227,7 +231,7 @@ def find_acting(config: TipForceConfig, robot: Robot) -> Acting:
         singularity_damping=config.singularity_damping,
     )
     below = _carrying(config, robot, frequencies, ratios, periods) if apart else ()
-    return Acting(names[-1], TipForce(robot, len(names) - 1 if apart else None, law), periods[-1], below)
+    return ForceTask(names[-1], TipForce(robot, len(names) - 1 if apart else None, law), periods[-1], below)
 
 
 def _carrying(

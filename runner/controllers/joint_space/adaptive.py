@@ -147,12 +147,12 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         if self._bounded:
             braked = numbers.swings / numbers.rate * (numbers.damping * teaches).dot(teaches) + _NOTHING
             needed = (numbers.adaptation_gain * gradient).dot(gradient)
-            change = change * (braked / arm.maths.maximum(braked, needed))
+            change = change * (braked / arm.backend.maximum(braked, needed))
         return torque, memory + change
 
-    def _scales(self, model: RobotModel, has_weight: bool, home: FloatArray, D: FloatArray) -> FloatArray:
+    def _scales(self, model: RobotModel, gravity_compensation: bool, home: FloatArray, D: FloatArray) -> FloatArray:
         """Return 1 / (P max |D^-1/2 Y_p|^2) of each parameter, shape (P,); 0 of one that nothing excites."""
-        arm, largest = PinocchioArm(model, has_weight), np.zeros(1)
+        arm, largest = PinocchioArm(model, gravity_compensation), np.zeros(1)
         for way in (*np.eye(model.nq), np.ones(model.nq)):
             speed = _SPEED * way
             Y = arm.regressor(home, speed, speed, _ACCELERATION * way)
@@ -167,13 +167,13 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
 
 def _taught(arm: Arm, torque: Scalar, limit: Scalar, s: Scalar) -> Scalar:
     """Return what a joint's s teaches: nothing in a tick in which its torque is beyond its limit."""
-    within = arm.maths.less(arm.maths.absolute(torque), limit)
-    return arm.maths.choose(within, lambda: np.array([s]), lambda: np.zeros(1))[0]
+    within = arm.backend.less(arm.backend.absolute(torque), limit)
+    return arm.backend.choose(within, lambda: np.array([s]), lambda: np.zeros(1))[0]
 
 
 def _friction(arm: Arm, dq_r: Array, dq_d: Array) -> Array:
     """Return the columns of viscous and of dry friction, shape (nq, 2 nq)."""
-    dry = np.array([speed / arm.maths.sqrt(speed * speed + _SMOOTH**2) for speed in dq_d])
+    dry = np.array([speed / arm.backend.sqrt(speed * speed + _SMOOTH**2) for speed in dq_d])
     return np.concatenate([np.diag(dq_r), np.diag(dry)], axis=1)
 
 

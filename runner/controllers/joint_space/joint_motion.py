@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.controllers.operational_space.tip_task import TaskName, TipNumbers, TipTask, held_orientation
-from runner.controllers.operational_space.whole_body_posture import HeldPosture, PostureNumbers, drawn_to
+from runner.controllers.operational_space.whole_body_posture import PostureNumbers, PostureTask, posture_pd
 from runner.controllers.torque_law import Arm, structure_of
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
@@ -90,7 +90,7 @@ class JointMotion:
             None,
             config.singularity_damping,
         )
-        posture = HeldPosture(config.null_space_frequency, rest).numbers
+        posture = PostureTask(config.null_space_frequency, rest).numbers
         self.numbers = JointMotionNumbers(self._task.numbers, posture, config.period)
 
     def structure(self) -> dict[str, Any]:
@@ -119,10 +119,10 @@ class JointMotion:
     def _resolved_acceleration(
         self, arm: Arm, numbers: JointMotionNumbers, q_d: Array, dq_d: Array, reference: Array
     ) -> Array:
-        maths, task, tip = arm.maths, self._task, arm.tip(q_d, dq_d)
+        backend, task, tip = arm.backend, self._task, arm.tip(q_d, dq_d)
         J, dJ_dq = task.jacobian(numbers.tip, tip)
-        error = task.error(maths, numbers.tip, tip, reference)
-        ddq_0 = drawn_to(numbers.posture, q_d, dq_d)
-        F = task.acceleration(maths, numbers.tip, error, J.dot(dq_d), reference) - dJ_dq - J.dot(ddq_0)
-        square = task.damp(maths, numbers.tip, J, error, J.dot(J.T))
-        return np.asarray(ddq_0 + J.T.dot(maths.solve_symmetric(square, F, "the tip's Jacobian is singular")))
+        error = task.error(backend, numbers.tip, tip, reference)
+        ddq_0 = posture_pd(numbers.posture, q_d, dq_d)
+        F = task.acceleration(backend, numbers.tip, error, J.dot(dq_d), reference) - dJ_dq - J.dot(ddq_0)
+        square = task.damp(backend, numbers.tip, J, error, J.dot(J.T))
+        return np.asarray(ddq_0 + J.T.dot(backend.solve_symmetric(square, F, "the tip's Jacobian is singular")))

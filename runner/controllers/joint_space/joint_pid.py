@@ -111,9 +111,9 @@ class JointPid(JointLaw[JointPidNumbers]):
 
 def _useful(arm: Arm, torque: Scalar, limit: Scalar, step: Scalar) -> Array:
     """Return by how much a joint's integral grows, shape (1,): not beyond what its torque may be."""
-    within = arm.maths.less(arm.maths.absolute(torque), limit)
-    back = arm.maths.less(torque * step, 0.0)
-    return arm.maths.choose(arm.maths.any_of(within, back), lambda: np.array([step]), lambda: np.zeros(1))
+    within = arm.backend.less(arm.backend.absolute(torque), limit)
+    back = arm.backend.less(torque * step, 0.0)
+    return arm.backend.choose(arm.backend.any_of(within, back), lambda: np.array([step]), lambda: np.zeros(1))
 
 
 CONFIG = JointPidConfig

@@ -109,7 +109,7 @@ class SlidingMode(JointLaw[SlidingModeNumbers]):
 
 def _saturated(arm: Arm, share: Scalar) -> Scalar:
     """Return a scalar between -1 and 1, or the nearer of these."""
-    most = arm.maths.maximum
+    most = arm.backend.maximum
     return -most(-most(share, -1.0), -1.0)
 
 

@@ -14,7 +14,7 @@ from runner.controllers.operational_space.null_space import NullSpaceConfig, Nul
 from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
-from runner.robots.task_space import task_directions
+from runner.robots.task_space import task_basis
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import PositivePerJoint, expand
 
@@ -80,7 +80,7 @@ class DifferentialInverseKinematics:
     def __init__(self, model: RobotModel, config: DifferentialInverseKinematicsConfig, home: FloatArray) -> None:
         _check_gain(config)
         self._orientation = held_orientation(config.task, model, home)
-        self._directions = task_directions(model, config.task == "pose")
+        self._directions = task_basis(model, config.task == "pose")
         self._whole = len(self._directions) == self._directions.shape[1]
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()

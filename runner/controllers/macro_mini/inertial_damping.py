@@ -80,7 +80,7 @@ class InertialDamping(TorqueLaw[DampingNumbers]):
     ) -> tuple[Array, Array]:
         """Return the torques of this stage; see TorqueLaw."""
         own, base = arms
-        _, R, moves = base.motion(q, dq)
+        _, R, moves = base.tip_pose_and_twist(q, dq)
         still: FloatArray = np.zeros(3)
         beside, gravity = np.array([numbers.share * (moves[:3] - reference[1]), numbers.gravity]).dot(R)
         target = np.array([numbers.offset, beside, still])

@@ -12,7 +12,7 @@ from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, end_points
 from runner.sensing.wrench import cross
-from runner.symbolic.maths import Array, Maths, Scalar
+from runner.symbolic.maths import Array, Backend, Scalar
 
 Aim = Literal["rest", "own_offset", "base_offset"]
 
@@ -146,20 +146,20 @@ class CarrierController(_StageLoop[CarrierNumbers]):
     ) -> tuple[Array, Array]:
         """Return the torques of the first stage, and the posture held; see TorqueLaw."""
         own, own_q, own_dq = arms[0], q[: self._end], dq[: self._end]
-        bases = [arm.place(q) for arm in arms[1 : 1 + self._bases]] if self._bases else []
+        bases = [arm.tip_pose(q) for arm in arms[1 : 1 + self._bases]] if self._bases else []
         target = reference - numbers.offset
         if self._riders:
             rotations = numbers.rotations if self._parallel else [R for _, R in bases]
             for (first, end), rider, R in zip(self._riders, arms[1 + self._bases :], rotations, strict=True):
-                x, _ = rider.place(q[first:end])
+                x, _ = rider.tip_pose(q[first:end])
                 target[0] -= R.dot(x)
         if not self._turns:
             return self._law.move(own, numbers.law, own_q, own_dq, target), memory
-        maths, distance = own.maths, reference[0] - bases[0][0] - numbers.later
-        beyond = maths.less(numbers.reach * numbers.reach, distance.dot(distance))
-        own_turn = maths.less(rider_moves(maths, numbers.turn, time), 0.5)
-        return maths.choose(
-            maths.any_of(own_turn, beyond),
+        backend, distance = own.backend, reference[0] - bases[0][0] - numbers.later
+        beyond = backend.less(numbers.reach * numbers.reach, distance.dot(distance))
+        own_turn = backend.less(rider_moves(backend, numbers.turn, time), 0.5)
+        return backend.choose(
+            backend.any_of(own_turn, beyond),
             lambda: (self._law.move(own, numbers.law, own_q, own_dq, target), self._released),
             lambda: _hold(self._law, own, numbers.law, own_q, own_dq, memory),
         )
@@ -242,20 +242,20 @@ class RiderController(_StageLoop[RiderNumbers]):
     ) -> tuple[Array, Array]:
         """Return the torques of this stage, and the posture held; see TorqueLaw."""
         own = arms[0]
-        maths, own_q, own_dq = own.maths, q[self._first : self._end], dq[self._first : self._end]
+        backend, own_q, own_dq = own.backend, q[self._first : self._end], dq[self._first : self._end]
         way, target, gravity = self._seen(arms[1:], numbers, q, dq, reference)
         if not self._follows:
             return self._law.move(own, numbers.law, own_q, own_dq, target, gravity), memory
         squared, near = way.dot(way), target
-        beyond = maths.less(numbers.reach * numbers.reach, squared)
+        beyond = backend.less(numbers.reach * numbers.reach, squared)
         if self._stretch:
-            target = maths.choose(
-                beyond, lambda: _at_rest(near[0] * (numbers.reach / maths.sqrt(squared))), lambda: near
+            target = backend.choose(
+                beyond, lambda: _at_rest(near[0] * (numbers.reach / backend.sqrt(squared))), lambda: near
             )
         if not self._holds:
             return self._law.move(own, numbers.law, own_q, own_dq, target, gravity), memory
-        return maths.choose(
-            self._waits(maths, numbers, time, beyond),
+        return backend.choose(
+            self._waits(backend, numbers, time, beyond),
             lambda: _hold(self._law, own, numbers.law, own_q, own_dq, memory, gravity),
             lambda: (self._law.move(own, numbers.law, own_q, own_dq, target, gravity), self._released),
         )
@@ -266,15 +266,15 @@ class RiderController(_StageLoop[RiderNumbers]):
         """Return the way to the target in the robot's base frame, and target and gravity in the stage's own."""
         base, *between = below
         if self._moving:
-            x, R, moves = base.motion(q, dq)
+            x, R, moves = base.tip_pose_and_twist(q, dq)
         else:
-            x, R = base.place(q)
+            x, R = base.tip_pose(q)
         for (first, end), arm, turned in zip(self._between, between, numbers.between, strict=True):
             if self._moving:
-                offset, _, goes = arm.motion(q[first:end], dq[first:end])
+                offset, _, goes = arm.tip_pose_and_twist(q[first:end], dq[first:end])
                 moves = np.concatenate([moves[:3] + turned.dot(goes[:3]), moves[3:]])
             else:
-                offset, _ = arm.place(q[first:end])
+                offset, _ = arm.tip_pose(q[first:end])
             x = x + turned.dot(offset)
         if self._parallel:
             R = numbers.rotation
@@ -288,11 +288,11 @@ class RiderController(_StageLoop[RiderNumbers]):
         seen = np.array([way, velocity, _STILL, numbers.gravity]).dot(R)  # R^T of each row
         return way, seen[:3], seen[3]
 
-    def _waits(self, maths: Maths, numbers: RiderNumbers, time: Scalar, beyond: Scalar) -> Scalar:
+    def _waits(self, backend: Backend, numbers: RiderNumbers, time: Scalar, beyond: Scalar) -> Scalar:
         if not self._turns:
             return beyond
-        waits = maths.less(rider_moves(maths, numbers.turn, time), 0.5)
-        return waits if self._stretch else maths.any_of(waits, beyond)
+        waits = backend.less(rider_moves(backend, numbers.turn, time), 0.5)
+        return waits if self._stretch else backend.any_of(waits, beyond)
 
 
 class HeldController(_StageLoop[HeldNumbers]):
@@ -324,16 +324,16 @@ class HeldController(_StageLoop[HeldNumbers]):
     ) -> tuple[Array, Array]:
         """Return the torques of this stage; see TorqueLaw."""
         own, base = arms
-        R = numbers.rotation if self._parallel else base.place(q)[1]
+        R = numbers.rotation if self._parallel else base.tip_pose(q)[1]
         own_q, own_dq = q[self._first : self._end], dq[self._first : self._end]
         gravity = R.T.dot(numbers.gravity)
         return self._law.hold(own, numbers.law, own_q, own_dq, numbers.posture, gravity), memory
 
 
-def rider_moves(maths: Maths, turn: Scalar, time: Scalar) -> Scalar:
+def rider_moves(backend: Backend, turn: Scalar, time: Scalar) -> Scalar:
     """Return 1 in the rider's turn and 0 in the carrier's, which begins; each is of this length, in s."""
-    count = maths.floor(time / turn + 1e-9)
-    return count - 2.0 * maths.floor(0.5 * count)
+    count = backend.floor(time / turn + 1e-9)
+    return count - 2.0 * backend.floor(0.5 * count)
 
 
 def base_at_home(robot: Robot, stage: int) -> tuple[RobotModel, FloatArray]:
@@ -358,6 +358,6 @@ def _hold(
     law: StageLaw, arm: Arm, numbers: StageNumbers, q: Array, dq: Array, memory: Array, gravity: Array | None = None
 ) -> tuple[Array, Array]:
     """Return the torques that hold a posture from the first moment of a hold to its end, and the memory of it."""
-    maths = arm.maths
-    kept = maths.choose(maths.less(0.5, memory[-1]), lambda: memory, lambda: np.concatenate([q, [1.0]]))
+    backend = arm.backend
+    kept = backend.choose(backend.less(0.5, memory[-1]), lambda: memory, lambda: np.concatenate([q, [1.0]]))
     return law.hold(arm, numbers, q, dq, kept[:-1], gravity), kept

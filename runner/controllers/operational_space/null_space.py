@@ -57,7 +57,7 @@ class NullSpaceTask:
             q: Joint positions, shape (nq,), in rad.
             J: The tip's basic Jacobian in the base frame, shape (6, nq).
             directions: What the tip's task asks for, shape (rows, 3) for the position, (rows, 6) for the pose; see
-                task_directions.
+                task_basis.
         """
         if self._task == "none" or self._gain == 0.0:
             return np.zeros(len(q))

@@ -15,7 +15,7 @@ from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
-from runner.robots.task_space import task_directions
+from runner.robots.task_space import task_basis
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, by_stage
 from runner.symbolic.maths import Array, Scalar
@@ -156,22 +156,22 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
         gravity: Array | None = None,
     ) -> Array:
         """Return the torques of the law above; see Arm.inverse_dynamics for gravity, TorqueLaw for the others."""
-        maths, tip = arm.maths, arm.tip(q, dq)
+        backend, tip = arm.backend, arm.tip(q, dq)
         J = tip.J[:3]
         F = numbers.weights.dot(reference) - numbers.k_p * tip.x - numbers.k_v * J.dot(dq) - tip.dJ_dq[:3]
-        solution, determinant = maths.solve_three(J, F, None if self._damped else "the tip's Jacobian is singular")
+        solution, determinant = backend.solve_three(J, F, None if self._damped else "the tip's Jacobian is singular")
         if self._damped:
             # |det J| over the other two singular values' largest possible product: a lower bound of the smallest.
             entries = J.ravel()
-            nearness = 2.0 * maths.absolute(determinant) / (entries.dot(entries) * numbers.singular_below)
+            nearness = 2.0 * backend.absolute(determinant) / (entries.dot(entries) * numbers.singular_below)
 
             def damped() -> Array:
                 error = reference[0] - tip.x
                 added = numbers.damping * error.dot(error) * (1.0 - nearness * nearness)
                 square = J.dot(J.T) + added * np.eye(3)
-                return np.asarray(J.T.dot(maths.solve_symmetric(square, F, "the tip's Jacobian is singular")))
+                return np.asarray(J.T.dot(backend.solve_symmetric(square, F, "the tip's Jacobian is singular")))
 
-            solution = maths.choose(maths.less(nearness, 1.0), damped, lambda: solution)
+            solution = backend.choose(backend.less(nearness, 1.0), damped, lambda: solution)
         return arm.inverse_dynamics(q, dq, solution, gravity)
 
 
@@ -192,7 +192,7 @@ def tip_law(
     Raises:
         ConfigError: if the arm has fewer joints than the tip has directions to go.
     """
-    if model.nq == 3 == len(task_directions(model, pose=False)) and orientation is None:
+    if model.nq == 3 == len(task_basis(model, pose=False)) and orientation is None:
         return OperationalSpace(
             model,
             numbers.natural_frequency,

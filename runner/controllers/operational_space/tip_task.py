@@ -10,8 +10,8 @@ from runner.controllers.torque_law import Tip
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
-from runner.robots.task_space import task_directions
-from runner.symbolic.maths import Array, Maths, Scalar
+from runner.robots.task_space import task_basis
+from runner.symbolic.maths import Array, Backend, Scalar
 
 TaskName = Literal["position", "pose"]
 
@@ -22,9 +22,9 @@ class TipNumbers(NamedTuple):
     Attributes:
         k_p: omega_n^2, in 1/s^2.
         k_v: 2 xi omega_n, in 1/s.
-        directions: What the task has for its rows, shape (rows, 3) or (rows, 6); see task_directions.
+        directions: What the task has for its rows, shape (rows, 3) or (rows, 6); see task_basis.
         orientation: The orientation held, in the base frame, shape (3, 3).
-        largest_pull: Largest k_p |x_d - x|, in m/s^2.
+        max_acceleration: Largest k_p |x_d - x|, in m/s^2.
         damping: Square of the share of the tip's error by which inverses are damped.
         singular_below: Square of the singular value below which they are, in m^2.
         lengths: Length that a unit of each row counts as, shape (rows,).
@@ -34,7 +34,7 @@ class TipNumbers(NamedTuple):
     k_v: Scalar
     directions: Array
     orientation: Array
-    largest_pull: Scalar
+    max_acceleration: Scalar
     damping: Scalar
     singular_below: Scalar
     lengths: Array
@@ -60,7 +60,7 @@ class TipTask:
     About any one axis this is the same linear law. An error of half a turn has no unique axis.
 
     Where an arm can move or turn its tip in some directions only, as a planar one, the task has these alone for its
-    rows; see task_directions.
+    rows; see task_basis.
 
     Args:
         model: The arm.
@@ -82,7 +82,7 @@ class TipTask:
         max_speed: float | None,
         singularity_damping: float,
     ) -> None:
-        directions = task_directions(model, orientation is not None)
+        directions = task_basis(model, orientation is not None)
         self.rows = len(directions)
         """Dimensions of the task: 3 or 6 of an arm that can move its tip in every direction."""
         moves = int(np.count_nonzero(directions[:, :3].any(axis=1)))  # the other rows turn
@@ -97,7 +97,7 @@ class TipTask:
             k_v=k_v,
             directions=directions,
             orientation=np.eye(3) if orientation is None else orientation,
-            largest_pull=k_v * max_speed if max_speed is not None else 0.0,
+            max_acceleration=k_v * max_speed if max_speed is not None else 0.0,
             damping=singularity_damping**2,
             singular_below=(0.1 * model.reach) ** 2,
             lengths=lengths,
@@ -110,18 +110,20 @@ class TipTask:
             J, dJ_dq = J[:3], dJ_dq[:3]
         return (J, dJ_dq) if self._whole else (numbers.directions.dot(J), numbers.directions.dot(dJ_dq))
 
-    def error(self, maths: Maths, numbers: TipNumbers, tip: Tip, reference: Array) -> Array:
+    def error(self, backend: Backend, numbers: TipNumbers, tip: Tip, reference: Array) -> Array:
         """Return desired less actual, shape (rows,), in m and rad."""
         error: Array = reference[0] - tip.x
         if self._turns:
-            error = np.concatenate([error, maths.rotation_vector(numbers.orientation.dot(tip.R.T))])
+            error = np.concatenate([error, backend.rotation_vector(numbers.orientation.dot(tip.R.T))])
         return error if self._whole else np.asarray(numbers.directions.dot(error))
 
-    def acceleration(self, maths: Maths, numbers: TipNumbers, error: Array, velocity: Array, reference: Array) -> Array:
+    def acceleration(
+        self, backend: Backend, numbers: TipNumbers, error: Array, velocity: Array, reference: Array
+    ) -> Array:
         """Return F*, shape (rows,), in m/s^2 and rad/s^2, from the task's error and velocity."""
         approach: Array = numbers.k_p * error
         if self._bounded:
-            approach = self._bound(maths, numbers, approach)
+            approach = self._bound(backend, numbers, approach)
         if not self._feedforward:
             return np.asarray(approach - numbers.k_v * velocity)
         desired = reference[1:] if not self._turns else np.pad(reference[1:], ((0, 0), (0, 3)))
@@ -129,16 +131,16 @@ class TipTask:
             desired = desired.dot(numbers.directions.T)
         return np.asarray(desired[1] + numbers.k_v * (desired[0] - velocity) + approach)
 
-    def _bound(self, maths: Maths, numbers: TipNumbers, approach: Array) -> Array:
+    def _bound(self, backend: Backend, numbers: TipNumbers, approach: Array) -> Array:
         way = approach[: self._moves]
-        norm = maths.sqrt(way.dot(way))
-        return maths.choose(
-            maths.less(numbers.largest_pull, norm),
-            lambda: np.concatenate([way * (numbers.largest_pull / norm), approach[self._moves :]]),
+        norm = backend.sqrt(way.dot(way))
+        return backend.choose(
+            backend.less(numbers.max_acceleration, norm),
+            lambda: np.concatenate([way * (numbers.max_acceleration / norm), approach[self._moves :]]),
             lambda: approach,
         )
 
-    def damp(self, maths: Maths, numbers: TipNumbers, J: Array, error: Array, mobility: Array) -> Array:
+    def damp(self, backend: Backend, numbers: TipNumbers, J: Array, error: Array, mobility: Array) -> Array:
         r"""Return J A J^T, shape (rows, rows), with what is added to its diagonal before it is inverted.
 
         With rows in units of length that is lambda^2 = (singularity_damping |e|)^2, times how large J A J^T is to
@@ -146,7 +148,7 @@ class TipTask:
         so that neither rest nor close tracking is touched.
 
         Args:
-            maths: The functions over the scalars of these arrays.
+            backend: The functions over the scalars of these arrays.
             numbers: The task's numbers.
             J: The task's Jacobian, shape (rows, nq).
             error: The task's error, shape (rows,).
@@ -158,14 +160,14 @@ class TipTask:
         square = J.dot(J.T)
 
         def damped() -> Array:
-            nearness = maths.absolute(maths.smallest_eigenvalue(square)) / numbers.singular_below  # squared
+            nearness = backend.absolute(backend.smallest_eigenvalue(square)) / numbers.singular_below  # squared
             size = np.diagonal(mobility).dot(numbers.lengths**2)
-            scale = size / maths.maximum(np.trace(square), 1e-300)
+            scale = size / backend.maximum(np.trace(square), 1e-300)
             amount = scale * numbers.damping * error.dot(error) * (1.0 - nearness)
             return np.asarray(mobility + np.diag(amount / numbers.lengths**2))
 
-        far = maths.positive_definite(square - numbers.singular_below * np.eye(self.rows))
-        return maths.choose(far, lambda: mobility, damped)
+        far = backend.positive_definite(square - numbers.singular_below * np.eye(self.rows))
+        return backend.choose(far, lambda: mobility, damped)
 
 
 def held_orientation(task: TaskName, model: RobotModel, home: FloatArray) -> FloatArray | None:
@@ -174,7 +176,7 @@ def held_orientation(task: TaskName, model: RobotModel, home: FloatArray) -> Flo
     Raises:
         ConfigError: if the task has more dimensions than the arm has joints.
     """
-    rows, least = (len(task_directions(model, pose)) for pose in (task == "pose", False))
+    rows, least = (len(task_basis(model, pose)) for pose in (task == "pose", False))
     if model.nq < rows or not least:
         raise ConfigError(
             [

@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Loop
 from runner.controllers.operational_space.tip_task import TipNumbers, TipTask
-from runner.controllers.operational_space.whole_body_posture import HeldJoints, HeldPosture, Posture, PostureNumbers
+from runner.controllers.operational_space.whole_body_posture import JointStiffness, Posture, PostureNumbers, PostureTask
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots import RobotModel
@@ -70,7 +70,7 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         \Lambda = (J M^{-1} J^T)^{-1}, \quad \bar J = M^{-1} J^T \Lambda, \quad N^T = 1 - J^T \bar J^T
 
     F* is that of TipTask: of the tip's position, or of its pose where an orientation is held. tau_0 is the posture
-    task's, of HeldJoints or HeldPosture; J M^-1 N^T = 0, so that the tip does not feel it.
+    task's, of JointStiffness or PostureTask; J M^-1 N^T = 0, so that the tip does not feel it.
 
     Args:
         model: The whole arm.
@@ -78,7 +78,7 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         rest: Posture of the null space, shape (nq,), in rad.
         first_held: The first joint whose posture is held by a spring, and with it all after it. None holds all but as
             many as the task has dimensions, which is all that riding Minis have; 0 draws all joints to the posture, see
-            HeldPosture.
+            PostureTask.
         orientation: The orientation that the tip holds, in the base frame, shape (3, 3); None leads its position alone.
 
     Raises:
@@ -112,7 +112,7 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         frequency = config.null_space_frequency
         first_held = self._task.rows if first_held is None else first_held
         self._posture: Posture = (
-            HeldJoints(model, frequency, rest, first_held) if first_held else HeldPosture(frequency, rest)
+            JointStiffness(model, frequency, rest, first_held) if first_held else PostureTask(frequency, rest)
         )
         numbers = WholeBodyNumbers(self._task.numbers, self._posture.numbers)
         super().__init__([model], config.gravity_compensation, numbers)
@@ -148,18 +148,18 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         gravity: Array | None = None,
     ) -> Array:
         """Return the torques of the law above; see Arm.inverse_dynamics for gravity, TorqueLaw for the others."""
-        maths, task, tip = arm.maths, self._task, arm.tip(q, dq)
+        backend, task, tip = arm.backend, self._task, arm.tip(q, dq)
         J, dJ_dq = task.jacobian(numbers.tip, tip)
-        error = task.error(maths, numbers.tip, tip, reference)
-        M_inverse_J = maths.solve_symmetric(arm.mass_matrix(q), J.T, "the mass matrix is singular")
-        F = task.acceleration(maths, numbers.tip, error, J.dot(dq), reference) - dJ_dq
+        error = task.error(backend, numbers.tip, tip, reference)
+        M_inverse_J = backend.solve_symmetric(arm.mass_matrix(q), J.T, "the mass matrix is singular")
+        F = task.acceleration(backend, numbers.tip, error, J.dot(dq), reference) - dJ_dq
         # N^T tau_0 = tau_0 - J^T Lambda J M^-1 tau_0, and tau_0 = M ddq_0 + spring.
-        ddq_0, spring = self._posture.ask(maths, numbers.posture, J, q, dq)
+        ddq_0, spring = self._posture.acceleration_and_torque(backend, numbers.posture, J, q, dq)
         F = F - J.dot(ddq_0)
         if spring is not None:
             F = F - M_inverse_J.T.dot(spring)
-        mobility = task.damp(maths, numbers.tip, J, error, J.dot(M_inverse_J))
-        force = maths.solve_symmetric(mobility, F, "the tip's Jacobian is singular")
+        mobility = task.damp(backend, numbers.tip, J, error, J.dot(M_inverse_J))
+        force = backend.solve_symmetric(mobility, F, "the tip's Jacobian is singular")
         torque: Array = arm.inverse_dynamics(q, dq, ddq_0, gravity) + J.T.dot(force)
         return torque if spring is None else torque + spring
 

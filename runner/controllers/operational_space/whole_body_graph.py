@@ -33,7 +33,7 @@ def whole_body_graph(
         goal: Whether the reference is a goal at rest, which has no derivatives.
         speed_limited: Whether the approach to the goal saturates at a largest tip speed V.
         posture_task: Whether the null space holds a posture: null_space_frequency is not 0.
-        all_joints: Whether that posture is of all joints alike (HeldPosture), or of some (HeldJoints).
+        all_joints: Whether that posture is of all joints alike (PostureTask), or of some (JointStiffness).
     """
     bottom = 4.0 if posture_task else 2.0
     force = 3.2 if speed_limited else 2.75

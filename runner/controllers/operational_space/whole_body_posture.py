@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
-from runner.symbolic.maths import Array, Maths, Scalar
+from runner.symbolic.maths import Array, Backend, Scalar
 
 
 class PostureNumbers(NamedTuple):
@@ -33,11 +33,13 @@ class Posture(Protocol):
         """Its numbers."""
         ...
 
-    def ask(self, maths: Maths, numbers: PostureNumbers, J: Array, q: Array, dq: Array) -> tuple[Array, Array | None]:
+    def acceleration_and_torque(
+        self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array
+    ) -> tuple[Array, Array | None]:
         """Return a joint acceleration a, in rad/s^2, and a torque s, in N m or None, both of shape (nq,).
 
         Args:
-            maths: The functions over the scalars of these arrays.
+            backend: The functions over the scalars of these arrays.
             numbers: The task's numbers.
             J: Jacobian of the tip's task, shape (rows, nq).
             q: Joint positions, shape (nq,), in rad.
@@ -46,7 +48,7 @@ class Posture(Protocol):
         ...
 
 
-class HeldJoints:
+class JointStiffness:
     r"""Joints from one on are held, and all are damped.
 
     .. math:: \tau_0 = -k_{vn} M \dot q - K (q - q_\mathrm{rest})
@@ -67,12 +69,14 @@ class HeldJoints:
         stiffness = frequency**2 * _inertia_at_rest(model, rest, first)
         self.numbers = PostureNumbers(frequency**2, 2.0 * frequency, rest, stiffness)
 
-    def ask(self, maths: Maths, numbers: PostureNumbers, J: Array, q: Array, dq: Array) -> tuple[Array, Array | None]:
+    def acceleration_and_torque(
+        self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array
+    ) -> tuple[Array, Array | None]:
         """Return -k_vn dq and the spring's torque; see Posture."""
         return -numbers.k_v * dq, numbers.stiffness.dot(numbers.rest - q)
 
 
-class HeldPosture:
+class PostureTask:
     r"""All joints are drawn to a posture, as far as the tip's task leaves them.
 
     .. math:: \tau_0 = M (1 - J^+ J) (-2 \omega_n \dot q - \omega_n^2 (q - q_\mathrm{rest}))
@@ -89,21 +93,23 @@ class HeldPosture:
     def __init__(self, frequency: float, rest: FloatArray) -> None:
         self.numbers = PostureNumbers(frequency**2, 2.0 * frequency, rest, np.zeros((0, 0)))
 
-    def ask(self, maths: Maths, numbers: PostureNumbers, J: Array, q: Array, dq: Array) -> tuple[Array, Array | None]:
+    def acceleration_and_torque(
+        self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array
+    ) -> tuple[Array, Array | None]:
         """Return the joint acceleration that the tip does not feel, and no torque; see Posture."""
-        return without_tip_motion(maths, J, drawn_to(numbers, q, dq)), None
+        return null_space_projection(backend, J, posture_pd(numbers, q, dq)), None
 
 
-def drawn_to(numbers: PostureNumbers, q: Array, dq: Array) -> Array:
+def posture_pd(numbers: PostureNumbers, q: Array, dq: Array) -> Array:
     """Return the joint acceleration towards a posture, whatever the tip does, shape (nq,), in rad/s^2."""
     return np.asarray(numbers.k_p * (numbers.rest - q) - numbers.k_v * dq)
 
 
-def without_tip_motion(maths: Maths, J: Array, ddq: Array) -> Array:
+def null_space_projection(backend: Backend, J: Array, ddq: Array) -> Array:
     """Return (1 - J^+ J) ddq, shapes (rows, nq) and (nq,); smooth through singular postures."""
     square = J.dot(J.T)
     square = square + 1e-12 * sum(square[i, i] for i in range(len(square))) * np.eye(len(square))
-    return np.asarray(ddq - J.T.dot(maths.solve_symmetric(square, J.dot(ddq), None)))
+    return np.asarray(ddq - J.T.dot(backend.solve_symmetric(square, J.dot(ddq), None)))
 
 
 def _inertia_at_rest(model: RobotModel, rest: FloatArray, first: int) -> FloatArray:

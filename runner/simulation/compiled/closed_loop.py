@@ -11,10 +11,10 @@ from runner.base.arrays import FloatArray
 from runner.plants.compiled_motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
 from runner.plants.motion import Motion
 from runner.simulation.compiled.commands import Commands, CommandScalars, expressed_commands
-from runner.symbolic.arm import Unfolded
+from runner.symbolic.arm import NoConstantFolding
 from runner.symbolic.code import ACTING
 from runner.symbolic.expression import places
-from runner.symbolic.places import Places
+from runner.symbolic.places import Slots
 from runner.symbolic.program import LANES, Expressed, Frame, Program, program
 from runner.symbolic.structure import Values
 
@@ -33,7 +33,7 @@ class CompiledCommands:
 
     def __init__(self, commands: Commands) -> None:
         def express() -> Expressed:
-            at = Places()
+            at = Slots()
             _, kept, errors = expressed_commands(commands, commands.scalars(at.number), at)
             return Expressed([kept], [], at.widths, errors)
 
@@ -113,7 +113,7 @@ class CommandsRun:
 
 
 @dataclass(frozen=True)
-class Whole:
+class LoopProgram:
     """A closed loop that is compiled as a whole.
 
     Attributes:
@@ -145,7 +145,7 @@ class Whole:
         """
 
         def express() -> Expressed:
-            at = Places()
+            at = Slots()
             return self.express(at, at.number)
 
         return program(
@@ -156,7 +156,7 @@ class Whole:
             self.commands.are_ours,
         )
 
-    def express(self, at: Places, number: Callable[[float], Any]) -> Expressed:
+    def express(self, at: Slots, number: Callable[[float], Any]) -> Expressed:
         """Return its expressions, in fresh places, with its numbers as `number` makes them.
 
         Raises:
@@ -179,7 +179,7 @@ class Whole:
     def numbers(self) -> FloatArray:
         """All its numbers, in the order of the parameters: these, and those that are 0, 1 or -1."""
         values = Values()
-        self._scalars(Unfolded(values.number))
+        self._scalars(NoConstantFolding(values.number))
         return np.array(values.values)
 
     def _scalars(self, number: Callable[[float], Any]) -> tuple[CommandScalars, MotionScalars]:
@@ -224,13 +224,13 @@ class Signals:
 
 
 def run_all(
-    whole: Whole, values: FloatArray, shared: FloatArray, errors: Sequence[FloatArray], start: FloatArray
+    loop_program: LoopProgram, values: FloatArray, shared: FloatArray, errors: Sequence[FloatArray], start: FloatArray
 ) -> Signals:
     """Compute runs of as many ticks that share their code; each has the bits that it has alone.
 
     Args:
-        whole: The closed loop of one of them.
-        values: The parameters of each, shape (runs, parameters); see Whole.values.
+        loop_program: The closed loop of one of them.
+        values: The parameters of each, shape (runs, parameters); see LoopProgram.values.
         shared: What each tick is given of time and path, shape (T, entries) for all alike or (runs, T, entries).
         errors: Errors of the positions at the ticks of each loop, shape (runs, n, nq), in rad.
         start: The state of the first tick of each, shape (runs, entries); see Commands.start.
@@ -238,19 +238,24 @@ def run_all(
     Raises:
         CannotCompileError: where a law has no compiled form.
     """
-    count, ticks, nq, stages = len(start), shared.shape[-2], len(whole.commands.limits), len(whole.motion.robot.stages)
-    code = whole.program(1 if count == 1 else LANES)
-    frame = code.frame(ticks, whole.delay, whole.steps)
+    count, ticks, nq, stages = (
+        len(start),
+        shared.shape[-2],
+        len(loop_program.commands.limits),
+        len(loop_program.motion.robot.stages),
+    )
+    code = loop_program.program(1 if count == 1 else LANES)
+    frame = code.frame(ticks, loop_program.delay, loop_program.steps)
     q, dq, torque = (np.empty((count, ticks, nq)) for _ in range(3))
     points = np.empty((stages, count, ticks, 3))
-    found = Signals(q, dq, torque, np.empty((count, ticks)), points, code.errors, whole.commands)
+    found = Signals(q, dq, torque, np.empty((count, ticks)), points, code.errors, loop_program.commands)
     wide, long = shared.shape[-1], start.shape[1]
     for first in range(0, count, code.lanes):
         own = slice(first, min(first + code.lanes, count))
         used = own.stop - first  # idle lanes go on with what the runs before left there
         if shared.ndim == 3 or first == 0:
             frame.given[:, :wide, : used if shared.ndim == 3 else code.lanes] = _lanes(shared, own)
-        wrong = whole.commands.measured_wrong([each[own] for each in errors], ticks)
+        wrong = loop_program.commands.measured_wrong([each[own] for each in errors], ticks)
         frame.given[:, wide:, :used] = wrong.transpose(1, 2, 0)
         frame.state[:long, :used], frame.state[long:] = start[own].T, 0.0
         frame.pars[:, :used] = values[own].T

@@ -16,13 +16,13 @@ from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
 from runner.simulation.compiled.law import LawScalars, expressed_torque, law_scalars
-from runner.simulation.compiled.maths import Expressions
+from runner.simulation.compiled.maths import SymbolicBackend
 from runner.symbolic.code import GIVEN, ROWS, STATE, Block
 from runner.symbolic.end_points import PointScalars, expressed_points, point_scalars
 from runner.symbolic.expression import Value, both, equal, less, rounded, select
 from runner.symbolic.maths import Array
-from runner.symbolic.places import Places
-from runner.symbolic.structure import any_number, pattern_of
+from runner.symbolic.places import Slots
+from runner.symbolic.structure import any_number, law_cache_key
 from runner.symbolic.vectors import as_array
 
 _OURS = ("runner", "abc", "typing", "builtins")
@@ -70,7 +70,7 @@ class Commands:
     @cached_property
     def pattern(self) -> str:
         """A text that is the same for two whose code is the same."""
-        loops = [(pattern_of(loop.law), loop.joints, loop.every > 1, loop.follows_joints) for loop in self.loops]
+        loops = [(law_cache_key(loop.law), loop.joints, loop.every > 1, loop.follows_joints) for loop in self.loops]
         points = point_scalars(self.robot, self.parallel, any_number)
         return repr((loops, points, self._rounded.tolist(), self.noise.velocity))
 
@@ -188,7 +188,7 @@ class CommandScalars(NamedTuple):
     velocity: Sequence[Sequence[Value]]
 
 
-def expressed_commands(commands: Commands, numbers: CommandScalars, at: Places) -> tuple[list[Value], Block, list[str]]:
+def expressed_commands(commands: Commands, numbers: CommandScalars, at: Slots) -> tuple[list[Value], Block, list[str]]:
     """Return the torques of a tick, what is kept of it, and the texts of what may go wrong.
 
     It is the first that takes places. A row holds joint positions, velocities, torques, each of shape (nq,), the
@@ -210,14 +210,14 @@ def expressed_commands(commands: Commands, numbers: CommandScalars, at: Places) 
     texts: list[str] = []
     fault: Value = 0.0
     for loop, own, gain, its in zip(commands.loops, numbers.laws, numbers.velocity, given, strict=True):
-        asked, changes, maths = _asked(commands, loop, own, gain, numbers, its, at)
+        asked, changes, backend = _asked(commands, loop, own, gain, numbers, its, at)
         torques[loop.joints] = asked
         kept += changes
-        failed = both(equal(fault, 0.0), less(0.0, maths.fault))
+        failed = both(equal(fault, 0.0), less(0.0, backend.fault))
         if loop.every > 1:
             failed = both(failed, less(0.5, its.due))
-        fault = select(failed, maths.fault + float(len(texts)), fault)
-        texts += maths.errors
+        fault = select(failed, backend.fault + float(len(texts)), fault)
+        texts += backend.errors
     shown = [*q, *dq, *torques, fault, *expressed_points(numbers.points, q)]
     kept += _at(ROWS, at.take(ROWS, len(shown))[0], shown)
     return torques, Block(kept), texts
@@ -241,8 +241,8 @@ def _asked(
     gain: Sequence[Value],
     numbers: CommandScalars,
     given: _Given,
-    at: Places,
-) -> tuple[list[Value], list[tuple[str, int, Any]], Expressions]:
+    at: Slots,
+) -> tuple[list[Value], list[tuple[str, int, Any]], SymbolicBackend]:
     """Return the torques that a loop asks for, how the state goes on, and what may go wrong."""
     measured = [position + wrong for position, wrong in zip(given.q, given.errors, strict=True)]
     for joint, step in numbers.resolution.items():
@@ -258,14 +258,14 @@ def _asked(
         for (first, values), new in zip(kept, after, strict=True):
             changes += _at(STATE, first, _in_own_ticks(loop, given, values, new.tolist()))
     first, memory = at.take(STATE, len(loop.law.start(np.zeros(len(measured)))))
-    asked, goes_on, maths = expressed_torque(loop.law, own, given.time, measured, velocity, given.reference, memory)
+    asked, goes_on, backend = expressed_torque(loop.law, own, given.time, measured, velocity, given.reference, memory)
     changes += _at(STATE, first, _in_own_ticks(loop, given, memory, goes_on))
     torques = [_clip(value, limit) for value, limit in zip(asked, numbers.limits[loop.joints], strict=True)]
     if loop.every > 1:
         first, held = at.take(STATE, len(torques))
         torques = _in_own_ticks(loop, given, held, torques)
         changes += _at(STATE, first, torques)
-    return torques, changes, maths
+    return torques, changes, backend
 
 
 def _in_own_ticks(loop: LoopCode, given: _Given, before: Sequence[Value], after: Sequence[Value]) -> list[Value]:

@@ -15,7 +15,7 @@ from runner.plugins.guard.controller import WatchedController
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
-from runner.simulation.compiled.closed_loop import CompiledCommands, Whole
+from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
 from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.structure import CannotCompileError
@@ -62,21 +62,21 @@ def compile_commands(commands: Commands | None) -> CompiledCommands | None:
         return None
 
 
-def compile_whole(commands: Commands | None, motion: Motion, timing: Timing) -> Whole | None:
+def compile_program(commands: Commands | None, motion: Motion, timing: Timing) -> LoopProgram | None:
     """Return a closed loop compiled as a whole, with what moves; None where it cannot be, as with uneven commands."""
     if commands is None or timing.delay is None:
         return None
-    whole = describe_whole(commands, motion, timing)
+    loop_program = describe_program(commands, motion, timing)
     try:
-        whole.program(1)
+        loop_program.program(1)
     except CannotCompileError:
         return None  # the commands alone have no compiled form either, and say why
-    return whole
+    return loop_program
 
 
-def describe_whole(commands: Commands, motion: Motion, timing: Timing) -> Whole:
+def describe_program(commands: Commands, motion: Motion, timing: Timing) -> LoopProgram:
     """Return a closed loop, of which code can be made as a whole."""
-    return Whole(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.late[0])
+    return LoopProgram(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.late[0])
 
 
 def compile_motion(model: RobotModel, step: float) -> CompiledStep | None:

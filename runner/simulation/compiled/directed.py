@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.simulation.compiled.closed_loop import Whole
-from runner.symbolic.arm import Unfolded
+from runner.simulation.compiled.closed_loop import LoopProgram
+from runner.symbolic.arm import NoConstantFolding
 from runner.symbolic.code import GIVEN, PARS, ROWS, STATE
-from runner.symbolic.places import Places
+from runner.symbolic.places import Slots
 from runner.symbolic.program import LANES, Expressed, Frame, program
 from runner.symbolic.tangent import with_tangents
 
@@ -23,7 +23,7 @@ class Setting:
     """What a run follows from, or how it changes with a parameter.
 
     Attributes:
-        numbers: All numbers of the closed loop, shape (k,); see Whole.numbers.
+        numbers: All numbers of the closed loop, shape (k,); see LoopProgram.numbers.
         start: The state of the first tick, shape (entries,); see Commands.start.
         errors: Errors of the positions at the ticks of each loop, shapes (n, nq), in rad.
     """
@@ -50,11 +50,11 @@ class Motions:
     end_points: FloatArray
 
 
-def tangents(whole: Whole, setting: Setting, slopes: Sequence[Setting], shared: FloatArray) -> Motions:
+def tangents(loop_program: LoopProgram, setting: Setting, slopes: Sequence[Setting], shared: FloatArray) -> Motions:
     """Return the derivatives of a run's signals by parameters.
 
     Args:
-        whole: The closed loop.
+        loop_program: The closed loop.
         setting: What the run follows from.
         slopes: The derivative of that by each parameter.
         shared: What each tick is given of time and path, shape (T, entries).
@@ -66,11 +66,11 @@ def tangents(whole: Whole, setting: Setting, slopes: Sequence[Setting], shared: 
     varied: NDArray[np.bool_] = (by_number != 0.0).any(axis=0)
     kept = varied | ~np.isin(setting.numbers, _FOLDED)
     noisy = any(wrong.any() for slope in slopes for wrong in slope.errors)
-    frame = _frame(whole, setting.numbers, kept, varied[kept], noisy, shared)
+    frame = _frame(loop_program, setting.numbers, kept, varied[kept], noisy, shared)
     ticks, wide, long, count = len(shared), shared.shape[1], len(setting.start), int(kept.sum())
     given, state = frame.given.shape[1] // 2, frame.state.shape[0] // 2
     frame.given[:, :wide] = shared[:, :, None]
-    frame.given[:, wide:given] = whole.commands.measured_wrong(setting.errors, ticks)[:, :, None]
+    frame.given[:, wide:given] = loop_program.commands.measured_wrong(setting.errors, ticks)[:, :, None]
     frame.pars[:count] = setting.numbers[kept][:, None]
     parts = []
     for first in range(0, len(slopes), LANES):
@@ -79,16 +79,16 @@ def tangents(whole: Whole, setting: Setting, slopes: Sequence[Setting], shared: 
         frame.state[:long] = setting.start[:, None]
         for lane, slope in enumerate(own):
             frame.state[state : state + long, lane] = slope.start
-            frame.given[:, given + wide :, lane] = whole.commands.measured_wrong(slope.errors, ticks)
+            frame.given[:, given + wide :, lane] = loop_program.commands.measured_wrong(slope.errors, ticks)
             frame.pars[count:, lane] = slope.numbers[kept]
         frame.call()
         rows = frame.rows[:, frame.rows.shape[1] // 2 :, : len(own)]
         parts.append(rows.transpose(2, 0, 1).copy())
-    return _motions(np.concatenate(parts), len(whole.commands.limits))
+    return _motions(np.concatenate(parts), len(loop_program.commands.limits))
 
 
 def _frame(
-    whole: Whole,
+    loop_program: LoopProgram,
     numbers: FloatArray,
     kept: NDArray[np.bool_],
     varied: NDArray[np.bool_],
@@ -98,7 +98,7 @@ def _frame(
     """Return the program with tangents, and its arrays.
 
     Args:
-        whole: The closed loop.
+        loop_program: The closed loop.
         numbers: All its numbers, shape (k,).
         kept: Which of them are parameters of the code, shape (k,); others are 0, 1 or -1 in it.
         varied: Which of these change with what is asked for.
@@ -108,26 +108,26 @@ def _frame(
     folded = np.where(kept, np.nan, numbers)
 
     def express() -> Expressed:
-        at, known = Places(), iter(folded.tolist())
+        at, known = Slots(), iter(folded.tolist())
 
         def number(value: float) -> Any:
             constant = next(known)
             return at.number(value) if np.isnan(constant) else constant
 
-        whole_program = whole.express(at, Unfolded(number))
-        return with_tangents(whole_program, varies)
+        expressed = loop_program.express(at, NoConstantFolding(number))
+        return with_tangents(expressed, varies)
 
     def varies(space: str, index: int) -> bool:
         if space == GIVEN:
             return noisy and index >= shared.shape[1]
         return space != PARS or bool(varied[index])
 
-    pattern = f"tangents {whole.pattern} {folded.tolist()} {varied.tolist()} {noisy}"
-    joints = len(whole.commands.limits)
-    code = program(pattern, f"the derivatives of {joints} joints", express, LANES, whole.commands.are_ours)
+    pattern = f"tangents {loop_program.pattern} {folded.tolist()} {varied.tolist()} {noisy}"
+    joints = len(loop_program.commands.limits)
+    code = program(pattern, f"the derivatives of {joints} joints", express, LANES, loop_program.commands.are_ours)
     assert code.widths[PARS] == 2 * len(varied)  # noqa: S101 - the numbers are asked for in the same order
     assert code.widths[STATE] % 2 == code.widths[ROWS] % 2 == 0  # noqa: S101
-    return code.frame(len(shared), whole.delay, whole.steps)
+    return code.frame(len(shared), loop_program.delay, loop_program.steps)
 
 
 def _motions(rows: FloatArray, nq: int) -> Motions:

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from runner.controllers.torque_law import Tip, TorqueLaw
-from runner.simulation.compiled.maths import Expressions
+from runner.simulation.compiled.maths import SymbolicBackend
 from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import ArmConstants, constants_of
 from runner.symbolic.expression import Value
@@ -44,23 +44,23 @@ class ExpressedArm:
 
     Args:
         algebra: Its kinematics and dynamics.
-        maths: The functions over expressions.
-        has_weight: Whether gravity acts on it.
+        backend: The functions over expressions.
+        gravity_compensation: Whether gravity acts on it.
     """
 
-    def __init__(self, algebra: ArmAlgebra, maths: Expressions, has_weight: bool) -> None:
-        self._algebra, self.maths, self._has_weight = algebra, maths, has_weight
+    def __init__(self, algebra: ArmAlgebra, backend: SymbolicBackend, gravity_compensation: bool) -> None:
+        self._algebra, self.backend, self._gravity_compensation = algebra, backend, gravity_compensation
 
     def tip(self, q: Array, dq: Array) -> Tip:
         """Return the tip's motion; see Arm."""
         return Tip(*(as_array(part) for part in self._algebra.tip(q.tolist(), dq.tolist())))
 
-    def place(self, q: Array) -> tuple[Array, Array]:
+    def tip_pose(self, q: Array) -> tuple[Array, Array]:
         """Return where the tip is; see Arm."""
         tip = self.tip(q, np.zeros(len(q)))
         return tip.x, tip.R
 
-    def motion(self, q: Array, dq: Array) -> tuple[Array, Array, Array]:
+    def tip_pose_and_twist(self, q: Array, dq: Array) -> tuple[Array, Array, Array]:
         """Return where the tip is and its velocity; see Arm."""
         tip = self.tip(q, dq)
         return tip.x, tip.R, tip.J.dot(dq)
@@ -71,7 +71,7 @@ class ExpressedArm:
 
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array, gravity: Array | None = None) -> Array:
         """Return the torques of an acceleration; see Arm."""
-        given = None if gravity is None or not self._has_weight else gravity.tolist()
+        given = None if gravity is None or not self._gravity_compensation else gravity.tolist()
         return np.asarray(as_array(self._algebra.inverse_dynamics(q.tolist(), dq.tolist(), ddq.tolist(), given)))
 
     def momentum(self, q: Array, dq: Array, gravity: Array) -> tuple[Array, Array]:
@@ -86,7 +86,7 @@ class ExpressedArm:
 
 def expressed_torque(
     law: TorqueLaw[Any], own: LawScalars, time: Value, q: Any, dq: Any, reference: Array, memory: Any
-) -> tuple[list[Value], list[Value], Expressions]:
+) -> tuple[list[Value], list[Value], SymbolicBackend]:
     """Return a law's torques and memory as expressions, and what may go wrong.
 
     Args:
@@ -101,8 +101,8 @@ def expressed_torque(
     Raises:
         CannotCompileError: where the law asks for what expressions cannot do.
     """
-    maths = Expressions()
-    arms = [ExpressedArm(ArmAlgebra(constants), maths, law.gravity_compensation) for constants in own.arms]
+    backend = SymbolicBackend()
+    arms = [ExpressedArm(ArmAlgebra(constants), backend, law.gravity_compensation) for constants in own.arms]
     try:
         torque, after = law.evaluate(arms, own.numbers, time, as_array(q), as_array(dq), reference, as_array(memory))
     except Exception as error:
@@ -110,4 +110,4 @@ def expressed_torque(
         raise CannotCompileError(
             f"{type(law).__name__} is not compiled, and runs through Pinocchio: {reason}"
         ) from error
-    return list(np.asarray(torque).tolist()), list(np.asarray(after).tolist()), maths
+    return list(np.asarray(torque).tolist()), list(np.asarray(after).tolist()), backend

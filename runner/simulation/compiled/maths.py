@@ -14,7 +14,7 @@ from runner.symbolic.vectors import as_array, cross, dot, scale
 _STEPS = 6  # of Laguerre's method, which triples the digits in each once it is near
 
 
-class Expressions:
+class SymbolicBackend:
     """The functions on expressions: both branches of a choice are computed, and an error is a number.
 
     Attributes:
@@ -28,7 +28,7 @@ class Expressions:
         self._within: list[Any] = []  # conditions of the choices around
 
     def choose(self, condition: Any, yes: Callable[[], Chosen], no: Callable[[], Chosen]) -> Chosen:
-        """Return one of two arrays or tuples of them, entry by entry; see Maths."""
+        """Return one of two arrays or tuples of them, entry by entry; see Backend."""
         chosen: Any = self._inside(condition, yes)
         other: Any = self._inside(negated(condition), no)
         if isinstance(chosen, tuple):
@@ -36,31 +36,31 @@ class Expressions:
         return cast(Chosen, _select(condition, chosen, other))
 
     def less(self, a: Any, b: Any) -> Any:
-        """Return the condition a < b; see Maths."""
+        """Return the condition a < b; see Backend."""
         return less(a, b)
 
     def any_of(self, *conditions: Any) -> Any:
-        """Return the condition that one or more hold; see Maths."""
+        """Return the condition that one or more hold; see Backend."""
         return negated(all_of([negated(condition) for condition in conditions]))
 
     def maximum(self, a: Any, b: Any) -> Any:
-        """Return the larger one; see Maths."""
+        """Return the larger one; see Backend."""
         return select(less(b, a), a, b)
 
     def floor(self, a: Any) -> Any:
-        """Return the largest whole number that is not above; see Maths."""
+        """Return the largest whole number that is not above; see Backend."""
         return floor(a)
 
     def absolute(self, a: Any) -> Any:
-        """Return the size of a scalar; see Maths."""
+        """Return the size of a scalar; see Backend."""
         return absolute(a)
 
     def sqrt(self, a: Any) -> Any:
-        """Return the square root; see Maths."""
+        """Return the square root; see Backend."""
         return sqrt(a)
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Any]:
-        """Return A^-1 b and det A by Cramer's rule; singular is what is so up to rounding; see Maths."""
+        """Return A^-1 b and det A by Cramer's rule; singular is what is so up to rounding; see Backend."""
         first, second, third = (list(column) for column in A.T)
         rows = [cross(second, third), cross(third, first), cross(first, second)]
         determinant = expression(dot(first, rows[0]))
@@ -70,7 +70,7 @@ class Expressions:
         return as_array(scale(1.0 / determinant, [dot(row, list(b)) for row in rows])), determinant
 
     def solve_symmetric(self, A: Array, b: Array, singular: str | None) -> Array:
-        """Return A^-1 b by A = L D L^T; see Maths."""
+        """Return A^-1 b by A = L D L^T; see Backend."""
         factors = Factors(A.tolist())
         if singular is not None:
             self._watch(negated(_all_positive(factors)), singular)
@@ -79,11 +79,11 @@ class Expressions:
         return np.asarray(as_array([factors.solve(column) for column in b.T.tolist()]).T)
 
     def positive_definite(self, A: Array) -> Any:
-        """Return the condition that all pivots are above 0; see Maths."""
+        """Return the condition that all pivots are above 0; see Backend."""
         return _all_positive(Factors(A.tolist()))
 
     def smallest_eigenvalue(self, A: Array) -> Any:
-        r"""Return the smallest eigenvalue by Laguerre's method from below; see Maths.
+        r"""Return the smallest eigenvalue by Laguerre's method from below; see Backend.
 
         .. math:: \lambda^+ = \lambda + n / (s_1 + \sqrt{(n - 1)(n s_2 - s_1^2)}), \qquad
             s_k = \mathrm{tr} (A - \lambda)^{-k}
@@ -103,7 +103,7 @@ class Expressions:
         return found
 
     def rotation_vector(self, R: Array) -> Array:
-        """Return axis times angle; see Maths."""
+        """Return axis times angle; see Backend."""
         axis = [R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]  # times twice the sine
         squared = dot(axis, axis)
         twice = sqrt(squared)

@@ -98,8 +98,8 @@ def test_assembly_is_outside_the_deadline_and_the_ticks_within(monkeypatch, meas
         plain = getattr(owner, name)
         monkeypatch.setattr(owner, name, lambda *args, **options: (events.append(event), plain(*args, **options))[1])
 
-    noted(batch_jobs.Batcher, "repetitions", "repetitions asked for")
-    noted(batch_jobs.Batcher, "simulate", "ticks")
+    noted(batch_jobs.BatchSimulator, "repetitions", "repetitions asked for")
+    noted(batch_jobs.BatchSimulator, "simulate", "ticks")
     noted(job, "assemble", "assembled")
     noted(job, "simulate", "ticks")
     composed = compose([*SHORT, f"plant={plant}", f"duration={duration}"])

@@ -26,9 +26,9 @@ def batches(monkeypatch):
     """Numbers of runs that were simulated together, call by call."""
     sizes, run_all = [], batch.run_all
 
-    def note(whole, values, *others):
+    def note(loop_program, values, *others):
         sizes.append(len(values))
-        return run_all(whole, values, *others)
+        return run_all(loop_program, values, *others)
 
     monkeypatch.setattr(batch, "run_all", note)
     return sizes

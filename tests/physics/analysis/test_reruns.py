@@ -13,8 +13,8 @@ from runner.analysis.sensitivity import differences
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.metrics import measure
-from runner.simulation.assembly import assemble_whole
-from runner.simulation.batch import Batcher, Wanted
+from runner.simulation.assembly import assemble_program
+from runner.simulation.batch import BatchSimulator, RunSpec
 from runner.store import simulated_part
 
 NULL_SPACE, BANDWIDTH = "controller.null_space_frequency", "disturbance_observer.bandwidth"
@@ -52,7 +52,7 @@ class Again:
 
     def changed(self, name, value):
         config = validate(compose([*self.overrides, f"{name}={json.dumps(value)}"]).resolved)
-        return Wanted(config, 0, *assemble_whole(config))
+        return RunSpec(config, 0, *assemble_program(config))
 
 
 def of_keys(found, overrides):
@@ -104,7 +104,7 @@ def check_completeness(found, overrides):
     again = Again(overrides, found.scene.config.resolved)
     rest = [(name, value) for name, value in numeric_keys(simulated_part(again.resolved)) if name not in told]
     runs = [found.scene, *(again.changed(name, changed(value)) for name, value in rest)]
-    for part in Batcher().simulate(runs):
+    for part in BatchSimulator().simulate(runs):
         measured = measure(part.traces, part.context)
         for name, value in found.metrics.items():
             assert np.all(measured[name] == value), (name, [rest[place - 1][0] for place in part.places])

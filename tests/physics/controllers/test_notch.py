@@ -10,11 +10,11 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.controllers.notch import Notch, NotchedController
 from runner.simulation.assembly import assemble
-from runner.simulation.compiled.closed_loop import Whole
+from runner.simulation.compiled.closed_loop import LoopProgram
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.store import simulated_part
-from runner.symbolic.maths import FLOATS
+from runner.symbolic.maths import NUMPY
 
 H, F, WIDTH = 0.002, 5.0, 2.0
 MOVE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=0.4", "noise=none", "plant=rk4")
@@ -25,7 +25,7 @@ NOTCHED = ("notch=torques", "notch.frequency=[6,null,9]")
 def passed(torques, notch):
     memory, rows = np.zeros(notch.remembers), []
     for k, torque in enumerate(torques):
-        row, memory = notch.filter(FLOATS, notch.numbers, k * H, torque, memory)
+        row, memory = notch.filter(NUMPY, notch.numbers, k * H, torque, memory)
         rows.append(row)
     return np.array(rows)
 
@@ -64,7 +64,7 @@ def test_code_and_any_controller_ask_for_the_same_as_the_law():
     config = checked(*MOVE, *SLOW_LAW, *NOTCHED)
     closed = assemble(config)
     closed.close()
-    assert isinstance(closed.compiled, Whole)
+    assert isinstance(closed.compiled, LoopProgram)
     (loop,), (bare,) = closed.loops, config.loops
     notch = Notch(np.array([6.0, np.inf, 9.0]), 5.0, loop.period)
     wrapped = replace(loop, controller=NotchedController(bare.controller, notch))

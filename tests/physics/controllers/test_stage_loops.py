@@ -10,7 +10,7 @@ from runner.robots.robot import end_points
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
-from runner.symbolic.maths import FLOATS
+from runner.symbolic.maths import NUMPY
 
 REACH = 0.2
 
@@ -196,7 +196,7 @@ def test_under_bases_taken_parallel_the_second_rider_sees_offsets_that_do_not_tu
 @pytest.mark.parametrize("period", [0.01, 0.03])
 def test_turns_are_a_period_of_the_carrier_each_beginning_with_it(period):
     def moves(time):
-        return rider_moves(FLOATS, period, time)
+        return rider_moves(NUMPY, period, time)
 
     for k in range(1, 2000):
         tick = k * 0.001

@@ -37,9 +37,9 @@ def three_stages(checked_config):
 def test_without_a_force_it_is_the_law_of_the_whole_body(combined):
     tip, whole = TipForce(combined, None, law()), WholeBody(combined.model, law(), combined.home)
     for q, dq, reference, _ in states(combined):
-        seen = tip.see(q, dq, reference)
+        state = tip.task_state(q, dq, reference)
         np.testing.assert_allclose(
-            tip.torque(seen, seen.asked, np.zeros(3)), whole.torque(0.0, q, dq, reference), rtol=1e-9, atol=1e-9
+            tip.torque(state, state.asked, np.zeros(3)), whole.torque(0.0, q, dq, reference), rtol=1e-9, atol=1e-9
         )
 
 
@@ -47,12 +47,12 @@ def test_the_tip_gets_the_acceleration_asked_and_that_of_the_force(three_stages)
     model = three_stages.model
     tip = TipForce(three_stages, None, law())
     for q, dq, reference, force in states(three_stages):
-        seen = tip.see(q, dq, reference)
-        ddq = model.forward_dynamics(q, dq, tip.torque(seen, seen.asked, force))
+        state = tip.task_state(q, dq, reference)
+        ddq = model.forward_dynamics(q, dq, tip.torque(state, state.asked, force))
         step = 1e-6  # dJ/dt dq by central differences
         turns = (model.tip_jacobian(q + step * dq)[:3] - model.tip_jacobian(q - step * dq)[:3]) @ dq / (2.0 * step)
         acceleration = model.tip_jacobian(q)[:3] @ ddq + turns
-        np.testing.assert_allclose(acceleration, seen.asked + seen.mobility @ force, rtol=1e-5, atol=1e-5)
+        np.testing.assert_allclose(acceleration, state.asked + state.mobility @ force, rtol=1e-5, atol=1e-5)
 
 
 def test_the_posture_is_not_felt_by_the_tip(three_stages):
@@ -60,8 +60,8 @@ def test_the_posture_is_not_felt_by_the_tip(three_stages):
     model = three_stages.model
     held, free = (TipForce(three_stages, None, law(null_space_frequency=rate)) for rate in (30.0, 0.0))
     for q, dq, reference, _ in states(three_stages):
-        seen = held.see(q, dq, reference)
-        posture = held.torque(seen, seen.asked, np.zeros(3)) - free.torque(seen, seen.asked, np.zeros(3))
+        state = held.task_state(q, dq, reference)
+        posture = held.torque(state, state.asked, np.zeros(3)) - free.torque(state, state.asked, np.zeros(3))
         J, M = model.tip_jacobian(q)[:3], model.mass_matrix(q)
         yields = np.linalg.solve(M, J.T)
         tau_0 = posture + J.T @ np.ones(3)
@@ -78,10 +78,10 @@ def test_a_riding_stage_sees_gravity_and_target_turned_and_moving(combined):
     for q, dq, reference, _ in states(combined, 5):
         pose, motion = base.tip_pose(q), base.tip_jacobian(q) @ dq
         R, way = pose[:3, :3], reference[0] - pose[:3, 3]
-        seen = tip.see(q, dq, reference)
-        np.testing.assert_allclose(seen.gravity, R.T @ [0.0, 0.0, -9.81], atol=1e-12)
-        np.testing.assert_allclose(seen.error, R.T @ way - mini.model.tip_position(q[3:]), atol=1e-12)
+        state = tip.task_state(q, dq, reference)
+        np.testing.assert_allclose(state.gravity, R.T @ [0.0, 0.0, -9.81], atol=1e-12)
+        np.testing.assert_allclose(state.error, R.T @ way - mini.model.tip_position(q[3:]), atol=1e-12)
         true = R.T @ (combined.model.tip_jacobian(q)[:3] @ dq)
-        np.testing.assert_allclose(seen.velocity, true, atol=1e-10)
+        np.testing.assert_allclose(state.velocity, true, atol=1e-10)
         drift = R.T @ (reference[1] - motion[:3] - np.cross(motion[3:], way))
-        np.testing.assert_allclose(seen.lag, drift - mini.model.tip_jacobian(q[3:])[:3] @ dq[3:], atol=1e-10)
+        np.testing.assert_allclose(state.lag, drift - mini.model.tip_jacobian(q[3:])[:3] @ dq[3:], atol=1e-10)

@@ -11,7 +11,7 @@ from runner.base.errors import ConfigError
 from runner.controllers.operational_space.tip_task import TipTask, held_orientation, task_start
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots import RobotModel
-from runner.symbolic.maths import FLOATS
+from runner.symbolic.maths import NUMPY
 
 ROBOT = checked("robot=xarm7", "controller=operational_space").arm
 XARM7, HOME = ROBOT.model, ROBOT.home
@@ -33,15 +33,15 @@ def jacobian(ours, q, dq, model=XARM7):
 
 
 def error(ours, q, reference, model=XARM7):
-    return ours.error(FLOATS, ours.numbers, PinocchioArm(model).tip(q, np.zeros_like(q)), reference)
+    return ours.error(NUMPY, ours.numbers, PinocchioArm(model).tip(q, np.zeros_like(q)), reference)
 
 
 def acceleration(ours, *arguments):
-    return ours.acceleration(FLOATS, ours.numbers, *arguments)
+    return ours.acceleration(NUMPY, ours.numbers, *arguments)
 
 
 def added(ours, J, error, mobility):
-    return np.diagonal(ours.damp(FLOATS, ours.numbers, J, error, mobility) - mobility)
+    return np.diagonal(ours.damp(NUMPY, ours.numbers, J, error, mobility) - mobility)
 
 
 @pytest.mark.parametrize("rows", [3, 6])

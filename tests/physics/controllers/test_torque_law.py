@@ -13,7 +13,7 @@ Q, DQ, DDQ = np.array([[0.3, -0.5, 0.7], [0.2, -0.4, 0.9], [1.0, 2.0, -1.0]])
 def test_place_motion_and_tip_are_one_tip_s(macro):
     arm = PinocchioArm(macro)
     J, pose = macro.tip_jacobian(Q), macro.tip_pose(Q)
-    for x, R, *velocity in (arm.place(Q), arm.motion(Q, DQ), arm.tip(Q, DQ)[:2]):
+    for x, R, *velocity in (arm.tip_pose(Q), arm.tip_pose_and_twist(Q, DQ), arm.tip(Q, DQ)[:2]):
         np.testing.assert_allclose(x, pose[:3, 3], atol=1e-15)
         np.testing.assert_allclose(R, pose[:3, :3], atol=1e-15)
         if velocity:
@@ -33,7 +33,7 @@ def test_another_gravity_holds_for_one_question(macro):
 
 
 def test_an_arm_without_weight_has_none_whatever_is_given(macro):
-    arm = PinocchioArm(macro, has_weight=False)
+    arm = PinocchioArm(macro, gravity_compensation=False)
     for gravity in (None, np.array([3.0, -4.0, 5.0])):
         expected = PinocchioArm(macro).inverse_dynamics(Q, DQ, DDQ) - macro.gravity_torque(Q)
         np.testing.assert_allclose(arm.inverse_dynamics(Q, DQ, DDQ, gravity), expected, atol=1e-12)

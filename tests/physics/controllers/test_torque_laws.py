@@ -21,7 +21,7 @@ from runner.controllers.operational_space.operational_space import build as buil
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyConfig
 from runner.controllers.operational_space.whole_body import build as build_whole_body
 from runner.plants.rk4 import Rk4
-from runner.robots.task_space import task_directions
+from runner.robots.task_space import task_basis
 
 ROBOTS = ["macro", "mini", "combined", "xarm7", "meca500", "planar"]
 # Strangers, as the doctor gives them: spatial, planar, sliding, and of 30 joints.
@@ -122,7 +122,7 @@ def law(kind, name, task, **changes):
 
 @functools.cache
 def directions(name, task):
-    return task_directions(arm_of(name).model, task == "pose")
+    return task_basis(arm_of(name).model, task == "pose")
 
 
 def jacobian(name, task, q):

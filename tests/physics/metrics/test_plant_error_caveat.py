@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.engines import has_pybullet
 from runner.metrics.caveats.plant_error import PlantStep, caveat_of
-from runner.metrics.plant_error import PlantError, Worth
+from runner.metrics.plant_error import ErrorEstimate, PlantError
 from runner.sweeps.execution import run
 
 OWN = PlantStep("bullet", 1e-3, 0.01, 0.02)
@@ -14,7 +14,7 @@ CASE = ("experiment=thesis/figure_3_10", "repetitions=1", "noise=none", f"plant=
 
 
 def error(**metrics):
-    worth = {name: Worth(1.0, difference, share) for name, (difference, share) in metrics.items()}
+    worth = {name: ErrorEstimate(1.0, difference, share) for name, (difference, share) in metrics.items()}
     return PlantError(0.01, largest=1e-3, at=0.5, end=1e-6, metrics=worth)
 
 

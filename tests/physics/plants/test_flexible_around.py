@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.physics import assert_order
 
-from runner.plants.flexible_around import FlexibleAround
+from runner.plants.flexible_around import SeriesElastic
 from runner.plants.plant import innermost
 
 KEY = "plant.flexible_joints"
@@ -91,7 +91,7 @@ def test_a_shaper_finds_the_modes(simulated, engine):
 @pytest.mark.bullet
 def test_what_the_engine_holds_is_released(closed_loop):
     closed = closed_loop(*MACRO, "plant=bullet_flexible", "trajectory=goal")
-    assert isinstance(innermost(closed.plant), FlexibleAround)
+    assert isinstance(innermost(closed.plant), SeriesElastic)
 
 
 @pytest.mark.bullet

@@ -5,7 +5,7 @@ import pytest
 
 from runner.environments import ENVIRONMENTS
 from runner.environments.wall import WallConfig
-from runner.plants.touched import Touched
+from runner.plants.touched import WithTipContact
 from runner.simulation.assembly import assemble
 
 POSTURES = {"macro": [0.3, 0.4, -0.5], "mini": [0.3, 0.4, -0.5]}
@@ -34,7 +34,7 @@ def touching(checked_config, robot, engine, step, *, distance=0.0, damping=0.0, 
         f"environment.friction={friction}",
     )
     plant = assemble(config).plant
-    assert isinstance(plant, Touched)
+    assert isinstance(plant, WithTipContact)
     plant.set_gravity(np.zeros(3))
     return config, plant
 

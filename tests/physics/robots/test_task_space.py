@@ -7,7 +7,7 @@ from support.strangers import X, Y, Z
 
 from runner.robots import RobotModel
 from runner.robots.inverse_kinematics import solve_tip_pose, solve_tip_position
-from runner.robots.task_space import distance_beside, task_directions
+from runner.robots.task_space import distance_beside, task_basis
 
 
 def model(*kinds, **values):
@@ -20,29 +20,29 @@ def turns(*axes):
 
 @pytest.mark.parametrize("pose", [False, True])
 def test_a_spatial_arm_has_every_direction(macro, xarm7, pose):
-    np.testing.assert_array_equal(task_directions(macro, pose), np.eye(6 if pose else 3))
-    np.testing.assert_array_equal(task_directions(xarm7.model, pose), np.eye(6 if pose else 3))
+    np.testing.assert_array_equal(task_basis(macro, pose), np.eye(6 if pose else 3))
+    np.testing.assert_array_equal(task_basis(xarm7.model, pose), np.eye(6 if pose else 3))
 
 
 def test_a_planar_arm_moves_in_its_plane_and_turns_about_its_axis():
     arm = model(*turns(X, X, X))
-    np.testing.assert_array_equal(task_directions(arm, False), np.eye(3)[1:])
-    np.testing.assert_array_equal(task_directions(arm, True), np.eye(6)[[1, 2, 3]])
+    np.testing.assert_array_equal(task_basis(arm, False), np.eye(3)[1:])
+    np.testing.assert_array_equal(task_basis(arm, True), np.eye(6)[[1, 2, 3]])
 
 
 def test_a_scara_turns_about_the_vertical_alone():
     arm = strangers.config("scara").arm.model
-    np.testing.assert_array_equal(task_directions(arm, True), np.eye(6)[[0, 1, 2, 5]])
+    np.testing.assert_array_equal(task_basis(arm, True), np.eye(6)[[0, 1, 2, 5]])
 
 
 def test_slides_do_not_turn():
     arm = model(("prismatic", X), ("prismatic", Y), ("prismatic", Z))
-    np.testing.assert_array_equal(task_directions(arm, True), np.eye(6)[:3])
+    np.testing.assert_array_equal(task_basis(arm, True), np.eye(6)[:3])
 
 
 def test_an_oblique_plane_has_two_unit_directions_in_it():
     arm = model(*turns("1 1 0", "1 1 0"), tip=(0.0, 0.0, 0.3))
-    found = task_directions(arm, False)
+    found = task_basis(arm, False)
     np.testing.assert_allclose(found @ found.T, np.eye(2), atol=1e-12)
     np.testing.assert_allclose(found @ [1.0, 1.0, 0.0], 0.0, atol=1e-12)
 
@@ -50,7 +50,7 @@ def test_an_oblique_plane_has_two_unit_directions_in_it():
 def test_every_motion_of_the_tip_lies_in_its_directions():
     for name in strangers.STRANGERS:
         arm = strangers.config(name).arm.model
-        D = task_directions(arm, True)
+        D = task_basis(arm, True)
         for q in np.random.default_rng(5).uniform(*arm.usual_range, (5, arm.nq)):
             J = arm.tip_jacobian(q)
             np.testing.assert_allclose(D.T @ D @ J, J, atol=1e-9)

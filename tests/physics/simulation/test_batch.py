@@ -10,7 +10,7 @@ from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation import batch
 from runner.simulation.assembly import assemble
-from runner.simulation.batch import Batcher, Together
+from runner.simulation.batch import BatchResult, BatchSimulator
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.symbolic.engine import evaluator
@@ -26,11 +26,11 @@ def configured(*overrides):
 
 def together(configs):
     """Return the trace of each repetition of each config, and how many runs were measured together."""
-    batcher = Batcher()
+    batcher = BatchSimulator()
     runs = [run for config in configs for run in batcher.repetitions(config)]
     traces, counts = {}, []
     for found in batcher.simulate(runs):
-        if isinstance(found, Together):
+        if isinstance(found, BatchResult):
             counts.append(len(found.places))
             traces |= {place: found.traces.run(row) for row, place in enumerate(found.places)}
             assert found.context.trajectory is runs[found.places[0]].config.path
@@ -123,7 +123,7 @@ def test_a_run_that_fails_ends_alone():
 
 def test_a_law_without_an_answer_ends_its_run(monkeypatch):
     config = configured("controller.singularity_damping=0", "duration=0.1")
-    batcher = Batcher()
+    batcher = BatchSimulator()
     (run,) = batcher.repetitions(config)
     folded = batch.replace(run, q_start=np.array([0.0, 0.0, np.pi / 2]))
     ((place, trace),) = batcher.simulate([folded])
@@ -154,20 +154,20 @@ def test_runs_of_other_code_or_other_lengths_stand_in_other_batches():
     [("plant=bullet",), ("environment=push",), ("robot=xarm7", "controller=differential_inverse_kinematics")],
 )
 def test_what_is_not_compiled_as_a_whole_goes_its_own_way(overrides):
-    assert Batcher().repetitions(configured(*overrides)) is None
+    assert BatchSimulator().repetitions(configured(*overrides)) is None
 
 
 def test_metrics_of_the_user_s_look_at_one_run_at_a_time(monkeypatch):
     monkeypatch.setattr(batch, "added", lambda group: (SimpleNamespace(name="mine"),))
-    assert Batcher().repetitions(configured()) is None
+    assert BatchSimulator().repetitions(configured()) is None
 
 
 def test_what_runs_have_in_common_is_worked_out_once(monkeypatch):
     made = []
-    whole = batch.assemble_whole
-    monkeypatch.setattr(batch, "assemble_whole", lambda *given: made.append(1) or whole(*given))
+    whole = batch.assemble_program
+    monkeypatch.setattr(batch, "assemble_program", lambda *given: made.append(1) or whole(*given))
     composed = compose([*SCENE, "noise=thesis"]).resolved
-    batcher = Batcher()
+    batcher = BatchSimulator()
     for seed in range(5):
         batcher.repetitions(validate({**composed, "seed": seed}))
     assert len(made) == 1

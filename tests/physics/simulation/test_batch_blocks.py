@@ -9,7 +9,7 @@ import pytest
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation import batch_blocks
-from runner.simulation.batch import Batcher
+from runner.simulation.batch import BatchSimulator
 from runner.simulation.batch_blocks import MOST_THREADS, simulate_blocks
 from runner.store.writing import make_record
 from runner.symbolic.engine import evaluator
@@ -70,13 +70,13 @@ def test_the_first_repetition_that_fails_is_told_whichever_block_it_is_in():
 
 def test_no_block_is_larger_than_asked_for(monkeypatch):
     """Whatever the number of repetitions: that bounds the memory."""
-    asked, simulate = [], Batcher.simulate
+    asked, simulate = [], BatchSimulator.simulate
 
     def noted(self, runs):
         asked.append((len(runs), threading.current_thread()))
         return simulate(self, runs)
 
-    monkeypatch.setattr(Batcher, "simulate", noted)
+    monkeypatch.setattr(BatchSimulator, "simulate", noted)
     config, composed = job("trajectory=quintic", "duration=0.1", "repetitions=95")
     simulate_blocks((config, composed), threads=2, ticks=10 * config.timing.ticks)
     assert sorted(size for size, _ in asked) == [5, *[10] * 9]
@@ -87,14 +87,14 @@ def test_no_block_is_larger_than_asked_for(monkeypatch):
 
 
 def test_an_error_in_a_block_ends_the_run_and_its_threads(monkeypatch):
-    simulate = Batcher.simulate
+    simulate = BatchSimulator.simulate
 
     def failing(self, runs):
         if runs[0].repetition == 30:
             raise OSError("the disk is gone")
         return simulate(self, runs)
 
-    monkeypatch.setattr(Batcher, "simulate", failing)
+    monkeypatch.setattr(BatchSimulator, "simulate", failing)
     before = threading.active_count()
     config, composed = job("trajectory=quintic", "duration=0.1", "repetitions=95")
     with pytest.raises(OSError, match="the disk is gone"):

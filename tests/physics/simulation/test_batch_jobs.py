@@ -4,7 +4,7 @@ import pytest
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.simulation.batch import Batcher
+from runner.simulation.batch import BatchSimulator
 from runner.simulation.batch_jobs import simulate_together
 from runner.store.writing import make_record
 from runner.sweeps.job import simulate_job
@@ -26,7 +26,7 @@ def record(result):
 
 def one_by_one(monkeypatch, *given):
     with monkeypatch.context() as apart:
-        apart.setattr(Batcher, "repetitions", lambda *_: None)
+        apart.setattr(BatchSimulator, "repetitions", lambda *_: None)
         return simulate_job(*given)
 
 
@@ -57,7 +57,7 @@ def test_runs_are_complete_once_all_their_repetitions_have_ended(monkeypatch):
         job("duration=0.5", "seed=9"),
         job("duration=2"),
     ]
-    batcher = Batcher()
+    batcher = BatchSimulator()
     runs = [batcher.repetitions(config) for config, _ in jobs]
     found = {run.place: run for some in simulate_together(jobs, runs, batcher) for run in some}
     assert sorted(found) == [0, 1, 2, 3]

@@ -22,12 +22,12 @@ def sliding(checked_config):
 
 def together(closed, count):
     """Return the signals of equal runs, each from a start of its own."""
-    whole, times = closed.compiled, np.arange(closed.ticks + 1) * closed.tick
+    loop_program, times = closed.compiled, np.arange(closed.ticks + 1) * closed.tick
     q = closed.q_start + 0.05 * np.arange(count)[:, None]
     still = np.zeros((count, len(times), 3))
-    shared = whole.commands.shared(times, closed.trajectory.sample(times))
-    values = np.repeat([whole.values], count, axis=0)
-    return run_all(whole, values, shared, [still], whole.commands.start(q, [still[:, 0]]))
+    shared = loop_program.commands.shared(times, closed.trajectory.sample(times))
+    values = np.repeat([loop_program.values], count, axis=0)
+    return run_all(loop_program, values, shared, [still], loop_program.commands.start(q, [still[:, 0]]))
 
 
 def test_no_joint_slides_before_a_block_begins(sliding, monkeypatch):

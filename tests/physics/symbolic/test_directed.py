@@ -10,7 +10,7 @@ from runner.plants.motion import ArmMotion, Motion
 from runner.robots.mismatch import scaled
 from runner.robots.model import RobotModel
 from runner.sensing import EncoderNoise
-from runner.simulation.compiled.closed_loop import Whole
+from runner.simulation.compiled.closed_loop import LoopProgram
 from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.simulation.compiled.directed import Setting, tangents
 
@@ -43,21 +43,23 @@ def wheel(one_stage):
         noise = EncoderNoise(none, none, none, "none", "exact")
         commands = Commands(robot, False, (loop,), noise, np.array([limit]))
         motion = Motion(robot, (ArmMotion(URDF, model, slice(0, 1), none, none),), False)
-        return Whole(commands, motion, TICK, TICK, 1, 0)
+        return LoopProgram(commands, motion, TICK, TICK, 1, 0)
 
     return make
 
 
-def derivatives(whole, *others):
+def derivatives(loop_program, *others):
     """Return derivatives of the signals by parameters in which the numbers are linear: from others, 1 beyond."""
     errors, start = [np.zeros((len(TIMES), 1))], np.zeros(2)
-    shared = whole.commands.shared(TIMES, np.zeros((len(TIMES), 3, 3)))
-    finite = np.isfinite(whole.numbers)
+    shared = loop_program.commands.shared(TIMES, np.zeros((len(TIMES), 3, 3)))
+    finite = np.isfinite(loop_program.numbers)
     slopes = [
-        Setting(np.subtract(other.numbers, whole.numbers, where=finite, out=np.zeros(len(finite))), start, errors)
+        Setting(
+            np.subtract(other.numbers, loop_program.numbers, where=finite, out=np.zeros(len(finite))), start, errors
+        )
         for other in others
     ]
-    return tangents(whole, Setting(whole.numbers, start, errors), slopes, shared)
+    return tangents(loop_program, Setting(loop_program.numbers, start, errors), slopes, shared)
 
 
 def test_angles_speeds_and_torques(wheel):

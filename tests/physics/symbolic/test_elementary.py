@@ -7,7 +7,7 @@ import pytest
 
 from runner.symbolic.code import GIVEN, ROWS, Block
 from runner.symbolic.elementary import angle_of, sine_cosine
-from runner.symbolic.places import Places
+from runner.symbolic.places import Slots
 from runner.symbolic.program import Expressed, program
 
 
@@ -15,7 +15,7 @@ def computed(pattern, express, given):
     """Return rows of results for rows of arguments, shapes (n, outputs) and (n, inputs)."""
 
     def expressed():
-        at = Places()
+        at = Slots()
         results = express(at.take(GIVEN, given.shape[1])[1])
         at.take(ROWS, len(results))
         return Expressed([Block([(ROWS, i, value) for i, value in enumerate(results)])], [], at.widths, [])

@@ -17,7 +17,7 @@ from runner.simulation.compiled import compile
 from runner.simulation.compiled.closed_loop import CompiledCommands
 from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.symbolic import program
-from runner.symbolic.structure import CannotCompileError, pattern_of
+from runner.symbolic.structure import CannotCompileError, law_cache_key
 
 LAWS = ("adaptive", "joint_pid", "passivity", "sliding_mode")
 CASES = [
@@ -144,7 +144,7 @@ def test_memory_goes_on_from_tick_to_tick_until_it_is_reset():
 def test_numbers_are_parameters_and_zeros_are_not(monkeypatch):
     law, other = (law_of("macro", "operational_space", f"controller.natural_frequency={w}") for w in (12.0, 25.0))
     still = law_of("macro", "operational_space", "controller.feedforward=false")
-    assert pattern_of(law) == pattern_of(other) != pattern_of(still)
+    assert law_cache_key(law) == law_cache_key(other) != law_cache_key(still)
     config = configured("macro", "operational_space", "controller.natural_frequency=25.0")
     measured = states(config.arm.model, config.arm.home)
     compiled_torques(law, measured)

@@ -9,7 +9,7 @@ from support.physics import assert_same_motion
 
 from runner.simulation.assembly import assemble
 from runner.simulation.compiled import compile
-from runner.simulation.compiled.closed_loop import CompiledCommands, Whole, run_all
+from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram, run_all
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 
@@ -61,7 +61,7 @@ def run_both(monkeypatch, *overrides, seed=0):
     with monkeypatch.context() as without:
         without.setattr(compile, "evaluator", dict)
         other, theirs = run(*overrides, seed=seed)
-    assert isinstance(closed.compiled, Whole)
+    assert isinstance(closed.compiled, LoopProgram)
     assert other.compiled is None
     return ours, theirs
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from runner.base.errors import ConfigError
 from runner.trajectories.quintic import Quintic
-from runner.trajectories.waypoints import WaypointsConfig, build, least_jerk
+from runner.trajectories.waypoints import WaypointsConfig, build, minimum_jerk
 
 START = np.array([0.3, -0.2, 0.4])
 POINTS = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 2.0, 0.0], [-1.0, 1.0, 1.0], [0.0, 1.0, -1.0]])
@@ -23,17 +23,17 @@ def waypoints(**changes):
 
 @given(st.lists(st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3), min_size=5, max_size=5).map(np.array))
 def test_it_passes_its_points_at_their_times_from_rest_to_rest(points):
-    motion = least_jerk(points, TIMES).sample(TIMES)
+    motion = minimum_jerk(points, TIMES).sample(TIMES)
     np.testing.assert_allclose(motion[:, 0], points, atol=1e-12)
     np.testing.assert_allclose(motion[[0, -1], 1:], 0.0, atol=1e-10)
 
 
 def test_between_its_ends_it_does_not_stop():
-    assert np.linalg.norm(least_jerk(POINTS, TIMES).sample(TIMES[1:-1])[:, 1], axis=1).min() > 1.0
+    assert np.linalg.norm(minimum_jerk(POINTS, TIMES).sample(TIMES[1:-1])[:, 1], axis=1).min() > 1.0
 
 
 def test_four_derivatives_are_continuous_at_the_way_points():
-    spline = least_jerk(POINTS, TIMES).spline
+    spline = minimum_jerk(POINTS, TIMES).spline
     for order in range(5):
         before, after = (spline(TIMES[1:-1] + side, order) for side in (-1e-12, 1e-12))
         np.testing.assert_allclose(before, after, atol=1e-7)
@@ -42,7 +42,7 @@ def test_four_derivatives_are_continuous_at_the_way_points():
 
 def test_no_other_motion_through_the_points_has_less_jerk():
     """The jerk's product with that of any change that keeps points, times and rest vanishes (Euler and Lagrange)."""
-    spline = least_jerk(POINTS, TIMES).spline
+    spline = minimum_jerk(POINTS, TIMES).spline
     # Vanishes at every way-point, with two derivatives at the ends; two such changes, one skewed.
     change = np.polynomial.Polynomial.fromroots([*TIMES, 0.0, 0.0, 3.0, 3.0])
     for variation in (change, change * np.polynomial.Polynomial([1.0, -2.0, 0.5])):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from runner.analysis.sensitivity.differences import differences
-from runner.simulation.batch import Together
+from runner.simulation.batch import BatchResult
 
 MODULE = import_module(differences.__module__)
 
@@ -17,11 +17,11 @@ def by_differences(monkeypatch):
     """Return the derivative of one metric by one parameter, given as a function and its value."""
 
     def make(function, value):
-        class Batcher:
+        class BatchSimulator:
             def simulate(self, runs):
-                yield Together(range(len(runs)), runs, None)
+                yield BatchResult(range(len(runs)), runs, None)
 
-        monkeypatch.setattr(MODULE, "Batcher", Batcher)
+        monkeypatch.setattr(MODULE, "BatchSimulator", BatchSimulator)
         monkeypatch.setattr(MODULE, "measure", lambda runs, _: {"metric": np.array([function(run) for run in runs])})
         found = SimpleNamespace(
             scene=SimpleNamespace(at=lambda parameter, value: value),

@@ -14,10 +14,10 @@ STEP = VALUE * _PART  # between two values at which numbers are taken
 
 def slope_of(numbers):
     """Return the derivative of numbers that follow from a parameter, at its own value."""
-    whole = SimpleNamespace(commands=SimpleNamespace(loops=()))
+    loop_program = SimpleNamespace(commands=SimpleNamespace(loops=()))
 
     def scene(value):
-        return SimpleNamespace(whole=whole, setting=Setting(np.array(numbers(value)), np.zeros(1), []))
+        return SimpleNamespace(loop_program=loop_program, setting=Setting(np.array(numbers(value)), np.zeros(1), []))
 
     own = scene(VALUE)
     own.at = lambda parameter, value: scene(value)

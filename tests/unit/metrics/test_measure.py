@@ -16,7 +16,7 @@ from runner.trajectories.line import Line
 from runner.trajectories.lissajous import Lissajous
 from runner.trajectories.quintic import Quintic
 from runner.trajectories.square import Square
-from runner.trajectories.waypoints import least_jerk
+from runner.trajectories.waypoints import minimum_jerk
 
 A, B, C = np.array([0.1, -0.2, 0.3]), np.array([0.4, 0.15, 0.21]), np.array([0.2, 0.3, -0.1])
 PATHS = {
@@ -28,7 +28,7 @@ PATHS = {
     "lissajous": ClosedFigure(
         Lissajous(A, np.array([0.1, 0.2, 0.05]), np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.3, 1.0])), 2.0, "none"
     ),
-    "waypoints": least_jerk(np.array([A, B, C]), np.array([0.0, 0.7, 1.2])),
+    "waypoints": minimum_jerk(np.array([A, B, C]), np.array([0.0, 0.7, 1.2])),
 }
 PATHS_AND_JOINTS = [(path, (1, 3, 6, 7)[(place + more) % 4]) for place, path in enumerate(PATHS) for more in (0, 2)]
 
