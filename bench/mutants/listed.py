@@ -159,7 +159,7 @@ MUTANTS = [
     *_of(
         "plants/friction.py",
         "physics/plants/test_friction.py",
-        ("viscous friction of a joint that dry friction stops", "(speed - yields @ mu) + mu", "speed + mu"),
+        ("viscous friction of a joint that dry friction stops", "(speed - mobility @ mu) + mu", "speed + mu"),
         ("a contact that friction does not know", "self._contact_torque() - bias", "-bias"),
     ),
     *_of(

@@ -104,7 +104,7 @@ def sample(model: RobotModel, joints: tuple[str, ...], count: int, generator: np
         count: How many.
         generator: Source of the draw.
     """
-    low, high = np.where(model.slides, model.position_limits, [[-np.pi], [np.pi]])
+    low, high = np.where(model.prismatic, model.position_limits, [[-np.pi], [np.pi]])
     values: dict[str, FloatArray] = {}
     for i, (name, q) in enumerate(zip(joints, generator.uniform(low, high, (count, model.nq)).T, strict=True), start=1):
         values |= {name: q, f"s{i}": np.sin(q), f"c{i}": np.cos(q)}

@@ -20,7 +20,7 @@ class _Joint:
     child: str
     origin: FloatArray
     axis: FloatArray
-    slides: bool
+    prismatic: bool
     armature: float
     place: int | None
 
@@ -81,7 +81,7 @@ class UrdfChain:
                 frame = frames[joint.child]
                 axis = frame[:, :3, :3] @ joint.axis
                 lever = np.cross(axis, centre[:, :3, 3] - frame[:, :3, 3])
-                J[:, :, joint.place] = np.hstack([axis, 0.0 * axis] if joint.slides else [lever, axis])
+                J[:, :, joint.place] = np.hstack([axis, 0.0 * axis] if joint.prismatic else [lever, axis])
             turned = centre[:, :3, :3].transpose(0, 2, 1) @ J[:, 3:]  # along the axes of the tensor
             total += (
                 body.mass * J[:, :3].transpose(0, 2, 1) @ J[:, :3] + turned.transpose(0, 2, 1) @ body.tensor @ turned
@@ -130,7 +130,7 @@ def _joint(element: ET.Element, names: Sequence[str]) -> _Joint:
 def _motion(joint: _Joint, q: FloatArray) -> FloatArray:
     """Return the transforms of a joint at its positions, shape (T, 4, 4)."""
     by = q[:, joint.place]
-    if not joint.slides:
+    if not joint.prismatic:
         return turn(joint.axis, by)
     moved = np.tile(np.eye(4), (len(q), 1, 1))
     moved[:, :3, 3] = np.outer(by, joint.axis)

@@ -129,7 +129,7 @@ def _check_speed(model: RobotModel, trajectory: Trajectory, times: FloatArray, q
         return ""
     row, joint = np.unravel_index(int(np.argmax(share)), share.shape)
     name, speed, limit = model.joint_names[joint], speeds[row, joint], model.velocity_limits[joint]
-    unit, moves = model.joint_units[joint], "slide" if model.slides[joint] else "turn"
+    unit, moves = model.joint_units[joint], "slide" if model.prismatic[joint] else "turn"
     return (
         f"trajectory.duration: {trajectory.duration:g} s is too fast: at t = {times[row]:.4g} s {name} would {moves} "
         f"at {speed:.4g} {unit}/s, and its limit is {limit:.4g} {unit}/s; the shortest feasible time is "

@@ -11,7 +11,7 @@ from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
 from runner.plants.kinds import HasFlexibleJoints
 from runner.plants.motion import find_motion
 from runner.plants.motors import MotorSide
-from runner.plants.plant import innermost
+from runner.plants.plant import unwrapped
 from runner.robots.armature import with_armature
 from runner.robots.robot import Robot
 
@@ -39,7 +39,7 @@ def believe_motors(config: RunConfig, believed: Robot) -> Robot:
 
 def find_motor_side(config: RunConfig, plant: Plant, believed: Robot) -> MotorSide | None:
     """Return what drives and encoders know of the motors of a plant; None where joints are rigid."""
-    springs = innermost(plant)
+    springs = unwrapped(plant)
     joints = config.plant.flexible_joints if isinstance(config.plant, HasFlexibleJoints) else None
     if not isinstance(springs, FlexibleJoints):
         return None

@@ -31,7 +31,7 @@ def check_gravity(model: RobotModel, postures: FloatArray) -> list[Finding]:
     if not findings:
         share = largest / model.effort_limits
         most = int(np.argmax(share if share.any() else largest))
-        unit = "N" if model.slides[most] else "N m"
+        unit = "N" if model.prismatic[most] else "N m"
         limit = f", {100.0 * share[most]:.2g} % of its effort limit" if share[most] else ", and has no effort limit"
         text = f"joint '{model.joint_names[most]}' bears most: up to {largest[most]:.3g} {unit}{limit}"
         findings.append(Finding("note", "gravity", text))
@@ -82,7 +82,7 @@ def _singular_values(model: RobotModel, postures: FloatArray, pose: bool) -> Flo
     """
     directions = task_basis(model, pose)
     rows = np.where(directions[:, :3].any(axis=1), 1.0, model.reach)
-    columns = np.where(model.slides, model.reach, 1.0)
+    columns = np.where(model.prismatic, model.reach, 1.0)
     J = [rows[:, None] * (directions @ model.tip_jacobian(q)[: directions.shape[1]]) * columns for q in postures]
     return np.asarray(np.linalg.svd(np.array(J), compute_uv=False))
 

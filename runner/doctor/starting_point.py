@@ -89,7 +89,7 @@ def _goal(model: RobotModel, home: FloatArray, postures: FloatArray) -> FloatArr
         moved = float(np.linalg.norm(model.tip_jacobian(home)[:3] @ way))
         q = home + way * min(_STEP * model.reach / max(moved, 1e-12), 1.0)
         room = float(smallest_singular_values(model, q[None], pose=False)[0])
-        far = np.abs(q - home)[~model.slides].max(initial=0.0) > _FAR
+        far = np.abs(q - home)[~model.prismatic].max(initial=0.0) > _FAR
         if room > most and not far and np.all((q >= lower) & (q <= upper)):
             best, most = model.tip_position(q), room
     rounded = np.round(best, 3)

@@ -8,7 +8,7 @@ from runner.plants.plant import (
     PositionPlant,
     ReportsContact,
     ToolReactionPlant,
-    innermost,
+    unwrapped,
 )
 
 PLANTS = Plants({name: f"{__name__}.{name}" for name in ("bullet", "kinematic", "mujoco", "rk4", "rk4_flexible_links")})
@@ -22,5 +22,5 @@ __all__ = [
     "ReportsContact",
     "TellsEndPoints",
     "ToolReactionPlant",
-    "innermost",
+    "unwrapped",
 ]

@@ -171,9 +171,9 @@ class Mover:
         factors = Factors(braked)
         columns = [factors.solve([h if i == j else 0.0 for i in range(n)]) for j in range(n)]
         first, scratch = self._at.take(SCRATCH, n + n * n + n + 1)
-        speed, yields = scratch[:n], scratch[n : n + n * n]
+        speed, mobility = scratch[:n], scratch[n : n + n * n]
         mu: Vector = scratch[n + n * n : 2 * n + n * n]
-        A = [yields[i * n : (i + 1) * n] for i in range(n)]
+        A = [mobility[i * n : (i + 1) * n] for i in range(n)]
         found = [*factors.solve(pushed), *(columns[j][i] for i in range(n) for j in range(n))]
         parts.append(_put(SCRATCH, first, found))
         if any(value != 0.0 for value in coulomb):
@@ -189,9 +189,9 @@ class Mover:
     def _pivot(self, A: Matrix, speed: Vector, mu: Vector, limit: Vector, first: int, parts: list[Part]) -> None:
         """Add the search for the torques that stop joints; see `stopping_torques` of runner/plants/friction.py."""
         n = self._count
-        state, slides = self._at.take(STATE, n)
-        held = [equal(side, 0.0) for side in slides]
-        sliding = [side * c for side, c in zip(slides, limit, strict=True)]
+        state, direction = self._at.take(STATE, n)
+        held = [equal(side, 0.0) for side in direction]
+        sliding = [side * c for side, c in zip(direction, limit, strict=True)]
         left = subtract(speed, product(A, sliding))
         # The joints that slide stand in the system with a one on the diagonal and nothing else.
         system = [
@@ -206,14 +206,14 @@ class Mover:
         left = subtract(speed, product(A, now))
         wrong, sides = [], []
         for i in range(n):
-            too_much = select(held[i], absolute(now[i]) - limit[i], -left[i] * slides[i] / A[i][i])
+            too_much = select(held[i], absolute(now[i]) - limit[i], -left[i] * direction[i] / A[i][i])
             wrong.append(less(_ROUNDING * (limit[i] + absolute(speed[i]) / A[i][i]), too_much))
             sides.append(select(held[i], select(less(now[i], 0.0), -1.0, 1.0), 0.0))
         outputs: list[tuple[str, int, Any]] = []
         open_: Value = 1.0  # whether no joint before is on the wrong side
         for i in range(n):
             outputs.append(
-                (STATE, state + i, select(wrong[i], select(equal(open_, 1.0), sides[i], slides[i]), slides[i]))
+                (STATE, state + i, select(wrong[i], select(equal(open_, 1.0), sides[i], direction[i]), direction[i]))
             )
             open_ = select(wrong[i], 0.0, open_)
             clipped = select(less(limit[i], now[i]), limit[i], select(less(now[i], -limit[i]), -limit[i], now[i]))

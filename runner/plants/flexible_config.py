@@ -54,8 +54,8 @@ class FlexibleJointsConfig(StrictModel):
         problems = []
         if not flexible.any():
             problems.append(f"{key}.stiffness: null for every joint; take plant.flexible_joints=null for a rigid arm")
-        for name, spring, motor, armature, slides in zip(
-            arm.model.joint_names, flexible, given, arm.model.armature, arm.model.slides, strict=True
+        for name, spring, motor, armature, prismatic in zip(
+            arm.model.joint_names, flexible, given, arm.model.armature, arm.model.prismatic, strict=True
         ):
             if spring and not motor and not armature:
                 problems.append(
@@ -68,7 +68,7 @@ class FlexibleJointsConfig(StrictModel):
                 )
             if motor and not spring:
                 problems.append(f"{key}.motor_inertia: {name} has a motor and no spring; give null, or a stiffness")
-            if spring and slides:
+            if spring and prismatic:
                 problems.append(f"{key}.stiffness: {name} slides; springs are for joints that turn, so null")
         if problems:
             raise ConfigError(problems)

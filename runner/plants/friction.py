@@ -48,14 +48,14 @@ class Frictional:
         self._tick = tick
         self._damping = tick * viscous
         self._viscous, self._coulomb = viscous, coulomb
-        self._slides = np.zeros(model.nq)
+        self._direction = np.zeros(model.nq)
         self.friction: FloatArray = np.zeros(model.nq)
         """What it took from the torques in the last tick; see TellsFriction."""
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state; see Plant."""
         self.plant.reset(q, dq)
-        self._slides[:] = 0.0
+        self._direction[:] = 0.0
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
@@ -70,9 +70,9 @@ class Frictional:
         M += np.triu(M, 1).T
         pushed = M @ self.dq + h * (tau + self._contact_torque() - bias)
         _, columns, _ = dposv(M + np.diag(self._damping), np.column_stack([pushed, h * np.eye(len(tau))]))
-        speed, yields = columns[:, 0], columns[:, 1:]
-        mu, self._slides = stopping_torques(yields, speed, self._coulomb, self._slides)
-        self.friction = self._viscous * (speed - yields @ mu) + mu
+        speed, mobility = columns[:, 0], columns[:, 1:]
+        mu, self._direction = stopping_torques(mobility, speed, self._coulomb, self._direction)
+        self.friction = self._viscous * (speed - mobility @ mu) + mu
         self.plant.advance(tau - self.friction)
 
     def _contact_torque(self) -> FloatArray:
@@ -90,7 +90,7 @@ class Frictional:
 
 
 def stopping_torques(
-    yields: FloatArray, speed: FloatArray, limit: FloatArray, slides: FloatArray
+    mobility: FloatArray, speed: FloatArray, limit: FloatArray, direction: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     r"""Return the dry friction that stops every joint, or all there is where that does not suffice.
 
@@ -102,29 +102,29 @@ def stopping_torques(
     Computers and Operations Research 21(5), 1994).
 
     Args:
-        yields: A, how speeds change by torques, shape (nq, nq), in rad/s per N m.
+        mobility: A, how speeds change by torques, shape (nq, nq), in rad/s per N m.
         speed: v_0 without dry friction, shape (nq,), in rad/s.
         limit: c, shape (nq,), in N m.
-        slides: Where to begin: 0 for a joint that stops, 1 or -1 for one that goes on turning up or down, shape (nq,).
+        direction: First guess, shape (nq,): 0 for a joint that stops, 1 or -1 for one that goes on turning up or down.
 
     Returns:
-        mu, shape (nq,), in N m; and which joints slide, as above.
+        mu, shape (nq,), in N m; and the direction of each joint, as above.
     """
-    slides = slides.copy()
+    direction = direction.copy()
     for _ in range(_PIVOTS):
-        mu = slides * limit
-        held = slides == 0.0
-        left = speed - yields @ mu
+        mu = direction * limit
+        held = direction == 0.0
+        left = speed - mobility @ mu
         if held.any():
-            mu[held] = np.linalg.solve(yields[np.ix_(held, held)], left[held])
-            left = speed - yields @ mu
-        too_much = np.where(held, np.abs(mu) - limit, -left * slides / np.diagonal(yields))
-        wrong = np.flatnonzero(too_much > _ROUNDING * (limit + np.abs(speed) / np.diagonal(yields)))
+            mu[held] = np.linalg.solve(mobility[np.ix_(held, held)], left[held])
+            left = speed - mobility @ mu
+        too_much = np.where(held, np.abs(mu) - limit, -left * direction / np.diagonal(mobility))
+        wrong = np.flatnonzero(too_much > _ROUNDING * (limit + np.abs(speed) / np.diagonal(mobility)))
         if not len(wrong):
             break
         first = wrong[0]
-        slides[first] = np.sign(mu[first]) if held[first] else 0.0
-    return np.clip(mu, -limit, limit), slides
+        direction[first] = np.sign(mu[first]) if held[first] else 0.0
+    return np.clip(mu, -limit, limit), direction
 
 
 @runtime_checkable

@@ -124,11 +124,11 @@ class Mujoco:
         model.geom_pos[wall], model.geom_quat[wall] = point, [turn.w, turn.x, turn.y, turn.z]
         model.geom_sameframe[wall] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # it stands no more at the base's origin
         for pair in range(model.npair):
-            yields = model.body_invweight0[model.geom_bodyid[model.pair_geom2[pair]], 0]
-            added = yields * h * (h * stiffness + damping)
+            mobility = model.body_invweight0[model.geom_bodyid[model.pair_geom2[pair]], 0]
+            added = mobility * h * (h * stiffness + damping)
             d = np.clip(added / (1.0 + added), *_IMPEDANCE)
             model.pair_solimp[pair, :2] = d
-            model.pair_solref[pair] = -(1.0 - d) * yields * np.array([stiffness, h * stiffness + damping])
+            model.pair_solref[pair] = -(1.0 - d) * mobility * np.array([stiffness, h * stiffness + damping])
         model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
 
     def contact_wrench(self) -> FloatArray:

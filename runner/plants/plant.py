@@ -98,7 +98,7 @@ class ToolReactionPlant(Protocol):
         ...
 
 
-def innermost(plant: Plant) -> Plant:
+def unwrapped(plant: Plant) -> Plant:
     """Return the plant that moves the arm, below servos and friction."""
     while isinstance(plant, PlantWrapper):
         plant = plant.plant

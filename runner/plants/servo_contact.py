@@ -196,9 +196,9 @@ def _arm(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
     whole = np.zeros((3 * n, 3 * n))
     if contact.implicit:
         along = contact.normal @ J[:3]
-        yields = np.outer(along, along)
-        inverse = np.linalg.inv(M + h * (h * contact.stiffness + contact.damping) * yields)
-        to_dq = np.hstack([-h * inverse @ (weight + contact.stiffness * yields), inverse @ M, h * inverse])
+        projector = np.outer(along, along)
+        inverse = np.linalg.inv(M + h * (h * contact.stiffness + contact.damping) * projector)
+        to_dq = np.hstack([-h * inverse @ (weight + contact.stiffness * projector), inverse @ M, h * inverse])
         whole[n : 2 * n] = to_dq
         whole[:n] = h * to_dq
         whole[:n, :n] += np.eye(n)

@@ -129,7 +129,7 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
         signals = (torques[:, joint] - rigid[:, joint], dq[:, joint], signs[:, joint], Y[:, joint])
         residual, speed, sign, masses = (low_pass(signal, period, frequency)[thinned] for signal in signals)
         moving = (np.abs(speed) > _STANDSTILL * fastest[joint]) & (np.abs(sign) > _ONE_WAY)
-        moving &= fastest[joint] > _SLOW * fastest[model.slides == model.slides[joint]].max()
+        moving &= fastest[joint] > _SLOW * fastest[model.prismatic == model.prismatic[joint]].max()
         if unusable[joint]:
             lacking.append(f"{name}: {unusable[joint]}")
         elif min(np.sum(moving & (speed > 0.0)), np.sum(moving & (speed < 0.0))) < _FEWEST:

@@ -53,7 +53,7 @@ def _findings(found: Examination) -> Table:
 
 def _swings(found: Examination, model: RobotModel, home: FloatArray) -> Playback:
     """Return each joint in turn, swung about home."""
-    swing = np.where(model.slides, _SWING * np.ptp(model.usual_range, axis=0), _SWING)
+    swing = np.where(model.prismatic, _SWING * np.ptp(model.usual_range, axis=0), _SWING)
     wave = np.sin(np.linspace(0.0, 2.0 * np.pi, _FRAMES, endpoint=False))
     q = np.concatenate([home + np.outer(wave, row) for row in np.diag(swing)])
     q = np.clip(q, *model.position_limits)

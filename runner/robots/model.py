@@ -56,9 +56,9 @@ class RobotModel:
         self.tip_name = tip
         self.tip_frame: int = self.pin_model.getFrameId(tip)
         self.nq: int = self.pin_model.nq
-        self.slides = np.array([_slides(joint) for joint in joints], dtype=bool)
+        self.prismatic = np.array([_is_prismatic(joint) for joint in joints], dtype=bool)
         """Which joints slide instead of turning, shape (nq,)."""
-        endless = self.slides & ~np.isfinite(self.position_limits).all(axis=0)
+        endless = self.prismatic & ~np.isfinite(self.position_limits).all(axis=0)
         if endless.any():
             raise ConfigError(
                 f"robot.urdf: joint '{self.joint_names[index]}' slides without limits; give it a <limit> with lower "
@@ -203,12 +203,12 @@ class RobotModel:
         """The position limits, of joints that turn within one turn about zero where that is possible, shape (2, nq)."""
         limits = self.position_limits
         turn = np.clip(limits, -np.pi, np.pi)
-        return np.where(self.slides | (turn[0] == turn[1]), limits, turn)
+        return np.where(self.prismatic | (turn[0] == turn[1]), limits, turn)
 
     @property
     def joint_units(self) -> tuple[str, ...]:
         """Unit of each joint's position: rad, or m where it slides."""
-        return tuple("m" if slides else "rad" for slides in self.slides)
+        return tuple("m" if prismatic else "rad" for prismatic in self.prismatic)
 
     @property
     def velocity_limits(self) -> FloatArray:
@@ -231,7 +231,7 @@ class RobotModel:
         """Largest distance of the tip from the first joint's axis origin that link lengths and slides admit, in m."""
         placements = list(self.pin_model.jointPlacements)[2:]
         last = self.pin_model.frames[self.tip_frame].placement
-        travel = float(np.abs(self.position_limits[:, self.slides]).max(axis=0).sum())
+        travel = float(np.abs(self.position_limits[:, self.prismatic]).max(axis=0).sum())
         return float(sum(np.linalg.norm(p.translation) for p in (*placements, last))) + travel
 
     @cached_property
@@ -290,7 +290,7 @@ def _without_shapes(urdf: str) -> str:
     return ET.tostring(robot, encoding="unicode")
 
 
-def _slides(joint: pin.JointModel) -> bool:
+def _is_prismatic(joint: pin.JointModel) -> bool:
     return bool(joint.shortname().startswith("JointModelP"))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.trace import ContactSignals
 from runner.environments.interaction import Interaction
-from runner.plants import ReportsContact, ToolReactionPlant, innermost
+from runner.plants import ReportsContact, ToolReactionPlant, unwrapped
 from runner.sensing import WristSensor
 from runner.simulation.closed_loop import ClosedLoop
 
@@ -24,7 +24,7 @@ class Contact:
     """
 
     def __init__(self, closed: ClosedLoop, interaction: Interaction, wrist: WristSensor) -> None:
-        moved = innermost(closed.plant)
+        moved = unwrapped(closed.plant)
         self._contacts = moved if isinstance(moved, ReportsContact) else None
         self._reactions = moved if isinstance(moved, ToolReactionPlant) else None
         self._interaction = interaction

@@ -25,7 +25,7 @@ class TorqueInput:
     """
 
     def __init__(self, plant: Plant, recorder: Recorder) -> None:
-        self._plant, self._timing, self._commands = plant, recorder.command_timing, recorder.commands
+        self._plant, self._timing, self._commands = plant, recorder.timing, recorder.commands
 
     def advance(self, k: int, load: FloatArray | None) -> None:
         """Move the plant; see PlantInput."""
@@ -42,7 +42,7 @@ class PositionInput:
     """
 
     def __init__(self, plant: PositionPlant, recorder: Recorder) -> None:
-        self._plant, self._timing, self._commands = plant, recorder.command_timing, recorder.commands
+        self._plant, self._timing, self._commands = plant, recorder.timing, recorder.commands
         self._torques = recorder.torques
 
     def advance(self, k: int, load: FloatArray | None) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.config.endpoint_sensor import endpoint_ticks
 from runner.config.run import RunConfig
-from runner.plants import Plant, PositionPlant, TellsEndPoints, innermost
+from runner.plants import Plant, PositionPlant, TellsEndPoints, unwrapped
 from runner.robots.model import RobotModel
 from runner.sensing.endpoint import EndpointSensor
 from runner.simulation.closed_loop import ClosedLoop
@@ -29,7 +29,7 @@ class MeasuredTip:
         self, sensor: EndpointSensor, plant: Plant | PositionPlant, true: RobotModel, believed: RobotModel
     ) -> None:
         self._sensor, self._plant, self._true, self._believed = sensor, plant, true, believed
-        moved = innermost(plant)
+        moved = unwrapped(plant)
         self._bent = moved if isinstance(moved, TellsEndPoints) else None
 
     def correct(self, tick: int, q: FloatArray, dq: FloatArray, desired: FloatArray) -> FloatArray:

@@ -53,7 +53,7 @@ class JointTorques:
         """Keep what acted from tick k to the next one."""
         if not self._readers:
             return
-        acted = self._recorder.command_timing.at(self._recorder.commands, k) - friction_of(self._closed.plant)
+        acted = self._recorder.timing.at(self._recorder.commands, k) - friction_of(self._closed.plant)
         for reader in self._readers:
             reader.sum, reader.count = reader.sum + acted, reader.count + 1
 

@@ -29,7 +29,7 @@ def simulate(
     wrist: WristSensor | None = None,
     torques: TorqueSensors | None = None,
     tips: Mapping[str, MeasuredTip] | None = None,
-    command_timing: CommandTiming | None = None,
+    timing: CommandTiming | None = None,
 ) -> Trace:
     """Run the control loops once.
 
@@ -44,15 +44,13 @@ def simulate(
         encoders: The joint measurement of each loop, with a draw for each of its ticks.
         wrist: The force/torque sensor, with a draw for each tick; needed where there is something to feel.
         torques: The torque sensors in the joints, likewise; needed where a control law reads them.
-        command_timing: Which commands act in each tick; else all act as late as the closed loop says.
+        timing: Which commands act in each tick; else all act as late as the closed loop says.
         tips: What loops know of the tip beside their encoders, by loop; needed where one reads a sensor of the tip.
 
     Returns:
         The trace; one that ends early carries a failure.
     """
-    recorder = Recorder(
-        closed, command_timing or constant_delay(closed.robot.model.nq, closed.delay or 0, closed.ticks + 1)
-    )
+    recorder = Recorder(closed, timing or constant_delay(closed.robot.model.nq, closed.delay or 0, closed.ticks + 1))
     contact = None
     try:
         recorder.desired[:] = closed.trajectory.sample(recorder.times)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.trace import Failure, Trace
-from runner.plants import TellsEndPoints, innermost
+from runner.plants import TellsEndPoints, unwrapped
 from runner.robots.robot import end_points
 from runner.simulation.acting import CommandTiming
 from runner.simulation.closed_loop import ClosedLoop
@@ -24,7 +24,7 @@ class Recorder:
 
     Args:
         closed: The closed loop whose run is recorded.
-        command_timing: Which commands act in each tick.
+        timing: Which commands act in each tick.
 
     Attributes:
         times: Time of each row, shape (T,), in s.
@@ -33,7 +33,7 @@ class Recorder:
             the tip alone.
         command: What the loops ask for now, shape (nq,): torques in N m, or joint positions in rad.
         commands: What they asked for in each tick, shape (T, nq).
-        command_timing: As above.
+        timing: As above.
         torques: Torques of a plant that follows positions, shape (T, nq), in N m.
         clock: When each tick began, shape (T,), in ns.
         asked: How long the control loops took in each tick, likewise; None where nobody tells.
@@ -43,14 +43,9 @@ class Recorder:
         end_points: End point of each stage, shape (stages, T, 3), in m; None until they are worked out.
     """
 
-    def __init__(self, closed: ClosedLoop, command_timing: CommandTiming) -> None:
+    def __init__(self, closed: ClosedLoop, timing: CommandTiming) -> None:
         rows, nq = closed.ticks + 1, closed.robot.model.nq
-        self._closed, self._plant, self.command_timing, self.now = (
-            closed,
-            closed.plant,
-            command_timing,
-            time.perf_counter_ns,
-        )
+        self._closed, self._plant, self.timing, self.now = closed, closed.plant, timing, time.perf_counter_ns
         self.times: FloatArray = np.arange(rows, dtype=np.float64) * closed.tick
         self.desired: FloatArray = np.zeros((rows, 3, 3))
         self.joints: FloatArray | None = None
@@ -58,7 +53,7 @@ class Recorder:
         self.q, self.dq, self.commands, self.torques = (np.zeros((rows, nq)) for _ in range(4))
         self.q[0] = closed.q_start
         self.end_points: FloatArray | None = None
-        moved = innermost(closed.plant)
+        moved = unwrapped(closed.plant)
         self._bends = moved if isinstance(moved, TellsEndPoints) else None
         if self._bends is not None:
             self.end_points = np.zeros((len(closed.robot.stages), rows, 3))
@@ -120,7 +115,7 @@ class Recorder:
         """Return the record, with what the tip felt."""
         closed, kept = self._closed, self._kept
         positions = closed.commands == "position"
-        acted = self.command_timing.throughout(self.commands)
+        acted = self.timing.throughout(self.commands)
         home = end_points(closed.robot, closed.robot.home[None], closed.parallel)[:, 0]
         return Trace(
             t=self.times[kept],

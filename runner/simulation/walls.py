@@ -8,7 +8,7 @@ from runner.controllers.force.admittance_stability import check_wall
 from runner.controllers.kinds import ChecksStability
 from runner.environments import Environment
 from runner.environments.wall import Wall
-from runner.plants import PLANTS, ContactPlant, Plant, innermost
+from runner.plants import PLANTS, ContactPlant, Plant, unwrapped
 
 
 def touches_by_tip(config: RunConfig) -> bool:
@@ -46,7 +46,7 @@ def add_wall(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
         late = math.ceil(config.timing.late[0] * config.timing.tick / config.controller.period - 1e-9)
         controller, values = config.controller, wall.config
         check_wall(controller.law, controller.period, values.stiffness, values.damping, late)
-    within = innermost(plant)
+    within = unwrapped(plant)
     if not isinstance(within, ContactPlant):
         return wall
     if wall.config.friction:

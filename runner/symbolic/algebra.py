@@ -67,7 +67,9 @@ class ArmAlgebra:
         while carrier is not None:
             body = constants.bodies[carrier]
             axis = [row[2] for row in rotations[carrier]]
-            columns[carrier] = [*axis, *_ZERO] if body.slides else [*cross(axis, subtract(x, origins[carrier])), *axis]
+            columns[carrier] = (
+                [*axis, *_ZERO] if body.prismatic else [*cross(axis, subtract(x, origins[carrier])), *axis]
+            )
             carrier = body.parent
         moved = self._motions(placements, dq, [0.0] * len(q), _ZERO)[last]
         lever = constants.tip_position
@@ -98,7 +100,7 @@ class ArmAlgebra:
         torques: list[Scalar] = [0.0] * len(bodies)
         for index in reversed(range(len(bodies))):
             body, (R, p) = bodies[index], placements[index]
-            torque = forces[index][2] if body.slides else moments[index][2]
+            torque = forces[index][2] if body.prismatic else moments[index][2]
             torques[index] = plus(torque, times(body.armature, ddq[index]))
             if body.parent is not None:
                 force = product(R, forces[index])
@@ -119,7 +121,7 @@ class ArmAlgebra:
             w, v, g = (_ZERO, _ZERO, gravity) if body.parent is None else speeds[body.parent]
             back, own = transpose(R), [0.0, 0.0, speed]
             w, v, g = product(back, w), product(back, add(v, cross(w, p))), product(back, g)
-            w, v = (w, add(v, own)) if body.slides else (add(w, own), v)
+            w, v = (w, add(v, own)) if body.prismatic else (add(w, own), v)
             speeds.append((w, v, g))
             linear = add(scale(body.mass, v), cross(w, body.moment))
             angular = add(cross(body.moment, v), product(body.inertia, w))
@@ -129,10 +131,10 @@ class ArmAlgebra:
         for index in reversed(range(len(bodies))):
             body, (R, at), (w, v, _) = bodies[index], placements[index], speeds[index]
             linear, angular, weight, moment = sums[index]
-            p_joint[index] = plus(linear[2] if body.slides else angular[2], times(body.armature, dq[index]))
-            turned_way = dot(linear if body.slides else angular, cross(w, _Z))
-            turned_way = turned_way if body.slides else plus(turned_way, dot(linear, cross(v, _Z)))
-            rates[index] = plus(turned_way, weight[2] if body.slides else moment[2])
+            p_joint[index] = plus(linear[2] if body.prismatic else angular[2], times(body.armature, dq[index]))
+            turned_way = dot(linear if body.prismatic else angular, cross(w, _Z))
+            turned_way = turned_way if body.prismatic else plus(turned_way, dot(linear, cross(v, _Z)))
+            rates[index] = plus(turned_way, weight[2] if body.prismatic else moment[2])
             if body.parent is not None:
                 for force, about in ((0, 1), (2, 3)):
                     pushed = product(R, sums[index][force])
@@ -166,16 +168,16 @@ class ArmAlgebra:
         M: list[list[Scalar]] = [[0.0] * len(bodies) for _ in bodies]
         for index, body in enumerate(bodies):
             # Force and moment, about the body's origin, that accelerate all it carries by one unit of its joint.
-            force = scale(masses[index], _Z) if body.slides else cross(_Z, moments[index])
-            moment = cross(moments[index], _Z) if body.slides else [row[2] for row in inertias[index]]
+            force = scale(masses[index], _Z) if body.prismatic else cross(_Z, moments[index])
+            moment = cross(moments[index], _Z) if body.prismatic else [row[2] for row in inertias[index]]
             at, carrier = index, body.parent
-            M[index][index] = plus(force[2] if body.slides else moment[2], body.armature)
+            M[index][index] = plus(force[2] if body.prismatic else moment[2], body.armature)
             while carrier is not None:
                 R, p = placements[at]
                 force = product(R, force)
                 moment = add(product(R, moment), cross(p, force))
                 at, carrier = carrier, bodies[carrier].parent
-                M[index][at] = M[at][index] = force[2] if bodies[at].slides else moment[2]
+                M[index][at] = M[at][index] = force[2] if bodies[at].prismatic else moment[2]
         return M
 
     def _placements(self, q: Vector) -> list[tuple[Matrix, Vector]]:
@@ -187,7 +189,7 @@ class ArmAlgebra:
 
     def _placement(self, body: Body, position: Scalar) -> tuple[Matrix, Vector]:
         R, p = body.rotation, body.position
-        if body.slides:
+        if body.prismatic:
             return R, add(p, [times(row[2], position) for row in R])
         s, c = self._sine_cosine(position)
         turning = [
@@ -206,7 +208,7 @@ class ArmAlgebra:
             carried = add(base.acceleration, cross(base.turning, p), cross(base.spin, cross(base.spin, p)))
             spin, turning, a = product(back, base.spin), product(back, base.turning), product(back, carried)
             across = [times(spin[1], speed), scale(-1.0, [times(spin[0], speed)])[0], 0.0]  # spin x z, times the speed
-            if body.slides:
+            if body.prismatic:
                 a = add(a, scale(2.0, across), [0.0, 0.0, change])
             else:
                 spin, turning = add(spin, [0.0, 0.0, speed]), add(turning, across, [0.0, 0.0, change])

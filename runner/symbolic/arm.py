@@ -36,7 +36,7 @@ class Body:
 
     Attributes:
         parent: Index of the body that carries it; None is the base.
-        slides: Whether its joint slides along z, or turns about it.
+        prismatic: True if its joint is prismatic, along z; else it is revolute, about z.
         rotation: Turns its frame at joint position 0 into its parent's, shape (3, 3).
         position: Origin of its frame in its parent's at joint position 0, shape (3,), in m.
         mass: In kg.
@@ -47,7 +47,7 @@ class Body:
     """
 
     parent: int | None
-    slides: bool
+    prismatic: bool
     rotation: Matrix
     position: Vector
     mass: Scalar
@@ -94,7 +94,7 @@ def constants_of(
         tuple(
             Body(
                 body.parent,
-                body.slides,
+                body.prismatic,
                 [[_scalar(value, number) for value in row] for row in body.rotation],
                 [_scalar(value, number) for value in body.position],
                 _scalar(body.mass, number),
@@ -129,7 +129,7 @@ def _raw_bodies(model: RobotModel) -> tuple[Body, ...]:
         bodies.append(
             Body(
                 parent if parent >= 0 else None,
-                bool(model.slides[index]),
+                bool(model.prismatic[index]),
                 _rounded(at_parent @ placement.rotation @ turn),
                 _rounded(at_parent @ placement.translation),
                 _rounded(inertia.mass),

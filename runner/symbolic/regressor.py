@@ -61,7 +61,7 @@ def regressor(
         # How the origin moves when a joint that carries the body does, at one unit: angular and linear velocity.
         back, carried = transpose(R), {} if body.parent is None else driven[body.parent]
         own = {i: (product(back, w), product(back, add(v, cross(w, p)))) for i, (w, v) in carried.items()}
-        own[index] = (_ZERO, _Z) if body.slides else (_Z, _ZERO)
+        own[index] = (_ZERO, _Z) if body.prismatic else (_Z, _ZERO)
         driven.append(own)
         first, other = (Moved(*(product(body.turn, way) for way in moved)) for moved in (motions[index], others[index]))
         for joint, (w, v) in own.items():

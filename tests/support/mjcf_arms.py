@@ -53,7 +53,7 @@ def disagreement(path, tip, samples=20, seed=0):
     assert [theirs.joint(index).name for index in range(theirs.njnt)] == list(ours.joint_names)
     data, generator, worst = mujoco.MjData(theirs), np.random.default_rng(seed), 0.0
     for _ in range(samples):
-        data.qpos[:] = generator.uniform(-1.0, 1.0, theirs.nq) * np.where(ours.slides, 0.3, 2.5)
+        data.qpos[:] = generator.uniform(-1.0, 1.0, theirs.nq) * np.where(ours.prismatic, 0.3, 2.5)
         data.qvel[:] = generator.uniform(-2.0, 2.0, theirs.nv)
         M, theirs_bias = np.zeros((theirs.nv, theirs.nv)), np.zeros(theirs.nv)
         for step in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_makeM, mujoco.mj_comVel):

@@ -127,7 +127,7 @@ def find_links(config: RunConfig, groups: Sequence[str]) -> Iterator[Parameter]:
     model = config.arm.model
     for joint, name in enumerate(model.joint_names, start=1):
         mass, length = float(model.pin_model.inertias[joint].mass), _length(model, joint)
-        armature, unit = float(model.armature[joint - 1]), "kg" if model.slides[joint - 1] else "kg m^2"
+        armature, unit = float(model.armature[joint - 1]), "kg" if model.prismatic[joint - 1] else "kg m^2"
         found = (
             Parameter(f"mass.{name}", "masses", mass, "kg", partial(_with_scaled, config, 0, joint, mass)),
             Parameter(f"armature.{name}", "armature", armature, unit, partial(_with_armature, config, joint)),

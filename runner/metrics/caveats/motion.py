@@ -18,7 +18,7 @@ def _unfollowed(signals: Signals, setting: Setting) -> FloatArray:
     The size is the largest distance of the desired position from the tip's start. Of a motion to a goal, whose error
     begins at that size, the last tenth counts. An arm that is to stay, or to give way, has nothing to follow.
     """
-    if setting.yields:
+    if setting.complies:
         return np.zeros((*signals.q.shape[:-2], 1))
     desired, tip, start = signals.desired, signals.tip, signals.tip[..., :1, :]
     if not setting.tracked:

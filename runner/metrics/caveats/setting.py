@@ -37,7 +37,7 @@ class Setting:
         torques: Whether controllers command torques, not joint positions.
         ticks_per_torque: Ticks for which a joint's torque is held, shape (nq,).
         tracked: Whether the tip is to follow a path, not to go to a goal in its own way.
-        yields: Whether the arm is to give way to what its tip feels.
+        complies: True if the controller is to comply with the external wrench.
         noise: Noise of the joint measurement.
         mismatch: How what controllers believe of the robot differs from it.
         mass: Mass of all moving links, in kg.
@@ -60,7 +60,7 @@ class Setting:
     torques: bool
     ticks_per_torque: NDArray[np.intp]
     tracked: bool
-    yields: bool
+    complies: bool
     noise: "EncoderNoise"
     mismatch: "MismatchConfig"
     mass: float
@@ -103,7 +103,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         torques=config.commands == "torque",
         ticks_per_torque=ticks,
         tracked=config.path.tracked,
-        yields=config.environment.kind != "free" and any(loop.uses_wrench for loop in config.loops),
+        complies=config.environment.kind != "free" and any(loop.uses_wrench for loop in config.loops),
         noise=config.noise,
         mismatch=config.mismatch,
         mass=mass,

@@ -17,7 +17,7 @@ class WatchedPlant:
 
     Args:
         plant: What is watched; see Plant and PositionPlant.
-        moved: What in it moves the arm; see innermost.
+        moved: What in it moves the arm; see unwrapped.
     """
 
     def __init__(self, plant: Any, moved: Any) -> None:
@@ -106,9 +106,9 @@ class WatchedContactToolPlant(WatchedContactPlant, WatchedToolPlant):
 
 def watch_plant(plant: Any, *_: object) -> WatchedPlant:
     """Return a plant of the user's watched, with all that it offers."""
-    from runner.plants.plant import ContactPlant, ToolReactionPlant, innermost
+    from runner.plants.plant import ContactPlant, ToolReactionPlant, unwrapped
 
-    moved = innermost(plant)
+    moved = unwrapped(plant)
     makes_contact, has_reaction = isinstance(moved, ContactPlant), isinstance(moved, ToolReactionPlant)
     if makes_contact:
         return (WatchedContactToolPlant if has_reaction else WatchedContactPlant)(plant, moved)

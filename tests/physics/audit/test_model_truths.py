@@ -86,7 +86,7 @@ def test_joints_that_slide_and_axes_that_lean(tmp_path):
                  "</inertial></link>")
     )  # fmt: skip
     arm = audited_arm("slide.urdf", "", (), tmp_path)
-    assert arm.model.slides.tolist() == [False, True]
+    assert arm.model.prismatic.tolist() == [False, True]
     values = sample(arm.model, arm.joints, 20, np.random.default_rng(1))
     for name in TRUTHS:
         for element, expected in arm.truth(name).first(values).items():

@@ -44,7 +44,7 @@ def test_an_arm_that_is_to_stay_or_to_give_way_has_nothing_to_follow(path):
     assert found(path, pushed) == {}
     lagging = signals(tip=0.1 * PATH, desired=PATH)
     assert set(found(path, lagging)) == {"did_not_follow"}
-    assert found(path, lagging, yields=True) == {}
+    assert found(path, lagging, complies=True) == {}
 
 
 def test_a_joint_beyond_its_position_limits_is_told(path):

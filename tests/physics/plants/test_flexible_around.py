@@ -5,7 +5,7 @@ import pytest
 from support.physics import assert_order
 
 from runner.plants.flexible_around import SeriesElastic
-from runner.plants.plant import innermost
+from runner.plants.plant import unwrapped
 
 KEY = "plant.flexible_joints"
 ENGINES = ["bullet_flexible", "mujoco_flexible"]
@@ -91,7 +91,7 @@ def test_a_shaper_finds_the_modes(simulated, engine):
 @pytest.mark.bullet
 def test_what_the_engine_holds_is_released(closed_loop):
     closed = closed_loop(*MACRO, "plant=bullet_flexible", "trajectory=goal")
-    assert isinstance(innermost(closed.plant), SeriesElastic)
+    assert isinstance(unwrapped(closed.plant), SeriesElastic)
 
 
 @pytest.mark.bullet

@@ -140,13 +140,13 @@ def test_an_arm_with_friction_converges_to_first_order_in_the_tick(sliding):
 def test_what_stops_the_joints_meets_the_conditions_of_dry_friction(joints, seed):
     draw = np.random.default_rng(seed)
     half = draw.normal(size=(joints, joints))
-    yields = half @ half.T + 1e-3 * np.eye(joints)
+    mobility = half @ half.T + 1e-3 * np.eye(joints)
     speed, limit = draw.normal(size=joints), draw.exponential(0.5, joints) * draw.integers(0, 2, joints)
-    mu, slides = stopping_torques(yields, speed, limit, draw.integers(-1, 2, joints).astype(float))
-    left = speed - yields @ mu
+    mu, direction = stopping_torques(mobility, speed, limit, draw.integers(-1, 2, joints).astype(float))
+    left = speed - mobility @ mu
     assert (np.abs(mu) <= limit).all()
     scale = 1e-7 * np.abs(speed).max()
-    assert np.abs(left[slides == 0.0]).max(initial=0.0) < scale
+    assert np.abs(left[direction == 0.0]).max(initial=0.0) < scale
     slipping = np.abs(left) > scale
     np.testing.assert_allclose(mu[slipping], (limit * np.sign(left))[slipping], atol=1e-12)
 
