@@ -65,7 +65,11 @@ MUTANTS = [
     *_of(
         "metrics/summary.py",
         "metrics/test_summary.py",
-        ("the tip judged in its carrier's place", "evaluate(at_stage, carrier)", "evaluate(traces, carrier)"),
+        (
+            "the tip judged for a stage",
+            "evaluate(at_stage, stage_context)",
+            "evaluate(traces, stage_context)",
+        ),
         ("a carrier's path not shifted", "Shifted(context.trajectory, traces.offsets[index])", "context.trajectory"),
     ),
     *_of(

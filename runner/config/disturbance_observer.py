@@ -43,7 +43,7 @@ def check_observer(config: RunConfig) -> None:
 def _parted(config: RunConfig) -> bool:
     """Tell whether the stages of the plant move each for itself."""
     apart = isinstance(config.plant, TorquePlantConfig) and config.plant.dynamics == "decoupled"
-    return len(config.arm.stages) > 1 and (apart or config.parallel)
+    return len(config.arm.stages) > 1 and (apart or config.ignore_base_rotation)
 
 
 def _late(config: RunConfig) -> str | None:

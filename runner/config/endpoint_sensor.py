@@ -48,7 +48,7 @@ def _refused(config: RunConfig, loop: Loop) -> list[str]:
         problems.append("the trajectory is one of joints, which ask for no tip; take one of the tip, or []")
     elif loop.uses_wrench:
         problems.append(f"{config.controller.kind} finds the wall by the encoders; take a law that feels no force")
-    if config.parallel:
+    if config.ignore_base_rotation:
         problems.append(
             "bases that keep the orientation of home turn otherwise than the encoders tell; take "
             "plant.wrist_rotation=real"

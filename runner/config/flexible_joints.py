@@ -28,16 +28,16 @@ def find_flexibility(config: RunConfig) -> Flexibility | None:
     return None if joints is None else joints.by_joint(config.arm)
 
 
-def believe_motors(config: RunConfig, believed: Robot) -> Robot:
-    """Return a robot as its controllers believe it to be, who know the motors of flexible joints."""
+def with_nominal_motors(config: RunConfig, nominal: Robot) -> Robot:
+    """Return a nominal robot with the motors of the flexible joints."""
     flexibility = find_flexibility(config)
     if flexibility is None:
-        return believed
-    own = believed.model.armature
-    return with_armature(believed, np.where(flexibility.flexible, flexibility.motors, own))
+        return nominal
+    own = nominal.model.armature
+    return with_armature(nominal, np.where(flexibility.flexible, flexibility.motors, own))
 
 
-def find_motor_side(config: RunConfig, plant: Plant, believed: Robot) -> MotorSide | None:
+def find_motor_side(config: RunConfig, plant: Plant, nominal: Robot) -> MotorSide | None:
     """Return what drives and encoders know of the motors of a plant; None where joints are rigid."""
     springs = unwrapped(plant)
     joints = config.plant.flexible_joints if isinstance(config.plant, HasFlexibleJoints) else None
@@ -45,7 +45,7 @@ def find_motor_side(config: RunConfig, plant: Plant, believed: Robot) -> MotorSi
         return None
     known = joints is not None and joints.static_deflection == "known"
     at_motors = joints is not None and joints.encoders == "motor"
-    return MotorSide(springs, at_motors, believed.model if known else None)
+    return MotorSide(springs, at_motors, nominal.model if known else None)
 
 
 def check_flexible_joints(config: RunConfig) -> None:

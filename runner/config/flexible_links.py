@@ -18,11 +18,11 @@ def is_flexible(config: RunConfig) -> bool:
     return isinstance(config.plant, Rk4FlexibleLinksConfig) or find_flexibility(config) is not None
 
 
-def believe_links(config: RunConfig, believed: Robot) -> Robot:
-    """Return a robot as its controllers believe it to be: rigid, with the masses of links and motors that bend."""
+def with_nominal_links(config: RunConfig, nominal: Robot) -> Robot:
+    """Return a rigid nominal robot with the masses of flexible links and motors."""
     if not isinstance(config.plant, Rk4FlexibleLinksConfig):
-        return believed
-    return with_armature(stiffened(believed, config.plant.beams(config.arm)), config.plant.motors(config.arm))
+        return nominal
+    return with_armature(stiffened(nominal, config.plant.beams(config.arm)), config.plant.motors(config.arm))
 
 
 def check_flexible_links(config: RunConfig) -> None:

@@ -16,7 +16,7 @@ _NUMBER = 8  # bytes
 _OF_EACH_TICK, _OF_EACH_JOINT, _OF_CONTACT = 24, 13, 75
 # Metrics of an arm, of each of its joints, and of each stage that carries another; and bytes of each in a repetition:
 # as it is gathered, and as it is stored.
-_METRICS, _METRICS_OF_JOINT, _METRICS_OF_CARRIER = 22, 4, 9
+_METRICS, _METRICS_OF_JOINT, _METRICS_OF_STAGE = 22, 4, 9
 _OF_EACH_METRIC = 12
 TICKS_AT_ONCE = 1_000_000
 """Ticks of the repetitions of a run that are in memory at the same time; more where one alone has more."""
@@ -50,7 +50,7 @@ def memory_of_run(arm: Robot, ticks: int, repetitions: int, has_contact: bool) -
 
 def _of_repetition(arm: Robot) -> float:
     """Return the memory that the metrics of a repetition take, in bytes."""
-    metrics = _METRICS + _METRICS_OF_JOINT * arm.model.nq + _METRICS_OF_CARRIER * (len(arm.stages) - 1)
+    metrics = _METRICS + _METRICS_OF_JOINT * arm.model.nq + _METRICS_OF_STAGE * (len(arm.stages) - 1)
     return float(_OF_EACH_METRIC * metrics)
 
 

@@ -47,7 +47,7 @@ class RunConfig:
         disturbance_observer: Config of the observer that control laws carry.
         notch: Config of the notch in the torques; None where there is none.
         timing: The times of a run.
-        parallel: Whether riding stages keep the orientation of home, in the plant's truth.
+        ignore_base_rotation: Whether riding stages keep the orientation of home, in the plant's truth.
         sweep: How a sweep that the run is part of is run.
         limits: What a command may cost.
         caveats: When a run tells that its result may mislead.
@@ -75,7 +75,7 @@ class RunConfig:
     disturbance_observer: DisturbanceObserverConfig
     notch: NotchConfig | None
     timing: Timing
-    parallel: bool
+    ignore_base_rotation: bool
     sweep: SweepConfig
     limits: LimitsConfig
     caveats: CaveatsConfig

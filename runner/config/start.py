@@ -9,7 +9,9 @@ from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.robot import Robot, end_points
 
 
-def start_posture(controller: ControllerConfig, arm: Robot, start: FloatArray, parallel: bool) -> FloatArray:
+def start_posture(
+    controller: ControllerConfig, arm: Robot, start: FloatArray, ignore_base_rotation: bool
+) -> FloatArray:
     """Return joint positions that bring the tip to a start, as the controller wants it.
 
     Where it has no wish, the first stage moves and riding ones stay at home.
@@ -20,10 +22,10 @@ def start_posture(controller: ControllerConfig, arm: Robot, start: FloatArray, p
         raise ConfigError([f"trajectory.start: {error}"]) from error
     if wanted is not None:
         return np.array(wanted, dtype=np.float64)
-    home = end_points(arm, arm.home[None], parallel)[:, 0]
+    home = end_points(arm, arm.home[None], ignore_base_rotation)[:, 0]
     if np.array_equal(start, home[-1]):
         return arm.home
-    if len(arm.stages) == 1 or not parallel:
+    if len(arm.stages) == 1 or not ignore_base_rotation:
         return solve_tip_position(arm.model, start, arm.home)
     first = arm.stages[0]
     return np.concatenate(

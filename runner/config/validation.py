@@ -71,8 +71,8 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     build_loops = problems.recall if CONTROLLERS.is_ours(sure(groups.controller).kind) else problems.attempt
     build_path = problems.recall if TRAJECTORIES.is_ours(sure(groups.trajectory).kind) else problems.attempt
     loaded = problems.recall(build_loaded, *made_of)
-    parallel = problems.recall(_is_parallel, arm, groups.plant)
-    path = build_path(_build_path, arm, groups.trajectory, parallel)
+    ignore_base_rotation = problems.recall(_ignores_base_rotation, arm, groups.plant)
+    path = build_path(_build_path, arm, groups.trajectory, ignore_base_rotation)
     loops = build_loops(CONTROLLERS.build_for, groups.controller, arm, isinstance(path, TipOfJoints))
     path = problems.attempt(_shape, groups, arm, path, loops)
     build_path(check_path, arm, path)
@@ -97,7 +97,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         mismatch=sure(groups.mismatch), endpoint_sensor=sure(groups.endpoint_sensor),
         disturbance_observer=sure(groups.disturbance_observer), notch=groups.notch,
         timing=Timing(*sure(steps), sure(late), computation_of(sure(groups.plant)).is_even, sure(ticks)),
-        parallel=sure(parallel),
+        ignore_base_rotation=sure(ignore_base_rotation),
         sweep=sure(groups.sweep), limits=sure(groups.limits),
         caveats=sure(groups.caveats), spec=sure(groups.spec),
         plugged=groups.plugged, resolved=resolved,
@@ -112,7 +112,7 @@ def _shape(groups: Groups, arm: Robot, path: Trajectory, loops: tuple[Loop, ...]
     q = (
         path.q_start
         if isinstance(path, TipOfJoints)
-        else start_posture(controller, arm, path.start, _is_parallel(arm, plant))
+        else start_posture(controller, arm, path.start, _ignores_base_rotation(arm, plant))
     )
     return shape(groups.input_shaper, plant, arm, path, q, loops)
 
@@ -162,16 +162,16 @@ def _check_mass(arm: Robot, plant: PlantConfig) -> None:
         raise ConfigError([f"{told}, or take plant=kinematic controller=differential_inverse_kinematics"])
 
 
-def _is_parallel(arm: Robot, plant: PlantConfig) -> bool:
+def _ignores_base_rotation(arm: Robot, plant: PlantConfig) -> bool:
     turns = plant.wrist_rotation if isinstance(plant, RotatesMountedBase) else "real"
     return len(arm.stages) > 1 and turns == "parallel"
 
 
-def _build_path(arm: Robot, trajectory: KindConfig, parallel: bool) -> Trajectory:
+def _build_path(arm: Robot, trajectory: KindConfig, ignore_base_rotation: bool) -> Trajectory:
     """Return the desired motion, which starts at the tip of home where the config does not say."""
     joints = TRAJECTORIES.joint_motion(trajectory, arm)
     if joints is not None:
-        return TipOfJoints(arm, joints, parallel)
+        return TipOfJoints(arm, joints, ignore_base_rotation)
     start = trajectory.start if isinstance(trajectory, HasStart) else None
-    place = end_points(arm, arm.home[None], parallel)[-1, 0] if start is None else np.array(start)
+    place = end_points(arm, arm.home[None], ignore_base_rotation)[-1, 0] if start is None else np.array(start)
     return TRAJECTORIES.build(trajectory, place)

@@ -58,7 +58,7 @@ class ObserverNumbers(NamedTuple):
         gain: 1 - exp(-L h), of each tick.
         period: Time between two ticks, h, in s.
         limits: Torque limits of the joints that its law commands, shape (n,), in N m; infinite where there is none.
-        gravity: In the base frame, shape (3,), in m/s^2, as it is believed.
+        gravity: Nominal gravity in the base frame, shape (3,), in m/s^2.
     """
 
     gain: Scalar
@@ -86,7 +86,7 @@ class MomentumObserver:
     are. So r does not wind up while a torque is at its limit.
 
     Args:
-        robot: The robot as it is believed.
+        robot: The nominal robot.
         joints: The joints that the law commands.
         bandwidth: L, in rad/s.
         period: Time between two ticks of the law, in s.
@@ -127,7 +127,7 @@ class MomentumObserver:
         """Return a law's torques less what else acts, shape (n,), in N m, and what the observer keeps.
 
         Args:
-            arm: The whole robot, as it is believed.
+            arm: The whole nominal robot.
             numbers: The observer's numbers.
             time: Time since the start, in s.
             q: Measured joint positions, shape (nq,), in rad.
@@ -272,7 +272,7 @@ def observed(
 
     Args:
         config: The config.
-        robot: The robot as it is believed.
+        robot: The nominal robot.
         loops: Loops that command torques.
         limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         ticks: Tick and delay of the run.

@@ -85,7 +85,7 @@ class PinocchioArm:
 
     Args:
         model: The arm.
-        gravity_compensation: Whether gravity acts on it.
+        gravity_compensation: True if gravity acts on it.
     """
 
     backend = NUMPY
@@ -181,7 +181,7 @@ class TorqueLaw(ABC, Generic[N]):
     Args:
         models: The arms that the law reckons with; only their URDF-derived constants are read. The first one's joints
             are commanded.
-        gravity_compensation: Whether the arms that the law believes in have weight.
+        gravity_compensation: True if the law's nominal arms have weight.
         numbers: The law's numbers: floats, arrays, or tuples of them.
         measured: How many joints are measured; None where they are the first arm's.
 

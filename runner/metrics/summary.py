@@ -107,10 +107,10 @@ def _measure_block(traces: Traces, context: MetricContext) -> dict[str, FloatArr
     for family in _FAMILIES:
         values |= family.evaluate(traces, context)
     for index, stage in enumerate(traces.stage_names[:-1]):
-        carrier = replace(context, trajectory=Shifted(context.trajectory, traces.offsets[index]))
+        stage_context = replace(context, trajectory=Shifted(context.trajectory, traces.offsets[index]))
         at_stage = traces.at_stage(index)
         for family in (positioning, tracking):
-            of_stage = family.evaluate(at_stage, carrier)
+            of_stage = family.evaluate(at_stage, stage_context)
             values |= {f"{stage}_{name}": value for name, value in of_stage.items()}
     return values
 

@@ -69,8 +69,8 @@ def motion_scalars(motion: "Motion", step: float, tick: float, number: Callable[
     arms = []
     for index, arm in enumerate(motion.arms):
         own, base = gravity, None
-        if index and motion.parallel:
-            fixed = StageBase(robot, index, parallel=True).rotation.T.dot(robot.model.gravity)
+        if index and motion.ignore_base_rotation:
+            fixed = StageBase(robot, index, ignore_base_rotation=True).rotation.T.dot(robot.model.gravity)
             own = [number(value) for value in fixed.tolist()]
         elif index:
             base = constants_of(robot.model, number, [0.0] * 3, str(robot.stages[index].base_frame))

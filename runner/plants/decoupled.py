@@ -65,7 +65,7 @@ def assemble_plant(
             plant = make(arm.urdf, arm.model)
             on_error.callback(plant.close)
             plants.append(with_friction(plant, arm.model, arm.viscous, arm.coulomb, tick))
-        whole = plants[0] if len(plants) == 1 else Decoupled(robot, plants, motion.parallel)
+        whole = plants[0] if len(plants) == 1 else Decoupled(robot, plants, motion.ignore_base_rotation)
         on_error.pop_all()
     return whole
 
@@ -79,15 +79,15 @@ class Decoupled:
     Args:
         robot: The robot.
         plants: The plant of each stage.
-        parallel: Whether riders' bases keep their orientation of home.
+        ignore_base_rotation: Whether riders' bases keep their orientation of home.
     """
 
-    def __init__(self, robot: Robot, plants: Sequence[Plant], parallel: bool) -> None:
+    def __init__(self, robot: Robot, plants: Sequence[Plant], ignore_base_rotation: bool) -> None:
         self.q = np.zeros(robot.model.nq)
         self.dq = np.zeros(robot.model.nq)
         self._plants = plants
         self._joints = [stage.joints for stage in robot.stages]
-        self._bases = [StageBase(robot, index, parallel) for index in range(1, len(robot.stages))]
+        self._bases = [StageBase(robot, index, ignore_base_rotation) for index in range(1, len(robot.stages))]
         self._gravity = robot.model.gravity
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:

@@ -41,12 +41,12 @@ class Motion:
     Attributes:
         robot: The robot.
         arms: One for the whole robot; or one for each of its stages, which ride on each other without feeling it.
-        parallel: Whether riders' bases keep their orientation of home.
+        ignore_base_rotation: Whether riders' bases keep their orientation of home.
     """
 
     robot: Robot
     arms: tuple[ArmMotion, ...]
-    parallel: bool
+    ignore_base_rotation: bool
 
 
 def find_motion(robot: Robot, config: "TorquePlantConfig") -> Motion:
@@ -62,9 +62,9 @@ def find_motion(robot: Robot, config: "TorquePlantConfig") -> Motion:
             another length than the robot has joints.
     """
     viscous, coulomb = friction_by_joint(robot, config.friction)
-    parallel = config.wrist_rotation == "parallel"
+    ignore_base_rotation = config.wrist_rotation == "parallel"
     if len(robot.stages) == 1 or config.dynamics == "coupled":
-        if parallel and len(robot.stages) > 1:
+        if ignore_base_rotation and len(robot.stages) > 1:
             raise ConfigError(
                 [
                     "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
@@ -77,7 +77,7 @@ def find_motion(robot: Robot, config: "TorquePlantConfig") -> Motion:
             ArmMotion(stage.urdf, stage.model, stage.joints, viscous[stage.joints], coulomb[stage.joints])
             for stage in robot.stages
         ]
-    return Motion(robot, tuple(arms), parallel)
+    return Motion(robot, tuple(arms), ignore_base_rotation)
 
 
 def friction_by_joint(robot: Robot, friction: FrictionConfig) -> tuple[FloatArray, FloatArray]:

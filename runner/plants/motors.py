@@ -24,7 +24,7 @@ class MotorSide:
     Args:
         plant: The plant with the springs.
         at_motors: Whether the encoders that laws read turn with the motors, else with the links.
-        weight: The arm as it is believed, whose weight bends the joints; None for readings without correction.
+        weight: The nominal arm, whose weight bends the joints; None for readings without correction.
     """
 
     def __init__(self, plant: FlexibleJoints, at_motors: bool, weight: RobotModel | None) -> None:

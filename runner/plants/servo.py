@@ -47,7 +47,7 @@ class ServoLaw:
     second equation -G without.
 
     Args:
-        model: The arm as the servo believes it to be, for M, V and G.
+        model: The servo's nominal arm, for M, V and G.
         config: The servo's numbers.
         home: Posture at which the damping is set, shape (nq,), in rad.
 
@@ -99,7 +99,7 @@ class JointServo:
 
     Args:
         plant: The plant; one `advance` of it takes a servo period.
-        model: The arm as the servo believes it to be, for M, V and G.
+        model: The servo's nominal arm, for M, V and G.
         config: The servo's numbers.
         home: Posture at which the damping is set, shape (nq,), in rad.
         limits: Torque limits, shape (nq,), in N m; infinite where there is none.

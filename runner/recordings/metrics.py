@@ -37,7 +37,7 @@ def both_metrics(
     q, tau = (_all(recorded, [Signal(kind, joint) for joint in joints]) for kind in ("position", "torque"))
     tip = _all(recorded, [Signal("tip", axis) for axis in AXES])
     config = setting.config
-    points = run.end_points.copy() if q is None else end_points(config.arm, q, config.parallel)
+    points = run.end_points.copy() if q is None else end_points(config.arm, q, config.ignore_base_rotation)
     if tip is not None:
         points[-1] = tip
     known = {

@@ -68,9 +68,9 @@ def _stored_trace(run: Run, config: RunConfig) -> Trace:
         return np.asarray(frame[[f"{stem}{joint + 1}" for joint in range(model.nq)]].to_numpy())
 
     q, t = joints("q"), np.asarray(frame["t"].to_numpy())
-    points = end_points(config.arm, q, config.parallel)
+    points = end_points(config.arm, q, config.ignore_base_rotation)
     points[-1] = tip("tip")
-    home = end_points(config.arm, config.arm.home[None], config.parallel)[:, 0]
+    home = end_points(config.arm, config.arm.home[None], config.ignore_base_rotation)[:, 0]
     desired = np.stack([tip(stem) for stem in ("desired", "desired_velocity", "desired_acceleration")], axis=1)
     return Trace(
         t=t,

@@ -18,10 +18,10 @@ def macro_mini_targets(
         axis: The axis of the base frame: x, y or z.
     """
     trace = until_time(run, until)
-    carrier, rider = list(run.provenance["stages"])[:2]
+    macro, mini = list(run.provenance["stages"])[:2]
     t = trace["t"].to_numpy()
-    desired, tip, end_point = (trace[f"{stem}_{axis}"].to_numpy() for stem in ("desired", "tip", f"{carrier}_tip"))
-    big, small = carrier.capitalize(), rider.capitalize()
+    desired, tip, end_point = (trace[f"{stem}_{axis}"].to_numpy() for stem in ("desired", "tip", f"{macro}_tip"))
+    big, small = macro.capitalize(), mini.capitalize()
     positions = (
         Series("tip", t, tip, color=0),
         Series(f"{big} end point", t, end_point, color=1),

@@ -40,8 +40,8 @@ def span(arm: RobotModel, joint: int, flange: str) -> FloatArray:
     That is where the next joint stands; of the last link it is the flange.
     """
     model = arm.pin_model
-    riders = [model.jointPlacements[j] for j in range(joint + 1, model.njoints) if model.parents[j] == joint]
-    end: FloatArray = (riders or [model.frames[model.getFrameId(flange)].placement])[0].translation.copy()
+    children = [model.jointPlacements[j] for j in range(joint + 1, model.njoints) if model.parents[j] == joint]
+    end: FloatArray = (children or [model.frames[model.getFrameId(flange)].placement])[0].translation.copy()
     return end
 
 

@@ -1,4 +1,4 @@
-"""A robot as its controllers believe it to be, apart from what it is."""
+"""Nominal model of a robot, which its controllers use, apart from the true one."""
 
 import copy
 from typing import Annotated
@@ -40,10 +40,10 @@ class MismatchConfig(StrictModel):
 NONE = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.0, gravity=1.0, payload=0.0, spread=0.0)
 
 MISMATCHES = Registry[KindConfig, [Robot, np.random.Generator], Robot]("mismatch", {}, watch=watch_belief)
-"""Mismatches of plug-ins in place of ours: `build` gets the robot as it is and a generator, and gives the believed."""
+"""Mismatches of plug-ins: `build` gets the true robot and a generator, and returns the nominal robot."""
 
 
-def believe(
+def nominal_robot(
     robot: Robot,
     mismatch: MismatchConfig,
     payload_position: FloatArray,
@@ -54,7 +54,7 @@ def believe(
 
     Args:
         robot: The robot.
-        mismatch: How the belief differs.
+        mismatch: Difference of the nominal model.
         payload_position: Where the payload is, in the tip's frame, shape (3,), in m.
         generator: Source of the draws.
         plugged: The mismatch of a plug-in in place of ours.

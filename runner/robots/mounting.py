@@ -22,21 +22,21 @@ class Mount:
     rotation: Sequence[float]
 
 
-def mount(carrier: str, rider: str, prefix: str, place: Mount) -> tuple[str, str]:
+def mount(macro: str, mini: str, prefix: str, place: Mount) -> tuple[str, str]:
     """Return the URDF of an arm that carries another, and the name of the rider's root link in it.
 
     The rider's links and joints take the prefix; the carrier's keep their names.
 
     Args:
-        carrier: URDF text of the carrying arm, or of a chain made by this function.
-        rider: URDF text of the arm that is mounted.
+        macro: URDF text of the carrying arm, or of a chain made by this function.
+        mini: URDF text of the arm that is mounted.
         prefix: What the rider's names start with, its stage's name and an underscore.
         place: Where it is mounted.
 
     Raises:
         ConfigError: if the frame does not exist, or a name would stand twice.
     """
-    whole, mounted = ET.fromstring(carrier), ET.fromstring(rider)  # noqa: S314 - resolves no external entities
+    whole, mounted = ET.fromstring(macro), ET.fromstring(mini)  # noqa: S314 - resolves no external entities
     links = _names(whole, "link")
     if place.frame not in links:
         raise ConfigError(

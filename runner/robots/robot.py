@@ -89,11 +89,11 @@ class StageBase:
     Args:
         robot: The robot.
         stage: Index of the riding stage, 1 or more.
-        parallel: Whether the base is taken to keep its orientation of home (the thesis' R = I), whatever the joints
+        ignore_base_rotation: True if the base keeps its orientation of home (the thesis' R = I), whatever the joints
             below do. Only its origin moves then.
     """
 
-    def __init__(self, robot: Robot, stage: int, parallel: bool) -> None:
+    def __init__(self, robot: Robot, stage: int, ignore_base_rotation: bool) -> None:
         self._model = robot.model.pin_model
         self._data = self._model.createData()
         self._frame = self._model.getFrameId(robot.stages[stage].base_frame)
@@ -103,8 +103,8 @@ class StageBase:
         """Origin of the base in the robot's base frame, shape (3,), in m; renewed by `update`."""
         self.rotation: FloatArray = placement.rotation
         """Rotation from the stage's base frame into the robot's, shape (3, 3); renewed by `update`."""
-        self._parallel = parallel
-        if parallel:
+        self._ignore_base_rotation = ignore_base_rotation
+        if ignore_base_rotation:
             pin.framesForwardKinematics(self._model, self._data, robot.home)
             self.rotation = placement.rotation.copy()
 
@@ -116,10 +116,10 @@ class StageBase:
     def velocity(self) -> tuple[FloatArray, FloatArray]:
         """Return linear and angular velocity of the base in the robot's base frame, shapes (3,), in m/s and rad/s."""
         motion = pin.getFrameVelocity(self._model, self._data, self._frame, pin.LOCAL_WORLD_ALIGNED)
-        return motion.linear, np.zeros(3) if self._parallel else motion.angular
+        return motion.linear, np.zeros(3) if self._ignore_base_rotation else motion.angular
 
 
-def end_points(robot: Robot, q: FloatArray, parallel: bool = False) -> FloatArray:
+def end_points(robot: Robot, q: FloatArray, ignore_base_rotation: bool = False) -> FloatArray:
     """Return the end point of every stage for rows of joint positions.
 
     The end point of a stage that carries another is the origin of that one's base; the last one's is the tip.
@@ -127,14 +127,14 @@ def end_points(robot: Robot, q: FloatArray, parallel: bool = False) -> FloatArra
     Args:
         robot: The robot.
         q: Joint positions, shape (T, nq), in rad.
-        parallel: Whether riding stages keep the orientation of home (the thesis' R = I).
+        ignore_base_rotation: Whether riding stages keep the orientation of home (the thesis' R = I).
 
     Returns:
         Positions in the robot's base frame, shape (stages, T, 3), in m.
     """
     if len(robot.stages) == 1:
         return robot.model.tip_positions(q)[None]
-    if parallel:
+    if ignore_base_rotation:
         return _parallel_end_points(robot, q)
     frames = [stage.base_frame for stage in robot.stages[1:]]
     positions = [_frame_positions(robot.model, q, str(frame)) for frame in frames]
@@ -144,7 +144,7 @@ def end_points(robot: Robot, q: FloatArray, parallel: bool = False) -> FloatArra
 def _parallel_end_points(robot: Robot, q: FloatArray) -> FloatArray:
     points: list[FloatArray] = [_frame_positions(robot.model, q, str(robot.stages[1].base_frame))]
     for index, stage in enumerate(robot.stages[1:], start=1):
-        rotation = StageBase(robot, index, parallel=True).rotation
+        rotation = StageBase(robot, index, ignore_base_rotation=True).rotation
         points.append(points[-1] + stage.model.tip_positions(q[:, stage.joints]) @ rotation.T)
     return np.array(points)
 

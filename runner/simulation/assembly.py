@@ -7,8 +7,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.config.feasibility import check_path
-from runner.config.flexible_joints import believe_motors, find_motor_side
-from runner.config.flexible_links import believe_links, is_flexible
+from runner.config.flexible_joints import find_motor_side, with_nominal_motors
+from runner.config.flexible_links import is_flexible, with_nominal_links
 from runner.config.run import RunConfig
 from runner.config.start import start_posture
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
@@ -24,7 +24,7 @@ from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo
 from runner.plants.touched import WithTipContact
-from runner.robots.mismatch import believe
+from runner.robots.mismatch import nominal_robot
 from runner.robots.robot import Robot
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
@@ -32,7 +32,7 @@ from runner.simulation.compiled.compile import compile_commands, compile_program
 from runner.simulation.walls import add_wall, touches_by_tip
 from runner.trajectories.joint_motion import TipOfJoints
 
-_BELIEFS = 2**32 - 1  # in the seeds of what controllers believe; the loops' places count from 0
+_MISMATCH = 2**32 - 1  # in the seeds of nominal models; the loops' places count from 0
 
 
 def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
@@ -43,7 +43,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
 
     Args:
         config: The checked config.
-        repetition: Number of the repetition, of which the beliefs follow.
+        repetition: Number of the repetition, from which the nominal model follows.
 
     Raises:
         ConfigError: where the start of the trajectory cannot be reached, joints that are told where to go cannot
@@ -51,11 +51,11 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
     """
     arm, path, timing = config.arm, config.path, config.timing
     q_start = find_start(config)
-    believed, loops = _believe(config, repetition)
+    nominal, loops = _build_nominal(config, repetition)
     environment = ENVIRONMENTS.build(config.environment)
     with ExitStack() as on_error:
         touched = environment if isinstance(environment, Wall) and touches_by_tip(config) else None
-        plant = _make_plant(config, believed, loops[0].period, touched)
+        plant = _make_plant(config, nominal, loops[0].period, touched)
         on_error.callback(plant.close)
         if isinstance(environment, Wall):
             environment = None if touched else add_wall(environment, config, plant)
@@ -73,10 +73,10 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         commands=config.commands,
         interaction=interaction,
         q_start=q_start,
-        parallel=config.parallel,
+        ignore_base_rotation=config.ignore_base_rotation,
         delay=timing.delay,
-        believed=believed,
-        motor_side=find_motor_side(config, plant, believed),
+        nominal=nominal,
+        motor_side=find_motor_side(config, plant, nominal),
         compiled=compiled,
     )
 
@@ -86,7 +86,7 @@ def assemble_program(config: RunConfig, repetition: int = 0) -> tuple[LoopProgra
 
     Args:
         config: The checked config.
-        repetition: Number of the repetition, of which the beliefs follow.
+        repetition: Number of the repetition, from which the nominal model follows.
 
     Raises:
         ConfigError: see assemble.
@@ -95,7 +95,7 @@ def assemble_program(config: RunConfig, repetition: int = 0) -> tuple[LoopProgra
         return None
     if PLANTS.motion(config.plant, config.arm) is None:
         return None
-    compiled = _compile(config, _believe(config, repetition)[1])
+    compiled = _compile(config, _build_nominal(config, repetition)[1])
     return (compiled, find_start(config)) if isinstance(compiled, LoopProgram) else None
 
 
@@ -104,14 +104,16 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> LoopProgram | None:
 
     Args:
         config: The checked config.
-        repetition: Number of the repetition, of which the beliefs follow.
+        repetition: Number of the repetition, from which the nominal model follows.
     """
     if config.commands != "torque" or config.has_contact or not config.compilable or is_flexible(config):
         return None
     if config.timing.delay is None:
         return None
-    loops = _believe(config, repetition)[1]
-    commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
+    loops = _build_nominal(config, repetition)[1]
+    commands = find_commands(
+        config.arm, config.ignore_base_rotation, loops, config.timing.tick, config.noise, config.torque_limits
+    )
     motion = PLANTS.motion(config.plant, config.arm)
     return None if commands is None or motion is None else describe_program(commands, motion, config.timing)
 
@@ -122,41 +124,41 @@ def find_start(config: RunConfig) -> FloatArray:
     if isinstance(path, TipOfJoints):
         q_start = path.q_start
     else:
-        q_start = start_posture(config.controller, arm, path.start, config.parallel)
+        q_start = start_posture(config.controller, arm, path.start, config.ignore_base_rotation)
     if CONTROLLERS.follows_paths(config.controller.kind):
         end = config.timing.ticks * config.timing.tick
         check_path(config.controller, arm, path, q_start, config.robot.settling_band, end)
     return q_start
 
 
-def _believe(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
-    """Return the robot as its controllers believe it to be, and the loops that they make for it."""
-    generator = np.random.default_rng([config.settings.seed, repetition, _BELIEFS])
+def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
+    """Return the nominal robot of the controllers, and their loops."""
+    generator = np.random.default_rng([config.settings.seed, repetition, _MISMATCH])
     payload = np.array(config.robot.payload.position)
-    believed = believe(config.arm, config.mismatch, payload, generator, config.plugged.get("mismatch"))
-    believed = believe_links(config, believe_motors(config, believed))
+    nominal = nominal_robot(config.arm, config.mismatch, payload, generator, config.plugged.get("mismatch"))
+    nominal = with_nominal_links(config, with_nominal_motors(config, nominal))
     loops = config.loops
-    if believed is not config.arm:
-        loops = CONTROLLERS.build_for(config.controller, believed, isinstance(config.path, TipOfJoints))
+    if nominal is not config.arm:
+        loops = CONTROLLERS.build_for(config.controller, nominal, isinstance(config.path, TipOfJoints))
     loops = CONTROLLERS.tell_limits(config.controller, loops, config.torque_limits)
     if config.notch is not None:
         loops = notched(loops, config.notch.by_joint(config.arm), config.notch.width)
-    return believed, observed(config.disturbance_observer, believed, loops, config.torque_limits, config.timing)
+    return nominal, observed(config.disturbance_observer, nominal, loops, config.torque_limits, config.timing)
 
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> LoopProgram | CompiledCommands | None:
     """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
     if config.commands != "torque" or not config.compilable or is_flexible(config):
         return None
-    commands = find_commands(config.arm, config.parallel, loops, config.timing.tick, config.noise, config.torque_limits)
+    commands = find_commands(
+        config.arm, config.ignore_base_rotation, loops, config.timing.tick, config.noise, config.torque_limits
+    )
     motion = None if config.has_contact or config.loaded else PLANTS.motion(config.plant, config.arm)
     loop_program = None if motion is None else compile_program(commands, motion, config.timing)
     return compile_commands(commands) if loop_program is None else loop_program
 
 
-def _make_plant(
-    config: RunConfig, believed: Robot, period: float, touched: Wall | None = None
-) -> Plant | PositionPlant:
+def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall | None = None) -> Plant | PositionPlant:
     """Return the plant, behind joint servos where it takes torques and loops of a period command joint positions."""
     arm, timing = config.arm, config.timing
     ticks_per_command = round(period / timing.tick)
@@ -168,7 +170,7 @@ def _make_plant(
     with ExitStack() as on_error:
         on_error.callback(plant.close)
         servo, limits = config.plant.servo, config.torque_limits
-        driven = JointServo(plant, believed.model, servo, arm.home, limits, ticks_per_command, timing.late[0])
+        driven = JointServo(plant, nominal.model, servo, arm.home, limits, ticks_per_command, timing.late[0])
         on_error.pop_all()
     return driven
 

@@ -211,7 +211,7 @@ class BatchSimulator:
         t = times[: one.rows]
         acted = np.maximum(np.arange(len(t)) - one.loop_program.delay, 0) if one.loop_program.delay else slice(len(t))
         arm, model = config.arm, config.arm.model
-        home = self.memory.recall(_home_points, arm, config.parallel)
+        home = self.memory.recall(_home_points, arm, config.ignore_base_rotation)
         return Traces(
             t=t,
             q=signals.q[own, : len(t)],
@@ -243,9 +243,9 @@ def _start(runs: Sequence[RunSpec], errors: Sequence[FloatArray]) -> FloatArray:
     return np.array([states[place] for place in range(len(runs))])
 
 
-def _home_points(arm: Robot, parallel: bool) -> FloatArray:
+def _home_points(arm: Robot, ignore_base_rotation: bool) -> FloatArray:
     """Return the end point of each stage at home, shape (stages, 3), in m."""
-    return end_points(arm, arm.home[None], parallel)[:, 0]
+    return end_points(arm, arm.home[None], ignore_base_rotation)[:, 0]
 
 
 def _grouped(places: Sequence[int], key: Callable[[int], Hashable]) -> list[list[int]]:

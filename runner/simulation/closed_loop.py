@@ -28,10 +28,10 @@ class ClosedLoop:
         commands: Whether the loops give joint torques, or joint positions to a plant that follows them.
         interaction: What the tip feels of the world; None where there is nothing to feel.
         q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
-        parallel: Whether riding stages keep the orientation of home, as the plant has it.
+        ignore_base_rotation: Whether riding stages keep the orientation of home, as the plant has it.
         delay: Ticks from a command until it acts; None where they differ, see CommandTiming.
         motor_side: What drives and encoders know of the motors of flexible joints; None where joints are rigid.
-        believed: The robot as its controllers believe it to be.
+        nominal: The nominal robot, which its controllers use.
         compiled: The closed loop as compiled code, or what its loops ask; None where neither is to be had.
     """
 
@@ -45,9 +45,9 @@ class ClosedLoop:
     commands: Commands
     interaction: Interaction | None
     q_start: FloatArray
-    parallel: bool
+    ignore_base_rotation: bool
     delay: int | None
-    believed: Robot
+    nominal: Robot
     motor_side: MotorSide | None = None
     compiled: LoopProgram | CompiledCommands | None = None
 

@@ -22,13 +22,13 @@ class MeasuredTip:
         sensor: The sensor, with a draw for each measurement.
         plant: The plant, for the true tip.
         true: The robot as it is.
-        believed: The robot as the loop believes it to be.
+        nominal: The nominal robot.
     """
 
     def __init__(
-        self, sensor: EndpointSensor, plant: Plant | PositionPlant, true: RobotModel, believed: RobotModel
+        self, sensor: EndpointSensor, plant: Plant | PositionPlant, true: RobotModel, nominal: RobotModel
     ) -> None:
-        self._sensor, self._plant, self._true, self._believed = sensor, plant, true, believed
+        self._sensor, self._plant, self._true, self._nominal = sensor, plant, true, nominal
         moved = unwrapped(plant)
         self._bent = moved if isinstance(moved, TellsEndPoints) else None
 
@@ -44,7 +44,7 @@ class MeasuredTip:
         if self._sensor.due(tick):
             straight, bent = self._plant, self._bent
             true = _moves(self._true, straight.q, straight.dq) if bent is None else bent.tip_motion()
-            self._sensor.measure(tick, true, _moves(self._believed, q, dq))
+            self._sensor.measure(tick, true, _moves(self._nominal, q, dq))
         corrected = desired.copy()
         corrected[:2] -= self._sensor.correction(tick)
         return corrected
@@ -67,7 +67,7 @@ def make_measured_tips(closed: ClosedLoop, config: RunConfig, repetition: int) -
             ),
             closed.plant,
             closed.robot.model,
-            closed.believed.model,
+            closed.nominal.model,
         )
         for place, loop in enumerate(closed.loops)
         if loop.name in ticks

@@ -12,7 +12,7 @@ from runner.sensing import JOINT_TORQUE_SENSORS, JointTorqueSensor, TorqueSensor
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.recorder import Recorder
 
-_SEED = 2**32 - 2  # in the seeds of these sensors; the loops' places count from 0, and beliefs have 2**32 - 1
+_SEED = 2**32 - 2  # in the seeds of these sensors; the loops' places count from 0, and nominal models have 2**32 - 1
 
 
 @dataclass

@@ -116,7 +116,7 @@ class Recorder:
         closed, kept = self._closed, self._kept
         positions = closed.commands == "position"
         acted = self.timing.throughout(self.commands)
-        home = end_points(closed.robot, closed.robot.home[None], closed.parallel)[:, 0]
+        home = end_points(closed.robot, closed.robot.home[None], closed.ignore_base_rotation)[:, 0]
         return Trace(
             t=self.times[kept],
             q=self.q[kept],
@@ -139,4 +139,4 @@ class Recorder:
     def _end_points(self, kept: slice) -> FloatArray:
         if self.end_points is not None:
             return self.end_points[:, kept]
-        return end_points(self._closed.robot, self.q[kept], self._closed.parallel)
+        return end_points(self._closed.robot, self.q[kept], self._closed.ignore_base_rotation)

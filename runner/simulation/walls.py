@@ -17,7 +17,7 @@ def touches_by_tip(config: RunConfig) -> bool:
     Raises:
         ConfigError: where the plant's tip is none that rigid bodies have, or its contacts know no armature.
     """
-    if config.parallel:
+    if config.ignore_base_rotation:
         raise ConfigError(
             [
                 "environment.kind: a wall is touched where rigid bodies bring the tip, and "

@@ -216,8 +216,8 @@ def trace_table(trace: Trace) -> Any:
     for name, unit, values in tip_signals:
         columns += [(f"{name}_{axis}", unit, values[:, index]) for index, axis in enumerate("xyz")]
     for index, stage in enumerate(trace.stage_names[:-1]):
-        carrier = trace.at_stage(index)
-        for name, values in ((f"{stage}_tip", carrier.tip), (f"{stage}_error", carrier.error)):
+        stage_trace = trace.at_stage(index)
+        for name, values in ((f"{stage}_tip", stage_trace.tip), (f"{stage}_error", stage_trace.error)):
             columns += [(f"{name}_{axis}", "m", values[:, number]) for number, axis in enumerate("xyz")]
     schema = pyarrow.schema(
         [pyarrow.field(name, pyarrow.float64(), metadata={"unit": unit}) for name, unit, _ in columns]

@@ -57,7 +57,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
     told: list[str] = []
     try:
         for repetition in range(config.settings.repetitions):
-            if repetition > 0 and (config.mismatch.spread > 0.0 or "mismatch" in config.plugged):  # other beliefs
+            if repetition > 0 and (config.mismatch.spread > 0.0 or "mismatch" in config.plugged):  # another model
                 last, loop = loop, assemble(config, repetition)
                 last.close()
             ran, said = _simulate(loop, config, repetition)

@@ -63,14 +63,12 @@ class ArmAlgebra:
         last = constants.tip_body
         x = add(origins[last], product(rotations[last], constants.tip_position))
         columns: list[Vector] = [[0.0] * 6 for _ in q]
-        carrier: int | None = last
-        while carrier is not None:
-            body = constants.bodies[carrier]
-            axis = [row[2] for row in rotations[carrier]]
-            columns[carrier] = (
-                [*axis, *_ZERO] if body.prismatic else [*cross(axis, subtract(x, origins[carrier])), *axis]
-            )
-            carrier = body.parent
+        parent: int | None = last
+        while parent is not None:
+            body = constants.bodies[parent]
+            axis = [row[2] for row in rotations[parent]]
+            columns[parent] = [*axis, *_ZERO] if body.prismatic else [*cross(axis, subtract(x, origins[parent])), *axis]
+            parent = body.parent
         moved = self._motions(placements, dq, [0.0] * len(q), _ZERO)[last]
         lever = constants.tip_position
         own = add(moved.acceleration, cross(moved.turning, lever), cross(moved.spin, cross(moved.spin, lever)))
@@ -157,26 +155,26 @@ class ArmAlgebra:
         moments = [body.moment for body in bodies]
         inertias = [body.inertia for body in bodies]
         for index in reversed(range(len(bodies))):
-            carrier, (R, p) = bodies[index].parent, placements[index]
-            if carrier is None:
+            parent, (R, p) = bodies[index].parent, placements[index]
+            if parent is None:
                 continue
             moment = product(R, moments[index])
-            about_carrier = shifted(turned(R, inertias[index]), moment, masses[index], p)
-            inertias[carrier] = [add(a, b) for a, b in zip(inertias[carrier], about_carrier, strict=True)]
-            moments[carrier] = add(moments[carrier], moment, scale(masses[index], p))
-            masses[carrier] = plus(masses[carrier], masses[index])
+            about_parent = shifted(turned(R, inertias[index]), moment, masses[index], p)
+            inertias[parent] = [add(a, b) for a, b in zip(inertias[parent], about_parent, strict=True)]
+            moments[parent] = add(moments[parent], moment, scale(masses[index], p))
+            masses[parent] = plus(masses[parent], masses[index])
         M: list[list[Scalar]] = [[0.0] * len(bodies) for _ in bodies]
         for index, body in enumerate(bodies):
             # Force and moment, about the body's origin, that accelerate all it carries by one unit of its joint.
             force = scale(masses[index], _Z) if body.prismatic else cross(_Z, moments[index])
             moment = cross(moments[index], _Z) if body.prismatic else [row[2] for row in inertias[index]]
-            at, carrier = index, body.parent
+            at, parent = index, body.parent
             M[index][index] = plus(force[2] if body.prismatic else moment[2], body.armature)
-            while carrier is not None:
+            while parent is not None:
                 R, p = placements[at]
                 force = product(R, force)
                 moment = add(product(R, moment), cross(p, force))
-                at, carrier = carrier, bodies[carrier].parent
+                at, parent = parent, bodies[parent].parent
                 M[index][at] = M[at][index] = force[2] if bodies[at].prismatic else moment[2]
         return M
 

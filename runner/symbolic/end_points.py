@@ -24,15 +24,15 @@ class PointScalars(NamedTuple):
     rotation: Matrix | None
 
 
-def point_scalars(robot: Robot, parallel: bool, number: Callable[[float], Any]) -> tuple[PointScalars, ...]:
+def point_scalars(robot: Robot, ignore_base_rotation: bool, number: Callable[[float], Any]) -> tuple[PointScalars, ...]:
     """Return what the end points of all stages follow from, as scalars."""
     riding, still = robot.stages[1:], [0.0] * 3
-    if not (riding and parallel):
+    if not (riding and ignore_base_rotation):
         frames = [*(str(stage.base_frame) for stage in riding), None]
         return tuple(PointScalars(constants_of(robot.model, number, still, frame), 0, None) for frame in frames)
     found = [PointScalars(constants_of(robot.model, number, still, str(riding[0].base_frame)), 0, None)]
     for index, stage in enumerate(riding, start=1):
-        rotation = StageBase(robot, index, parallel=True).rotation.tolist()
+        rotation = StageBase(robot, index, ignore_base_rotation=True).rotation.tolist()
         turned = [[number(value) for value in row] for row in rotation]
         found.append(PointScalars(constants_of(stage.model, number, still), stage.joints.start, turned))
     return tuple(found)

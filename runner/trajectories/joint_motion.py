@@ -41,12 +41,12 @@ class TipOfJoints:
     Attributes:
         robot: The robot.
         joints: The motion of its joints.
-        parallel: Whether riding stages keep the orientation of home.
+        ignore_base_rotation: Whether riding stages keep the orientation of home.
     """
 
     robot: Robot
     joints: JointMotion
-    parallel: bool
+    ignore_base_rotation: bool
     tracked: bool = True
 
     @property
@@ -85,11 +85,11 @@ class TipOfJoints:
         """Return the motion of the tip, at rest at the end after t_f."""
         joints = self.joints.sample_joints(times)
         robot = self.robot
-        if not self.parallel:
+        if not self.ignore_base_rotation:
             return _tip_motion(robot.model, joints)
         motion = _tip_motion(robot.model.with_tip(str(robot.stages[1].base_frame)), joints)
         for index, stage in enumerate(robot.stages[1:], start=1):
-            R = StageBase(robot, index, parallel=True).rotation
+            R = StageBase(robot, index, ignore_base_rotation=True).rotation
             motion += _tip_motion(stage.model, joints[:, :, stage.joints]) @ R.T
         return motion
 

@@ -52,8 +52,8 @@ def derivatives(trace: Trace, change: Change, context: MetricContext) -> dict[st
     """
     found = _of_tip(trace, change.end_points[-1], context) | _of_joints(trace, change, context.period)
     for index, stage in enumerate(trace.stage_names[:-1]):
-        carrier = replace(context, trajectory=Shifted(context.trajectory, trace.offsets[index]))
-        of_stage = _of_tip(trace.at_stage(index), change.end_points[index], carrier)
+        stage_context = replace(context, trajectory=Shifted(context.trajectory, trace.offsets[index]))
+        of_stage = _of_tip(trace.at_stage(index), change.end_points[index], stage_context)
         found |= {f"{stage}_{name}": values for name, values in of_stage.items()}
     return found
 

@@ -72,7 +72,7 @@ class JointTorqueReading:
     acceleration. What else the model does not know, such as a wrong mass, is read as force.
 
     Args:
-        robot: The robot as it is believed.
+        robot: The nominal robot.
         period: h, in s.
     """
 

@@ -43,20 +43,20 @@ def force_loop_radius(rate: float, force_gain: float, damping: float, delay: int
 
 
 def touch_radius(
-    law: ForceLaw, mass: float, stiffness: float, drag: float, believed: float, period: float, delay: int
+    law: ForceLaw, mass: float, stiffness: float, drag: float, nominal_stiffness: float, period: float, delay: int
 ) -> float:
-    """Return the same of a law on a wall that is not as it believes, and damps.
+    """Return the same of a law on a damping wall that differs from its nominal one.
 
     Args:
         law: The law's gains.
         mass: Of the tip along the normal, in kg.
         stiffness: Of the wall, in N/m.
         drag: Its damping, in N s/m.
-        believed: The stiffness that the law believes in, in N/m.
+        nominal_stiffness: The law's nominal stiffness, in N/m.
         period: h, in s.
         delay: Periods from a push until it acts.
     """
-    brake = 2.0 * law.force_damping * float(np.sqrt(believed * (1.0 + law.force_gain) * mass))
+    brake = 2.0 * law.force_damping * float(np.sqrt(nominal_stiffness * (1.0 + law.force_gain) * mass))
     wall = np.array([stiffness * period, drag]) * period / mass
     return _radius(-wall, -law.force_gain * wall - np.array([0.0, brake * period / mass]), delay)
 

@@ -47,7 +47,7 @@ class AdaptiveNumbers(NamedTuple):
         damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
         armature: Diagonal of A, shape (nq,), in kg m^2.
         adaptation_gain: Diagonal of Gamma, shape (P,).
-        believed: theta^ at the first tick, shape (P,).
+        initial_parameters: theta^ at the first tick, shape (P,).
         swings: a omega_n^2 / 4, above which a direction of s swings, in 1/s^2.
         limits: Torque limits, shape (nq,), in N m; infinite where there is none.
     """
@@ -57,7 +57,7 @@ class AdaptiveNumbers(NamedTuple):
     damping: Array
     armature: Array
     adaptation_gain: Array
-    believed: FloatArray
+    initial_parameters: FloatArray
     swings: Scalar
     limits: Array
 
@@ -99,9 +99,9 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
     def __init__(self, model: RobotModel, config: AdaptiveConfig, rest: FloatArray, joints: bool = False) -> None:
         motion = JointMotion(model, config, rest, joints)
         self._friction = config.friction
-        believed = np.concatenate([model.inertial_parameters, np.zeros(2 * model.nq if config.friction else 0)])
+        theta = np.concatenate([model.inertial_parameters, np.zeros(2 * model.nq if config.friction else 0)])
         D = model.mass_matrix(rest).diagonal()
-        gains = np.full(len(believed), config.adaptation_gain)
+        gains = np.full(len(theta), config.adaptation_gain)
         self._bounded = config.scale == "parameter"
         if self._bounded:
             gains *= config.natural_frequency**2 * self._scales(model, config.gravity_compensation, rest, D)
@@ -111,7 +111,7 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
             damping=config.natural_frequency * D,
             armature=model.armature,
             adaptation_gain=gains,
-            believed=believed,
+            initial_parameters=theta,
             limits=model.effort_limits,
             swings=0.25 * config.adaptation_gain * config.natural_frequency**2,
         )
@@ -128,7 +128,7 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
 
     def own_start(self) -> FloatArray:
         """Return the parameters that are believed at first, shape (P,)."""
-        return self.numbers.believed
+        return self.numbers.initial_parameters
 
     def command(
         self, arm: Arm, numbers: AdaptiveNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array

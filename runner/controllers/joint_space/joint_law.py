@@ -55,7 +55,7 @@ class JointLaw(TorqueLaw[N]):
     Args:
         model: The arm.
         motion: What it follows.
-        gravity_compensation: Whether the arm that the law believes in has weight.
+        gravity_compensation: True if the law's nominal arm has weight.
         numbers: The law's numbers, of which one is `motion`, the JointMotionNumbers of the motion.
         remembers: How many numbers the law itself keeps from tick to tick; zeros at the first one.
     """
@@ -98,7 +98,7 @@ class JointLaw(TorqueLaw[N]):
         """Return the torques, shape (nq,), in N m, and what the law itself keeps for the next tick.
 
         Args:
-            arm: The arm that the law believes in.
+            arm: The law's nominal arm.
             numbers: The law's numbers.
             q: Measured joint positions, shape (nq,), in rad.
             dq: Measured joint velocities, shape (nq,), in rad/s.

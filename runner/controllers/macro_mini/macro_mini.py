@@ -11,7 +11,7 @@ from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.macro_mini.inertial_damping import InertialDamping
 from runner.controllers.macro_mini.stage_law import StageLaw
-from runner.controllers.macro_mini.stage_loops import Aim, CarrierController, HeldController, RiderController
+from runner.controllers.macro_mini.stage_loops import Aim, HeldController, MacroController, MiniController
 from runner.robots.robot import Robot, end_points
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import PositivePerStage, by_stage
@@ -89,15 +89,15 @@ def build(config: MacroMiniConfig, robot: Robot) -> tuple[Loop, ...]:
     )
 
 
-def _controller(config: MacroMiniConfig, robot: Robot, index: int, carrier_period: float) -> Controller:
-    parallel = config.wrist_rotation == "parallel"
-    turn = carrier_period if config.schedule == "turns" else None
+def _controller(config: MacroMiniConfig, robot: Robot, index: int, macro_period: float) -> Controller:
+    ignore_base_rotation = config.wrist_rotation == "parallel"
+    turn = macro_period if config.schedule == "turns" else None
     law = _law(config, robot, index)
     if index == 0:
-        return CarrierController(robot, law, _carrier_offset(config, robot), parallel, config.reach, turn)
+        return MacroController(robot, law, _macro_offset(config, robot), ignore_base_rotation, config.reach, turn)
     if config.coupling == "mini_held":
-        return HeldController(robot, index, law, parallel)
-    if config.coupling == "inertial_damping" and parallel:
+        return HeldController(robot, index, law, ignore_base_rotation)
+    if config.coupling == "inertial_damping" and ignore_base_rotation:
         raise ConfigError(
             [
                 "controller.wrist_rotation: parallel does not tell how the base turns, which inertial_damping needs; "
@@ -106,13 +106,13 @@ def _controller(config: MacroMiniConfig, robot: Robot, index: int, carrier_perio
         )
     if config.coupling == "inertial_damping":
         return InertialDamping(robot, index, law, config.damping_gain)
-    return RiderController(
+    return MiniController(
         robot,
         index,
         law,
         aim=_AIMS[config.coupling],
         later_offset=later_home_offset(robot, index),
-        parallel=parallel,
+        ignore_base_rotation=ignore_base_rotation,
         moving_target=config.mini_reference_velocity == "full",
         reach=config.reach,
         stretch=config.beyond_reach == "stretch",
@@ -137,7 +137,7 @@ def _law(config: MacroMiniConfig, robot: Robot, index: int) -> StageLaw:
     )
 
 
-def _carrier_offset(config: MacroMiniConfig, robot: Robot) -> FloatArray | None:
+def _macro_offset(config: MacroMiniConfig, robot: Robot) -> FloatArray | None:
     if config.coupling == "two_way":
         return None
     follows_home = config.macro_target == "minus_home" or config.coupling not in ("one_way", "two_way")

@@ -73,7 +73,7 @@ def macro_mini_graph(
     schedule: str,
     beyond_reach: str = "hold",
 ) -> ControlGraph:
-    r"""Return the two closed loops that `CarrierController` and `RiderController` (or `HeldController`) execute.
+    r"""Return the two closed loops that `MacroController` and `MiniController` (or `HeldController`) execute.
 
     The arms' own laws are a block each; they are the operational-space law of `operational_space_graph`. Encoders
     give the Macro's joints q_M and the Mini's q_m; x_E is the Macro's end point, r = x_d - x_E the rest of the way,

@@ -19,7 +19,7 @@ Aim = Literal["rest", "own_offset", "base_offset"]
 _STILL = np.zeros(3)
 
 
-class CarrierNumbers(NamedTuple):
+class MacroNumbers(NamedTuple):
     """The numbers of the first stage's loop.
 
     Attributes:
@@ -39,7 +39,7 @@ class CarrierNumbers(NamedTuple):
     turn: Scalar
 
 
-class RiderNumbers(NamedTuple):
+class MiniNumbers(NamedTuple):
     """The numbers of a riding stage's loop.
 
     Attributes:
@@ -79,7 +79,7 @@ class HeldNumbers(NamedTuple):
     gravity: Array
 
 
-N = TypeVar("N", CarrierNumbers, RiderNumbers, HeldNumbers)
+N = TypeVar("N", MacroNumbers, MiniNumbers, HeldNumbers)
 
 
 class _StageLoop(TorqueLaw[N]):
@@ -91,7 +91,7 @@ class _StageLoop(TorqueLaw[N]):
         return VelocityGain(0.0, self.numbers.law.k_v)
 
 
-class CarrierController(_StageLoop[CarrierNumbers]):
+class MacroController(_StageLoop[MacroNumbers]):
     """The loop of the first stage, which stands on the ground.
 
     Its target is x_d - o, where o stands for the stages that ride on it: nothing (macro_target tip_goal), their
@@ -101,25 +101,31 @@ class CarrierController(_StageLoop[CarrierNumbers]):
         robot: The robot.
         law: The stage's law.
         offset: Offset o, shape (3,), in m; None takes the riders' present one.
-        parallel: Whether the riders' base is taken parallel to the ground's.
+        ignore_base_rotation: Whether the riders' base is taken parallel to the ground's.
         reach: Distance up to which the first rider follows its target, in m.
-        turn: Length of a turn, in s; see rider_moves. None where both arms move at any time.
+        turn: Length of a turn, in s; see mini_moves. None where both arms move at any time.
     """
 
     def __init__(
-        self, robot: Robot, law: StageLaw, offset: FloatArray | None, parallel: bool, reach: float, turn: float | None
+        self,
+        robot: Robot,
+        law: StageLaw,
+        offset: FloatArray | None,
+        ignore_base_rotation: bool,
+        reach: float,
+        turn: float | None,
     ) -> None:
-        riders = range(1, len(robot.stages))
-        placed = [base_at_home(robot, rider) for rider in riders]
+        minis = range(1, len(robot.stages))
+        placed = [base_at_home(robot, mini) for mini in minis]
         bases = [model for model, _ in placed]
         self._law, self._end = law, robot.stages[0].joints.stop
-        self._turns, self._parallel = turn is not None, parallel
-        self._riders = [(s.joints.start, s.joints.stop) for s in robot.stages[1:]] if offset is None else []
-        self._bases = len(bases) if offset is None and not parallel else int(self._turns)
+        self._turns, self._ignore_base_rotation = turn is not None, ignore_base_rotation
+        self._minis = [(s.joints.start, s.joints.stop) for s in robot.stages[1:]] if offset is None else []
+        self._bases = len(bases) if offset is None and not ignore_base_rotation else int(self._turns)
         self._released = _no_posture(self._end if self._turns else None)
         tips = [stage.model for stage in robot.stages[1:]] if offset is None else []
         at_home = end_points(robot, robot.home[None])[:, 0]
-        numbers = CarrierNumbers(
+        numbers = MacroNumbers(
             law=law.numbers,
             offset=_at_rest(_STILL if offset is None else offset),
             later=at_home[-1] - at_home[1],
@@ -137,7 +143,7 @@ class CarrierController(_StageLoop[CarrierNumbers]):
     def evaluate(
         self,
         arms: Sequence[Arm],
-        numbers: CarrierNumbers,
+        numbers: MacroNumbers,
         time: Scalar,
         q: Array,
         dq: Array,
@@ -148,16 +154,16 @@ class CarrierController(_StageLoop[CarrierNumbers]):
         own, own_q, own_dq = arms[0], q[: self._end], dq[: self._end]
         bases = [arm.tip_pose(q) for arm in arms[1 : 1 + self._bases]] if self._bases else []
         target = reference - numbers.offset
-        if self._riders:
-            rotations = numbers.rotations if self._parallel else [R for _, R in bases]
-            for (first, end), rider, R in zip(self._riders, arms[1 + self._bases :], rotations, strict=True):
-                x, _ = rider.tip_pose(q[first:end])
+        if self._minis:
+            rotations = numbers.rotations if self._ignore_base_rotation else [R for _, R in bases]
+            for (first, end), mini, R in zip(self._minis, arms[1 + self._bases :], rotations, strict=True):
+                x, _ = mini.tip_pose(q[first:end])
                 target[0] -= R.dot(x)
         if not self._turns:
             return self._law.move(own, numbers.law, own_q, own_dq, target), memory
         backend, distance = own.backend, reference[0] - bases[0][0] - numbers.later
         beyond = backend.less(numbers.reach * numbers.reach, distance.dot(distance))
-        own_turn = backend.less(rider_moves(backend, numbers.turn, time), 0.5)
+        own_turn = backend.less(mini_moves(backend, numbers.turn, time), 0.5)
         return backend.choose(
             backend.any_of(own_turn, beyond),
             lambda: (self._law.move(own, numbers.law, own_q, own_dq, target), self._released),
@@ -165,7 +171,7 @@ class CarrierController(_StageLoop[CarrierNumbers]):
         )
 
 
-class RiderController(_StageLoop[RiderNumbers]):
+class MiniController(_StageLoop[MiniNumbers]):
     """The loop of a stage that rides on others.
 
     Its target is the rest of the way, R^T (x_d - o - x_E), seen from its base. As for the first stage, o is the home
@@ -182,11 +188,11 @@ class RiderController(_StageLoop[RiderNumbers]):
         law: The stage's law.
         aim: What its target is: the rest of the way, or its home offset in its own frame or in the robot's base frame.
         later_offset: Home offset o of the stages that ride on this one, in the robot's base frame, shape (3,), in m.
-        parallel: Whether its base is taken parallel to the ground's.
+        ignore_base_rotation: Whether its base is taken parallel to the ground's.
         moving_target: Whether the target's velocity is part of the reference.
         reach: Distance up to which it follows, in m.
         stretch: Whether it stretches towards a target beyond reach; else it holds its posture.
-        turn: Length of a turn, in s; see rider_moves. None where both arms move at any time.
+        turn: Length of a turn, in s; see mini_moves. None where both arms move at any time.
     """
 
     def __init__(
@@ -196,13 +202,13 @@ class RiderController(_StageLoop[RiderNumbers]):
         law: StageLaw,
         aim: Aim,
         later_offset: FloatArray,
-        parallel: bool,
+        ignore_base_rotation: bool,
         moving_target: bool,
         reach: float,
         stretch: bool,
         turn: float | None,
     ) -> None:
-        self._law, self._aim, self._parallel = law, aim, parallel
+        self._law, self._aim, self._ignore_base_rotation = law, aim, ignore_base_rotation
         self._stretch, self._turns = stretch, turn is not None
         self._moving = moving_target and aim != "own_offset"
         joints, r_0 = robot.stages[stage].joints, robot.stages[stage].home_offset
@@ -210,10 +216,10 @@ class RiderController(_StageLoop[RiderNumbers]):
         self._follows = aim == "rest"
         self._holds = self._follows and (self._turns or not stretch)
         self._released = _no_posture(self._end - self._first if self._holds else None)
-        at_home, between = base_at_home(robot, stage)[1], robot.stages[1:stage] if parallel else ()
+        at_home, between = base_at_home(robot, stage)[1], robot.stages[1:stage] if ignore_base_rotation else ()
         self._between = [(below.joints.start, below.joints.stop) for below in between]
         base, _ = base_at_home(robot, stage - len(between))
-        numbers = RiderNumbers(
+        numbers = MiniNumbers(
             law=law.numbers,
             offset=_at_rest(at_home.dot(r_0) if aim == "base_offset" else r_0),
             later=later_offset,
@@ -233,7 +239,7 @@ class RiderController(_StageLoop[RiderNumbers]):
     def evaluate(
         self,
         arms: Sequence[Arm],
-        numbers: RiderNumbers,
+        numbers: MiniNumbers,
         time: Scalar,
         q: Array,
         dq: Array,
@@ -261,7 +267,7 @@ class RiderController(_StageLoop[RiderNumbers]):
         )
 
     def _seen(
-        self, below: Sequence[Arm], numbers: RiderNumbers, q: Array, dq: Array, reference: Array
+        self, below: Sequence[Arm], numbers: MiniNumbers, q: Array, dq: Array, reference: Array
     ) -> tuple[Array, Array, Array]:
         """Return the way to the target in the robot's base frame, and target and gravity in the stage's own."""
         base, *between = below
@@ -276,7 +282,7 @@ class RiderController(_StageLoop[RiderNumbers]):
             else:
                 offset, _ = arm.tip_pose(q[first:end])
             x = x + turned.dot(offset)
-        if self._parallel:
+        if self._ignore_base_rotation:
             R = numbers.rotation
         if self._aim == "own_offset":
             return numbers.offset[0], numbers.offset, R.T.dot(numbers.gravity)
@@ -284,14 +290,14 @@ class RiderController(_StageLoop[RiderNumbers]):
         velocity = _STILL
         if self._moving:
             velocity = reference[1] - moves[:3] if self._follows else _STILL
-            velocity = velocity if self._parallel else velocity - cross(moves[3:], way)
+            velocity = velocity if self._ignore_base_rotation else velocity - cross(moves[3:], way)
         seen = np.array([way, velocity, _STILL, numbers.gravity]).dot(R)  # R^T of each row
         return way, seen[:3], seen[3]
 
-    def _waits(self, backend: Backend, numbers: RiderNumbers, time: Scalar, beyond: Scalar) -> Scalar:
+    def _waits(self, backend: Backend, numbers: MiniNumbers, time: Scalar, beyond: Scalar) -> Scalar:
         if not self._turns:
             return beyond
-        waits = backend.less(rider_moves(backend, numbers.turn, time), 0.5)
+        waits = backend.less(mini_moves(backend, numbers.turn, time), 0.5)
         return waits if self._stretch else backend.any_of(waits, beyond)
 
 
@@ -302,11 +308,11 @@ class HeldController(_StageLoop[HeldNumbers]):
         robot: The robot.
         stage: Index of the stage, 1 or more.
         law: The stage's law.
-        parallel: Whether its base is taken parallel to the ground's.
+        ignore_base_rotation: Whether its base is taken parallel to the ground's.
     """
 
-    def __init__(self, robot: Robot, stage: int, law: StageLaw, parallel: bool) -> None:
-        self._law, self._parallel = law, parallel
+    def __init__(self, robot: Robot, stage: int, law: StageLaw, ignore_base_rotation: bool) -> None:
+        self._law, self._ignore_base_rotation = law, ignore_base_rotation
         self._first, self._end = robot.stages[stage].joints.start, robot.stages[stage].joints.stop
         base, at_home = base_at_home(robot, stage)
         numbers = HeldNumbers(law.numbers, robot.stages[stage].home, at_home, robot.model.gravity)
@@ -324,13 +330,13 @@ class HeldController(_StageLoop[HeldNumbers]):
     ) -> tuple[Array, Array]:
         """Return the torques of this stage; see TorqueLaw."""
         own, base = arms
-        R = numbers.rotation if self._parallel else base.tip_pose(q)[1]
+        R = numbers.rotation if self._ignore_base_rotation else base.tip_pose(q)[1]
         own_q, own_dq = q[self._first : self._end], dq[self._first : self._end]
         gravity = R.T.dot(numbers.gravity)
         return self._law.hold(own, numbers.law, own_q, own_dq, numbers.posture, gravity), memory
 
 
-def rider_moves(backend: Backend, turn: Scalar, time: Scalar) -> Scalar:
+def mini_moves(backend: Backend, turn: Scalar, time: Scalar) -> Scalar:
     """Return 1 in the rider's turn and 0 in the carrier's, which begins; each is of this length, in s."""
     count = backend.floor(time / turn + 1e-9)
     return count - 2.0 * backend.floor(0.5 * count)

@@ -53,7 +53,7 @@ class Commands:
 
     Attributes:
         robot: The robot.
-        parallel: Whether riding stages keep the orientation of home.
+        ignore_base_rotation: Whether riding stages keep the orientation of home.
         loops: The loops.
         noise: Noise, bias and steps of the joints.
         limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
@@ -61,7 +61,7 @@ class Commands:
     """
 
     robot: Robot
-    parallel: bool
+    ignore_base_rotation: bool
     loops: tuple[LoopCode, ...]
     noise: EncoderNoise
     limits: FloatArray
@@ -71,7 +71,7 @@ class Commands:
     def pattern(self) -> str:
         """A text that is the same for two whose code is the same."""
         loops = [(law_cache_key(loop.law), loop.joints, loop.every > 1, loop.follows_joints) for loop in self.loops]
-        points = point_scalars(self.robot, self.parallel, any_number)
+        points = point_scalars(self.robot, self.ignore_base_rotation, any_number)
         return repr((loops, points, self._rounded.tolist(), self.noise.velocity))
 
     @property
@@ -96,7 +96,7 @@ class Commands:
             [number(limit) for limit in self.limits.tolist()],
             {joint: number(self.noise.resolution[joint]) for joint in np.flatnonzero(self._rounded).tolist()},
             [law_scalars(loop.law, loop.period, number) for loop in self.loops],
-            point_scalars(self.robot, self.parallel, number),
+            point_scalars(self.robot, self.ignore_base_rotation, number),
             [
                 [number(gain) for gain in gains(self.noise.velocity, self.noise.velocity_bandwidth, loop.period)]
                 for loop in self.loops

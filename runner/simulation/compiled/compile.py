@@ -22,13 +22,18 @@ from runner.symbolic.structure import CannotCompileError
 
 
 def find_commands(
-    robot: Robot, parallel: bool, loops: Sequence[Loop], tick: float, noise: EncoderNoise, limits: FloatArray
+    robot: Robot,
+    ignore_base_rotation: bool,
+    loops: Sequence[Loop],
+    tick: float,
+    noise: EncoderNoise,
+    limits: FloatArray,
 ) -> Commands | None:
     """Return control loops as they are compiled; None where one of them is no torque law.
 
     Args:
         robot: The robot that they command.
-        parallel: Whether its riding stages keep the orientation of home.
+        ignore_base_rotation: Whether its riding stages keep the orientation of home.
         loops: The loops.
         tick: Time between two ticks, in s.
         noise: Noise, bias and steps of the joints.
@@ -48,7 +53,7 @@ def find_commands(
         for law, loop in zip(laws, loops, strict=True)
     ]
     watched = any(isinstance(loop.controller, WatchedController) for loop in loops)
-    return Commands(robot, parallel, tuple(codes), noise, limits, watched)
+    return Commands(robot, ignore_base_rotation, tuple(codes), noise, limits, watched)
 
 
 def compile_commands(commands: Commands | None) -> CompiledCommands | None:

@@ -21,7 +21,7 @@ class LawScalars(NamedTuple):
     Attributes:
         period: Time between its ticks, in s.
         numbers: Its law's.
-        arms: The arms that the law believes in.
+        arms: The law's nominal arms.
     """
 
     period: Value
@@ -45,7 +45,7 @@ class ExpressedArm:
     Args:
         algebra: Its kinematics and dynamics.
         backend: The functions over expressions.
-        gravity_compensation: Whether gravity acts on it.
+        gravity_compensation: True if gravity acts on it.
     """
 
     def __init__(self, algebra: ArmAlgebra, backend: SymbolicBackend, gravity_compensation: bool) -> None:

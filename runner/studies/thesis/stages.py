@@ -78,8 +78,8 @@ def felt_by_the_tip(consistent: bool) -> Callable[[Run], float]:
 
 
 def _errors(run: Run) -> list[str]:
-    *carriers, _ = run.config["robot"]["stages"]
-    return [*(f"{name}_max_axis_error" for name in carriers), "max_axis_error"]
+    *macros, _ = run.config["robot"]["stages"]
+    return [*(f"{name}_max_axis_error" for name in macros), "max_axis_error"]
 
 
 def _firsts(run: Run) -> list[int]:

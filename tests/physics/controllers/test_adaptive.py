@@ -26,16 +26,16 @@ def followed(closed, desired, h):
     plant.reset(desired[0, 0], np.zeros(true.nq))
     law.reset()
     adapts = numbers.adaptation_gain > 0.0
-    believed, errors, energies = numbers.believed, [], []
+    estimated, errors, energies = numbers.initial_parameters, [], []
     for tick, reference in enumerate(desired):
         e, s = reference[0] - plant.q, reference[1] - plant.dq + numbers.rate * (reference[0] - plant.q)
-        wrong = np.concatenate([true.inertial_parameters, np.zeros(len(believed) - 10 * true.nq)]) - believed
+        wrong = np.concatenate([true.inertial_parameters, np.zeros(len(estimated) - 10 * true.nq)]) - estimated
         errors.append(e)
         energies.append(
             0.5 * (s @ true.mass_matrix(plant.q) @ s + (wrong**2)[adapts] @ (1.0 / numbers.adaptation_gain[adapts]))
         )
         plant.advance(law.torque(h * tick, plant.q, plant.dq, reference))
-        believed = law.memory
+        estimated = law.memory
     return np.linalg.norm(errors, axis=1), np.array(energies)
 
 
@@ -45,7 +45,7 @@ def test_torques_and_parameters_are_those_of_the_equations(name, friction):
     closed = closed_loop(f"robot={name}", f"controller.friction={friction}")
     law, generator, n = closed.loops[0].controller, np.random.default_rng(5), closed.robot.model.nq
     arm, home, numbers = PinocchioArm(closed.robot.model), closed.robot.home, law.numbers
-    D, theta = closed.robot.model.mass_matrix(home).diagonal(), numbers.believed.copy()
+    D, theta = closed.robot.model.mass_matrix(home).diagonal(), numbers.initial_parameters.copy()
     for _ in range(3):
         q, dq = home + generator.normal(size=n), generator.normal(size=n)
         reference = np.array([q, dq, np.zeros(n)]) + generator.normal(size=(3, n))

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from runner.controllers.macro_mini.stage_loops import CarrierController, RiderController, rider_moves
+from runner.controllers.macro_mini.stage_loops import MacroController, MiniController, mini_moves
 from runner.robots.robot import end_points
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
@@ -35,12 +35,12 @@ class Spy:
 
 
 @pytest.fixture
-def rider(combined):
+def mini_loop(combined):
     """A Mini's loop, and what its law is told when the tip is wanted some way off its base."""
 
     def make(moving_target=True, stretch=False, turn=None, later=(0.0, 0.0, 0.0)):
         law = Spy(combined.stages[1].model)
-        loop = RiderController(combined, 1, law, "rest", np.array(later), False, moving_target, REACH, stretch, turn)
+        loop = MiniController(combined, 1, law, "rest", np.array(later), False, moving_target, REACH, stretch, turn)
 
         def ask(way, q=None, time=0.0):
             q = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9]) if q is None else q
@@ -61,15 +61,15 @@ def along(distance, direction=(1.0, 2.0, -2.0)):
 
 
 @pytest.mark.parametrize("direction", [(1.0, 2.0, -2.0), (0.0, 0.0, 1.0), (-1.0, 1.0, 1.0)])
-def test_the_mini_follows_up_to_its_reach(rider, direction):
-    _, ask = rider()
+def test_the_mini_follows_up_to_its_reach(mini_loop, direction):
+    _, ask = mini_loop()
     assert ask(along(REACH * (1.0 - 1e-9), direction))[0] == "move"
     assert ask(along(REACH * (1.0 + 1e-9), direction))[0] == "hold"
     assert ask(along(0.0, direction))[0] == "move"
 
 
-def test_beyond_it_the_mini_holds_the_posture_of_the_moment_it_lost_reach(rider):
-    loop, ask = rider()
+def test_beyond_it_the_mini_holds_the_posture_of_the_moment_it_lost_reach(mini_loop):
+    loop, ask = mini_loop()
     near, far = along(0.1), along(0.3)
     first, second, third = (np.array([0.1, 0.2, 0.3, *own]) for own in ([0.4, 0.5, 0.6], [1.4, 0.5, 0.6], [0.0] * 3))
     assert ask(near, first)[0] == "move"
@@ -81,8 +81,8 @@ def test_beyond_it_the_mini_holds_the_posture_of_the_moment_it_lost_reach(rider)
     np.testing.assert_array_equal(ask(far, second)[1], second[3:])
 
 
-def test_the_posture_held_is_a_copy(rider):
-    _, ask = rider()
+def test_the_posture_held_is_a_copy(mini_loop):
+    _, ask = mini_loop()
     q = np.zeros(6)
     ask(along(0.3), q)
     q += 1.0
@@ -90,12 +90,12 @@ def test_the_posture_held_is_a_copy(rider):
 
 
 @pytest.mark.parametrize("distance", [0.1, 0.2 * (1.0 - 1e-9), 0.2 * (1.0 + 1e-9), 0.5, 3.0])
-def test_a_stretching_mini_goes_towards_the_target_as_far_as_it_reaches(rider, distance):
-    _, ask = rider(stretch=True)
+def test_a_stretching_mini_goes_towards_the_target_as_far_as_it_reaches(mini_loop, distance):
+    _, ask = mini_loop(stretch=True)
     kind, target = ask(along(distance))
     assert kind == "move"
     assert np.linalg.norm(target[0]) == pytest.approx(min(distance, REACH), rel=1e-12)
-    reachable = rider()[1](along(0.1))[1][0]
+    reachable = mini_loop()[1](along(0.1))[1][0]
     np.testing.assert_allclose(target[0] / np.linalg.norm(target[0]), reachable / 0.1, atol=1e-12)
     assert (np.abs(target[1]).max() > 0.0) == (distance <= REACH)  # at its limit it stands
     np.testing.assert_array_equal(target[2], 0.0)
@@ -107,18 +107,18 @@ LATER = np.array([0.02, -0.3, 0.1])  # home offset of what rides on the Mini, lo
 
 
 @pytest.mark.parametrize("stretch", [False, True])
-def test_what_later_stages_make_up_for_is_taken_off_the_way(rider, stretch):
+def test_what_later_stages_make_up_for_is_taken_off_the_way(mini_loop, stretch):
     way = along(0.1)
-    _, alone = rider(stretch=stretch)[1](way)
-    kind, target = rider(stretch=stretch, later=LATER)[1](way + LATER)
+    _, alone = mini_loop(stretch=stretch)[1](way)
+    kind, target = mini_loop(stretch=stretch, later=LATER)[1](way + LATER)
     assert kind == "move"
     np.testing.assert_allclose(target, alone, atol=1e-12)
     assert np.linalg.norm(target[0]) == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("direction", [(1.0, 2.0, -2.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0), (0.0, 1.0, 0.0)])
-def test_reach_counts_to_where_later_stages_begin(rider, direction):
-    _, ask = rider(later=LATER)
+def test_reach_counts_to_where_later_stages_begin(mini_loop, direction):
+    _, ask = mini_loop(later=LATER)
     assert ask(along(REACH * (1.0 - 1e-9), direction) + LATER)[0] == "move"
     assert ask(along(REACH * (1.0 + 1e-9), direction) + LATER)[0] == "hold"
 
@@ -135,20 +135,20 @@ Q_NINE = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9, -0.6, 0.5, 0.1])
 @pytest.mark.parametrize("direction", [(1.0, 2.0, -2.0), (0.0, 1.0, 1.0), (0.0, -1.0, -1.0)])
 def test_the_carrier_s_turn_ends_where_the_first_rider_reaches_its_own_target(three_stages, direction):
     law = Spy(three_stages.stages[0].model)
-    carrier = CarrierController(three_stages, law, np.zeros(3), False, REACH, 0.01)
+    macro_loop = MacroController(three_stages, law, np.zeros(3), False, REACH, 0.01)
     x_E = three_stages.stages[0].model.tip_position(Q_NINE[:3])
     later = np.array([0.0, 0.1, 0.1])  # at home the second Mini stands on the first, as this on the Macro
     for distance, expected in ((REACH * (1.0 - 1e-9), "hold"), (REACH * (1.0 + 1e-9), "move")):
         target = np.array([x_E + later + along(distance, direction), np.zeros(3), np.zeros(3)])
-        carrier.torque(0.01, Q_NINE, np.zeros(9), target)
+        macro_loop.torque(0.01, Q_NINE, np.zeros(9), target)
         assert law.told[-1][0] == expected
 
 
 def test_in_two_way_coupling_the_carrier_makes_up_for_all_its_riders(three_stages):
     law = Spy(three_stages.stages[0].model)
-    carrier = CarrierController(three_stages, law, None, False, REACH, None)
+    macro_loop = MacroController(three_stages, law, None, False, REACH, None)
     desired = np.array([[0.4, 1.0, 0.8], [0.1, 0.2, 0.3], [0.0, 0.0, 1.0]])
-    carrier.torque(0.0, Q_NINE, np.zeros(9), desired)
+    macro_loop.torque(0.0, Q_NINE, np.zeros(9), desired)
     riders = three_stages.model.tip_position(Q_NINE) - three_stages.stages[0].model.tip_position(Q_NINE[:3])
     np.testing.assert_allclose(law.told[-1][1][0], desired[0] - riders, atol=1e-12)
     np.testing.assert_array_equal(law.told[-1][1][1:], desired[1:])
@@ -157,7 +157,7 @@ def test_in_two_way_coupling_the_carrier_makes_up_for_all_its_riders(three_stage
 def test_the_rider_sees_target_and_gravity_from_its_base(combined):
     """R^T (x_d - x_E), R^T (xd_d - xd_E - w x (x_d - x_E)) and R^T g, R turned by every joint of the Macro."""
     law = Spy(combined.stages[1].model)
-    loop = RiderController(combined, 1, law, "rest", np.zeros(3), False, True, REACH, False, None)
+    loop = MiniController(combined, 1, law, "rest", np.zeros(3), False, True, REACH, False, None)
     macro, generator = combined.stages[0].model, np.random.default_rng(2)
     for _ in range(5):
         q, dq = generator.uniform(-2.0, 2.0, (2, 6))
@@ -176,14 +176,14 @@ def test_the_rider_sees_target_and_gravity_from_its_base(combined):
 def test_under_bases_taken_parallel_the_second_rider_sees_offsets_that_do_not_turn(three_stages):
     """R_0^T (x_d - x_E) and its rate, with the x_E that end_points gives where bases keep the orientation of home."""
     law = Spy(three_stages.stages[2].model)
-    loop = RiderController(three_stages, 2, law, "rest", np.zeros(3), True, True, 10.0, False, None)
+    loop = MiniController(three_stages, 2, law, "rest", np.zeros(3), True, True, 10.0, False, None)
     R = three_stages.model.with_tip(three_stages.stages[2].base_frame).tip_pose(three_stages.home)[:3, :3]
     generator, step = np.random.default_rng(3), 1e-6
     for _ in range(5):
         q, dq = generator.uniform(-2.0, 2.0, (2, 9))
         desired = generator.uniform(-1.0, 1.0, (3, 3))
         rows = q + step * np.array([[-1.0], [0.0], [1.0]]) * dq
-        before, now, after = end_points(three_stages, rows, parallel=True)[1]
+        before, now, after = end_points(three_stages, rows, ignore_base_rotation=True)[1]
         loop.torque(0.0, q, dq, desired)
         _, target = law.told[-1]
         np.testing.assert_allclose(target[0], R.T @ (desired[0] - now), atol=1e-12)
@@ -196,7 +196,7 @@ def test_under_bases_taken_parallel_the_second_rider_sees_offsets_that_do_not_tu
 @pytest.mark.parametrize("period", [0.01, 0.03])
 def test_turns_are_a_period_of_the_carrier_each_beginning_with_it(period):
     def moves(time):
-        return rider_moves(NUMPY, period, time)
+        return mini_moves(NUMPY, period, time)
 
     for k in range(1, 2000):
         tick = k * 0.001
@@ -206,34 +206,34 @@ def test_turns_are_a_period_of_the_carrier_each_beginning_with_it(period):
         assert moves(number * period) == (number % 2 == 1)
 
 
-def test_in_turns_each_arm_holds_while_the_other_moves(combined, rider):
+def test_in_turns_each_arm_holds_while_the_other_moves(combined, mini_loop):
     law = Spy(combined.stages[0].model)
-    carrier = CarrierController(combined, law, np.zeros(3), False, REACH, 0.01)
-    _, ask = rider(turn=0.01)
+    macro_loop = MacroController(combined, law, np.zeros(3), False, REACH, 0.01)
+    _, ask = mini_loop(turn=0.01)
     q = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9])
     x_E = combined.stages[0].model.tip_position(q[:3])
     for k in range(40):
         time, reference = k * 0.01, np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)])
-        carrier.torque(time, q, np.zeros(6), reference)
+        macro_loop.torque(time, q, np.zeros(6), reference)
         kinds = law.told[-1][0], ask(along(0.1), q, time)[0]
         assert kinds == (("move", "hold") if k % 2 == 0 else ("hold", "move"))
 
 
 def test_where_the_mini_cannot_reach_the_macro_moves_on(combined):
     law = Spy(combined.stages[0].model)
-    carrier = CarrierController(combined, law, np.zeros(3), False, REACH, 0.01)
+    macro_loop = MacroController(combined, law, np.zeros(3), False, REACH, 0.01)
     q = np.array([0.3, -0.5, 0.7, 0.2, -0.4, 0.9])
     x_E = combined.stages[0].model.tip_position(q[:3])
-    carrier.torque(0.01, q, np.zeros(6), np.array([x_E + along(0.3), np.zeros(3), np.zeros(3)]))
+    macro_loop.torque(0.01, q, np.zeros(6), np.array([x_E + along(0.3), np.zeros(3), np.zeros(3)]))
     assert law.told[-1][0] == "move"
-    carrier.torque(0.03, q, np.zeros(6), np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)]))
+    macro_loop.torque(0.03, q, np.zeros(6), np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)]))
     np.testing.assert_array_equal(law.told[-1][1], q[:3])
     later = q + 0.1
     x_E = combined.stages[0].model.tip_position(later[:3])
-    carrier.torque(0.035, later, np.zeros(6), np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)]))
+    macro_loop.torque(0.035, later, np.zeros(6), np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)]))
     np.testing.assert_array_equal(law.told[-1][1], q[:3])  # the posture of the moment the hold began
-    carrier.reset()
-    carrier.torque(0.035, later, np.zeros(6), np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)]))
+    macro_loop.reset()
+    macro_loop.torque(0.035, later, np.zeros(6), np.array([x_E + along(0.1), np.zeros(3), np.zeros(3)]))
     np.testing.assert_array_equal(law.told[-1][1], later[:3])
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from runner.robots.mismatch import MismatchConfig, believe
+from runner.robots.mismatch import MismatchConfig, nominal_robot
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
@@ -22,9 +22,9 @@ SAGGING = (
 NO_DIFFERENCE = {"mass": 1.0, "centre_of_mass": 1.0, "length": 1.0, "gravity": 1.0, "payload": 0.0, "spread": 0.0}
 
 
-def belief(robot, seed=0, **terms):
+def nominal_of(robot, seed=0, **terms):
     config = MismatchConfig(**(NO_DIFFERENCE | terms))
-    return believe(robot, config, np.zeros(3), np.random.default_rng(seed))
+    return nominal_robot(robot, config, np.zeros(3), np.random.default_rng(seed))
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +45,7 @@ def predicted_sag(model, q, M, G):
 
 
 def test_without_difference_it_is_the_robot_itself(combined):
-    assert belief(combined) is combined
+    assert nominal_of(combined) is combined
 
 
 def test_with_the_right_model_nothing_sags(sag):
@@ -86,7 +86,7 @@ def test_a_payload_that_is_not_known_of_leaves_the_arm_without_it(checked_config
     place = "robot.payload.position=[0.1,0.2,0.3]"
     loaded, bare = (checked_config("robot=xarm7", f"robot.payload.mass={mass}", place).arm for mass in (2.0, 0.0))
     config = MismatchConfig(**(NO_DIFFERENCE | {"payload": -2.0}))
-    unaware = believe(loaded, config, np.array([0.1, 0.2, 0.3]), np.random.default_rng(0)).model
+    unaware = nominal_robot(loaded, config, np.array([0.1, 0.2, 0.3]), np.random.default_rng(0)).model
     q = np.linspace(-1.0, 1.0, 7)
     np.testing.assert_allclose(unaware.mass_matrix(q), bare.model.mass_matrix(q), atol=1e-12)
     np.testing.assert_allclose(unaware.gravity_torque(q), bare.model.gravity_torque(q), atol=1e-12)
@@ -126,7 +126,7 @@ def test_lengths_believed_wrong_scale_where_the_tip_comes_to_rest(simulated, fac
 
 def test_lengths_scale_kinematics_and_leave_each_link_its_weight(xarm7):
     q = np.linspace(-1.0, 1.0, 7)
-    longer = belief(xarm7, length=1.2).model
+    longer = nominal_of(xarm7, length=1.2).model
     np.testing.assert_allclose(longer.tip_position(q), 1.2 * xarm7.model.tip_position(q), atol=1e-12)
     assert longer.reach == pytest.approx(1.2 * xarm7.model.reach)
     np.testing.assert_allclose(longer.shoulder, 1.2 * xarm7.model.shoulder)
@@ -162,8 +162,8 @@ def test_what_is_measured_is_the_true_arm(simulated, checked_config):
 @pytest.mark.parametrize("term", ["mass", "centre_of_mass"])
 def test_drawn_errors_stay_within_their_spread_and_differ_from_link_to_link(xarm7, term):
     def ratio(seed):
-        believed, true = (robot.model.pin_model.inertias for robot in (belief(xarm7, seed, spread=0.2), xarm7))
-        pairs = list(zip(list(believed)[1:], list(true)[1:], strict=True))
+        nominal, true = (robot.model.pin_model.inertias for robot in (nominal_of(xarm7, seed, spread=0.2), xarm7))
+        pairs = list(zip(list(nominal)[1:], list(true)[1:], strict=True))
         if term == "mass":
             return np.array([b.mass / t.mass for b, t in pairs])
         return np.array([np.linalg.norm(b.lever) / np.linalg.norm(t.lever) for b, t in pairs])
@@ -176,7 +176,7 @@ def test_drawn_errors_stay_within_their_spread_and_differ_from_link_to_link(xarm
 
 
 def test_the_whole_and_its_stages_are_believed_alike(combined):
-    robot = belief(combined, mass=1.2, centre_of_mass=0.9, length=1.1, gravity=0.7, payload=0.05, spread=0.1)
+    robot = nominal_of(combined, mass=1.2, centre_of_mass=0.9, length=1.1, gravity=0.7, payload=0.05, spread=0.1)
     mini, whole = robot.stages[1].model, robot.model
     for own, within in zip(list(mini.pin_model.inertias)[1:], list(whole.pin_model.inertias)[4:], strict=True):
         np.testing.assert_allclose(own.toDynamicParameters(), within.toDynamicParameters(), atol=1e-12)

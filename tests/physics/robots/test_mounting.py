@@ -45,10 +45,10 @@ def test_the_rider_takes_the_prefix_and_the_carrier_keeps_its_names(mounted, mac
     urdf, root = mounted
     assert root == "mini_base"
     for kind in ("link", "joint"):
-        carrier, rider = names(macro_urdf, kind), [f"mini_{name}" for name in names(mini_urdf, kind)]
+        macro_names, mini_names = names(macro_urdf, kind), [f"mini_{name}" for name in names(mini_urdf, kind)]
         found = names(urdf, kind)
-        assert found[: len(carrier)] == carrier
-        assert sorted(found) == sorted([*carrier, *rider, *(["mini_mount"] if kind == "joint" else [])])
+        assert found[: len(macro_names)] == macro_names
+        assert sorted(found) == sorted([*macro_names, *mini_names, *(["mini_mount"] if kind == "joint" else [])])
 
 
 def test_every_link_keeps_its_inertia(mounted, macro_urdf, mini_urdf):
@@ -78,8 +78,8 @@ def test_the_rider_stands_where_the_mount_says(macro_urdf, mini_urdf, mini, fram
     step = np.eye(4)
     step[:3, :3], step[:3, 3] = pin.rpy.rpyToMatrix(*rotation), translation
     for q in np.random.default_rng(0).uniform(-3.0, 3.0, (5, 6)):
-        carrier, base = model.frame_poses(q, (frame, root))
-        np.testing.assert_allclose(base, carrier @ step, atol=1e-12)
+        placed, base = model.frame_poses(q, (frame, root))
+        np.testing.assert_allclose(base, placed @ step, atol=1e-12)
         # Pinocchio orders joints by name where a link carries two: the rider's own angles are asked for by name.
         own = [q[model.joint_names.index(f"mini_{name}")] for name in mini.joint_names]
         np.testing.assert_allclose(model.tip_pose(q), base @ mini.tip_pose(np.array(own)), atol=1e-12)

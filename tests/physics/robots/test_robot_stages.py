@@ -68,7 +68,7 @@ def test_end_points_are_the_carrier_s_tip_and_the_rest_turned_with_it(combined):
 def test_parallel_end_points_are_turned_as_at_home(combined):
     macro, mini = (stage.model for stage in combined.stages)
     q = postures(combined)
-    found = end_points(combined, q, parallel=True)
+    found = end_points(combined, q, ignore_base_rotation=True)
     for row, (wrist, tip) in zip(q, found.transpose(1, 0, 2), strict=True):
         np.testing.assert_allclose(wrist, macro.tip_position(row[:3]), atol=1e-12)
         np.testing.assert_allclose(tip, wrist + mini.tip_position(row[3:]), atol=1e-12)  # R = I at q = 0
@@ -85,7 +85,7 @@ def test_one_stage_has_one_end_point(checked_config, macro):
 
 
 def test_the_base_is_where_the_macro_s_tip_is(combined):
-    base = StageBase(combined, 1, parallel=False)
+    base = StageBase(combined, 1, ignore_base_rotation=False)
     for q in postures(combined):
         base.update(q, np.zeros(6))
         pose = combined.stages[0].model.tip_pose(q[:3])
@@ -95,9 +95,9 @@ def test_the_base_is_where_the_macro_s_tip_is(combined):
     np.testing.assert_allclose(base.rotation, np.eye(3), atol=1e-15)
 
 
-@pytest.mark.parametrize("parallel", [False, True])
-def test_the_base_moves_at_the_difference_quotient_of_its_place(combined, parallel):
-    base, h = StageBase(combined, 1, parallel), 1e-5
+@pytest.mark.parametrize("ignore_base_rotation", [False, True])
+def test_the_base_moves_at_the_difference_quotient_of_its_place(combined, ignore_base_rotation):
+    base, h = StageBase(combined, 1, ignore_base_rotation), 1e-5
     for q, dq in zip(postures(combined), postures(combined, seed=1), strict=True):
         places = []
         for sign in (-1.0, 1.0):
@@ -109,11 +109,11 @@ def test_the_base_moves_at_the_difference_quotient_of_its_place(combined, parall
         np.testing.assert_allclose(linear, (after - before) / (2.0 * h), atol=1e-8)
         np.testing.assert_allclose(angular, pin.log3(R_after @ R_before.T) / (2.0 * h), atol=1e-8)
         assert np.linalg.norm(linear) > 0.1
-        assert (np.linalg.norm(angular) > 0.1) != parallel
+        assert (np.linalg.norm(angular) > 0.1) != ignore_base_rotation
 
 
 def test_a_parallel_base_keeps_the_orientation_of_home(combined):
-    base = StageBase(combined, 1, parallel=True)
+    base = StageBase(combined, 1, ignore_base_rotation=True)
     for q in postures(combined):
         base.update(q, q)
         np.testing.assert_allclose(base.rotation, np.eye(3), atol=1e-15)
@@ -121,7 +121,7 @@ def test_a_parallel_base_keeps_the_orientation_of_home(combined):
 
 
 def test_the_base_does_not_depend_on_the_joints_above_it(combined):
-    base = StageBase(combined, 1, parallel=False)
+    base = StageBase(combined, 1, ignore_base_rotation=False)
     q = postures(combined)[0]
     found = []
     for own in (q, np.concatenate([q[:3], [3.0, -2.0, 1.0]])):

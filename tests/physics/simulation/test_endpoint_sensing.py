@@ -115,7 +115,7 @@ def damping_ratios(frequency, *keys):
         plant.theta[3:], plant.dtheta[3:] = plant.q[3:], plant.dq[3:]
         q = np.concatenate([theta[:3], plant.q[3:]])
         dq = np.concatenate([np.zeros(3), plant.dq[3:]])
-        tips = make_measured_tips(replace(closed, believed=closed.robot), config, 0)
+        tips = make_measured_tips(replace(closed, nominal=closed.robot), config, 0)
         desired = tips["mini"].correct(0, q, dq, x_d) if tips else x_d
         tau = np.zeros(6)
         tau[3:] = mini.controller.torque(0.0, q, dq, desired)

@@ -7,7 +7,7 @@ from support.physics import assert_order
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.flexible_joints import believe_motors
+from runner.config.flexible_joints import with_nominal_motors
 from runner.config.validation import validate
 from runner.plants.flexible_joints import links_of
 from runner.robots.armature import with_armature
@@ -185,5 +185,5 @@ def test_the_armature_of_rigid_joints_stays_where_it_is():
     assert flexibility.motors.tolist() == [2.0] * 3 + [0.0] * 3
     links = links_of(config.arm.model, flexibility.flexible)
     assert links.armature.tolist() == [0.0] * 3 + [1e-4] * 3
-    believed = believe_motors(config, config.arm).model
-    assert believed.armature.tolist() == [2.0] * 3 + [1e-4] * 3
+    nominal = with_nominal_motors(config, config.arm).model
+    assert nominal.armature.tolist() == [2.0] * 3 + [1e-4] * 3

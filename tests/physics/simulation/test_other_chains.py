@@ -10,7 +10,7 @@ from support import strangers
 from runner.base.errors import ConfigError
 from runner.controllers.macro_mini.macro_mini import later_home_offset
 from runner.controllers.macro_mini.stage_law import StageLaw
-from runner.controllers.macro_mini.stage_loops import CarrierController, RiderController
+from runner.controllers.macro_mini.stage_loops import MacroController, MiniController
 from runner.controllers.operational_space.operational_space import OperationalSpace
 from runner.controllers.operational_space.whole_body import WholeBody
 from runner.controllers.torque_law import PinocchioArm
@@ -234,8 +234,8 @@ def bent(checked_config):
 def test_a_rider_s_target_leaves_the_later_ones_at_their_home_offset(bent, stage):
     arm, q, points, desired = bent
     law, later = Recorder(arm.stages[stage]), later_home_offset(arm, stage)
-    rider = RiderController(arm, stage, law, "rest", later, False, True, 0.25, False, None)
-    rider.torque(0.0, q, np.zeros(9), desired)
+    mini_loop = MiniController(arm, stage, law, "rest", later, False, True, 0.25, False, None)
+    mini_loop.torque(0.0, q, np.zeros(9), desired)
     R = arm.model.frame_poses(q, (arm.stages[stage].base_frame,))[0, :3, :3]
     np.testing.assert_allclose(law.target, R.T @ (desired[0] - later - points[stage - 1]), atol=1e-12)
 
@@ -244,12 +244,12 @@ def test_reach_counts_to_the_stage_s_own_target(bent):
     arm, q, points, desired = bent
     law, later = Recorder(arm.stages[1]), later_home_offset(arm, 1)
     assert np.linalg.norm(desired[0] - points[0]) > 0.2 > np.linalg.norm(desired[0] - later - points[0])
-    RiderController(arm, 1, law, "rest", later, False, True, 0.2, False, None).torque(0.0, q, np.zeros(9), desired)
+    MiniController(arm, 1, law, "rest", later, False, True, 0.2, False, None).torque(0.0, q, np.zeros(9), desired)
     assert law.target is not None
     desired[0] += 0.2
-    RiderController(arm, 1, law, "rest", later, False, True, 0.2, False, None).torque(0.0, q, np.zeros(9), desired)
+    MiniController(arm, 1, law, "rest", later, False, True, 0.2, False, None).torque(0.0, q, np.zeros(9), desired)
     assert law.target is None
-    stretched = RiderController(arm, 1, law, "rest", later, False, True, 0.2, True, None)
+    stretched = MiniController(arm, 1, law, "rest", later, False, True, 0.2, True, None)
     stretched.torque(0.0, q, np.zeros(9), desired)
     assert np.linalg.norm(law.target) == pytest.approx(0.2)
 
@@ -257,7 +257,7 @@ def test_reach_counts_to_the_stage_s_own_target(bent):
 def test_two_way_makes_up_for_where_all_riders_stand(bent):
     arm, q, points, desired = bent
     law = Recorder(arm.stages[0])
-    CarrierController(arm, law, None, False, 0.2, None).torque(0.0, q, np.zeros(9), desired)
+    MacroController(arm, law, None, False, 0.2, None).torque(0.0, q, np.zeros(9), desired)
     np.testing.assert_allclose(law.target, desired[0] - (points[-1] - points[0]), atol=1e-12)
 
 

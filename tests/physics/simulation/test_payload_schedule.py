@@ -38,9 +38,9 @@ def test_at_rest_the_error_is_what_the_new_weight_asks_of_the_law(plant):
     # M(q) w^2 (q_d - q) + G(q) holds the arm with its payload: G'(q).
     config, trace = traced(*HELD, f"plant={plant}", "duration=3", PICKED_UP)
     q, q_d = trace.q[-1], config.path.sample_joints(trace.t[-1:])[0, 0]
-    believed, ((_, loaded),) = config.arm.model, config.loaded
+    nominal, ((_, loaded),) = config.arm.model, config.loaded
     omega = config.controller.natural_frequency
-    asked = omega**2 * believed.mass_matrix(q) @ (q_d - q) + believed.gravity_torque(q)
+    asked = omega**2 * nominal.mass_matrix(q) @ (q_d - q) + nominal.gravity_torque(q)
     np.testing.assert_allclose(asked, loaded.model.gravity_torque(q), rtol=1e-5, atol=1e-9)
     assert np.abs(q_d - q).max() > 1e-3
 

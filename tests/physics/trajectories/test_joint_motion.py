@@ -53,7 +53,9 @@ def test_it_goes_from_rest_to_rest(path):
 def test_the_tip_is_where_the_joints_bring_it(path):
     t = np.linspace(0.0, path.duration, 20)
     q = path.sample_joints(t)[:, 0]
-    np.testing.assert_allclose(path.sample(t)[:, 0], end_points(path.robot, q, path.parallel)[-1], atol=1e-14)
+    np.testing.assert_allclose(
+        path.sample(t)[:, 0], end_points(path.robot, q, path.ignore_base_rotation)[-1], atol=1e-14
+    )
 
 
 def test_its_own_path_has_no_distance_and_points_beside_it_have(path):
