@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.reporting.answers import Asked, judge
-from runner.reporting.sweep.question import ask
+from runner.reporting.sweep.question import find_question
 from runner.reporting.sweep.subject import Subject
 from runner.statistics import compare_paired
 from runner.sweeps.measurements import Axis, Measurements
@@ -76,7 +76,7 @@ def _said(metrics: dict[str, FloatArray]) -> tuple[bool, bool]:
         values={name: values.reshape(2 * _LEVELS, _SEEDS) for name, values in metrics.items()},
         provenance={},
     )
-    question = ask(Subject(measured, tuple(metrics)))
+    question = find_question(Subject(measured, tuple(metrics)))
     answers = [answer for _, some in (*question.overall, *question.at) for answer in some] if question else []
     said = {answer.metric for answer in answers if answer.sign}
     return PRIMARY in said, OTHER in said

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
-from runner.robots.mismatch import scaled
+from runner.robots.mismatch import scale_model
 from runner.robots.robot import with_models
 from runner.schema.model import StrictModel
 
@@ -35,6 +35,6 @@ def build(config, robot, generator):
 
     def change(model, joints, bears_payload):
         own = masses[joints]
-        return scaled(model, own, np.ones(len(own)), np.ones(len(own) + 1))
+        return scale_model(model, own, np.ones(len(own)), np.ones(len(own) + 1))
 
     return with_models(robot, change)

@@ -13,7 +13,7 @@ from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
 from runner.base.errors import ConfigError
 from runner.config.compose.overrides import force
-from runner.plugins.discovery import named, use_plugins
+from runner.plugins.discovery import named_parts, use_plugins
 
 Folders = Sequence[str | Path] | str | Path
 
@@ -191,6 +191,6 @@ def _refuse_hydra(texts: Sequence[str]) -> None:
 
 def _command(words: Sequence[str], folders: Sequence[Path], texts: Sequence[str]) -> str:
     """Return the command that does the same, kept with what is made."""
-    added = [word for text in named() for word in ("--plugin", text)]
+    added = [word for text in named_parts() for word in ("--plugin", text)]
     own = [word for folder in folders for word in ("--config-dir", str(folder))]
     return shlex.join(["runner", *added, *words, *own, *texts])

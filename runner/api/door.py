@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
 from runner.base.errors import RunnerError
-from runner.base.progress import shown
+from runner.base.progress import show_progress
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -19,7 +19,7 @@ def door(function: Callable[P, T]) -> Callable[P, T]:
     @functools.wraps(function)
     def through(*args: P.args, **kwargs: P.kwargs) -> T:
         try:
-            with shown():
+            with show_progress():
                 return function(*args, **kwargs)
         except RunnerError as error:
             raise error.with_traceback(None) from None

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from runner.api.again import Signals
 from runner.base.errors import RunnerError, nearest
-from runner.base.quantities import labelled
+from runner.base.quantities import label_with_unit
 from runner.reporting.charts.figure import Panel, Series
 from runner.reporting.charts.stills import as_figure, draw
 
@@ -89,4 +89,4 @@ def _panel(signals: Signals, title: str, unit: str, columns: Mapping[str, str], 
     ]
     if title == _TITLES["torque"] and unit == "N":
         title = "joint force"
-    return Panel(title[:1].upper() + title[1:], "time (s)", labelled(title.split()[-1], unit), series)
+    return Panel(title[:1].upper() + title[1:], "time (s)", label_with_unit(title.split()[-1], unit), series)

@@ -15,7 +15,7 @@ def has_pybullet() -> bool:
     return find_spec("pybullet") is not None
 
 
-def installed(names: Iterable[str]) -> dict[str, str]:
+def installed_versions(names: Iterable[str]) -> dict[str, str]:
     """Return the versions of libraries by name; one that is not installed is left out."""
     from importlib.metadata import PackageNotFoundError, version  # half of the time in which a word is completed
 

@@ -68,7 +68,7 @@ class SimulationError(Exception):
         super().__init__(f"{reason}{at}")
 
 
-def unwritten(error: OSError, path: Path | None = None) -> str:
+def describe_write_error(error: OSError, path: Path | None = None) -> str:
     """Return that a file cannot be written, why, and what to do about it where its disk is full."""
     name = path or error.filename or "the output, or a temporary file where TMPDIR says"
     return f"cannot write {name}: {error.strerror}" + ("; free space on its disk" if error.errno in DISK_FULL else "")
@@ -82,7 +82,7 @@ def nearest(name: str, allowed: Iterable[str]) -> str:
     return f" (did you mean {matches[0]}?)" if matches else ""
 
 
-def told(error: Exception) -> str:
+def describe_part_error(error: Exception) -> str:
     """Return what an error of a user's part says, with the innermost place in the user's own source."""
     import traceback
 

@@ -88,7 +88,7 @@ def smaller_units(unit: str) -> list[tuple[float, str]]:
     return [(factor, name) for _, factor, name in _SMALLER.get(unit, ())][1:]
 
 
-def fitting(value: float | None, unit: str) -> tuple[float, str]:
+def choose_unit(value: float | None, unit: str) -> tuple[float, str]:
     """Return the factor and the unit in which a value is shown: mm below 0.1 m, µm below 0.01 mm; ms and µs alike."""
     size = 0.0 if value is None else abs(value)
     fits = ((factor, name) for least, factor, name in _SMALLER.get(unit, ()) if size >= least and math.isfinite(size))
@@ -97,7 +97,7 @@ def fitting(value: float | None, unit: str) -> tuple[float, str]:
 
 def quantity(value: float | None, unit: str, digits: int = 3, rounding: float = 0.0) -> str:
     """Return a number with its unit, such as "8.73 mm"; what is rounding has none."""
-    factor, name = fitting(value, unit)
+    factor, name = choose_unit(value, unit)
     plain = 1e-4 if unit == "%" else 1e-2  # per cent have no smaller unit that spares a power of ten
     text = number(value if value is None else factor * value, digits, factor * rounding, plain=plain)
     if text == ROUNDED or unit == "°":
@@ -110,7 +110,7 @@ def above_rounding(value: float | None, unit: str = "1", digits: int = 3) -> str
     return quantity(value, unit, digits, ROUNDING) if unit != "1" else number(value, digits, ROUNDING)
 
 
-def labelled(name: str, unit: str) -> str:
+def label_with_unit(name: str, unit: str) -> str:
     """Return a name with its unit, as on the axis of a figure."""
     return name if unit == "1" else f"{name} ({unit_text(unit)})"
 
@@ -121,7 +121,7 @@ def digits_between(low: float, high: float) -> int:
     return 3 if high <= low else min(12, max(3, 2 - math.floor(math.log10((high - low) / largest))))
 
 
-def ranged(low: float | None, high: float | None, unit: str, beside: float | None = None) -> str:
+def format_range(low: float | None, high: float | None, unit: str, beside: float | None = None) -> str:
     """Return a range with its unit, both ends in the same one, such as "7 to 44 mm".
 
     Args:
@@ -198,8 +198,8 @@ def fewest_powers(
 def _shared(values: Sequence[float | None], unit: str, beside: float | None) -> tuple[float, str]:
     """Return the unit of a value that some others are compared with, or another one in which these need no powers."""
     known = [value for value in values if value is not None]
-    largest = fitting(max(map(abs, known), default=None), unit)
-    wanted = [fitting(beside, unit)] if beside else []
+    largest = choose_unit(max(map(abs, known), default=None), unit)
+    wanted = [choose_unit(beside, unit)] if beside else []
     return fewest_powers(known, [*wanted, largest, *smaller_units(unit)])
 
 

@@ -24,7 +24,7 @@ class Stored:
         return find_folder(text, self.kinds)
 
 
-def stored(*kinds: Kind) -> Stored:
+def stored_folder(*kinds: Kind) -> Stored:
     """Return the type of an argument that is the folder of something stored, of one of some kinds."""
     return Stored(kinds)
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser
-from runner.cli.columns import aligned, number
+from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.audit.own_formulas import Difference
@@ -66,5 +66,5 @@ def _report(quantity: str, differences: "list[Difference]", tolerance: float) ->
             at = " ".join(f"{angle:.3f}" for angle in each.at)
             hint = f"it is the true {each.instead}" if each.instead else ""
             rows.append([each.element, *map(number, (each.largest, each.typical, each.found, each.true)), at, hint])
-        print(aligned(rows))
+        print(align_columns(rows))
     return len(wrong)

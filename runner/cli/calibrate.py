@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from runner.base.quiet import quiet_environment
 from runner.base.texts import one_line
 from runner.cli.arguments import Parser
-from runner.cli.columns import aligned, number
+from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.store import Calibration
@@ -39,11 +39,11 @@ def _report(done: "Calibration") -> str:
         rows.append([name, summary["unit"], *map(number, values)])
     judged = done.consistency
     if judged is None:
-        return aligned(rows)
+        return align_columns(rows)
     band = f"{number(judged['lower'])} to {number(judged['upper'])}"
     verdict = "as large as" if judged["holds"] else "not as large as"
     share = f"{100.0 * judged['level']:g} %"
     text = (
         f"errors are {verdict} predicted: mean normalised error squared {number(judged['mean'])}, {share} band {band}"
     )
-    return f"{aligned(rows)}\n{text}"
+    return f"{align_columns(rows)}\n{text}"

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from runner.base.quiet import quiet_environment
 from runner.base.texts import one_line
-from runner.cli.arguments import Parser, stored
-from runner.cli.columns import aligned, number
+from runner.cli.arguments import Parser, stored_folder
+from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.store import Run, Sweep
@@ -29,7 +29,7 @@ def main(arguments: Sequence[str]) -> int:
     parser = Parser("check", __doc__)
     parser.add_argument(
         "folder",
-        type=stored("run", "sweep", "tuning"),
+        type=stored_folder("run", "sweep", "tuning"),
         metavar="DIR",
         help="folder of a run or a sweep, or latest",
     )
@@ -99,7 +99,7 @@ def _check_sweep(sweep: "Sweep", learned: "Learned", markdown: bool) -> int:
         lines = [f"**{summary}**", "", *_markdown(rows)] if moves else [f"**{summary}**"]
         print("\n".join(lines))
     else:
-        print("\n".join([summary, aligned(rows)]) if moves else f"good: {summary}")
+        print("\n".join([summary, align_columns(rows)]) if moves else f"good: {summary}")
     return 1 if beyond else 0
 
 
@@ -152,7 +152,7 @@ def _report(run: "Run", reference: "Reference", findings: "Sequence[Finding]") -
     head = f"{run.folder}: {len(wrong)} of {len(findings)} metrics fall short of {reference.name}"
     rows = [[f.metric, number(f.value), _range(f.band), f.band.reason] for f in wrong]
     failure = [f"  {run.failure_text}"] if run.failure else []
-    return "\n".join([head, *failure, aligned([["metric", "found", "band", "reason"], *rows])])
+    return "\n".join([head, *failure, align_columns([["metric", "found", "band", "reason"], *rows])])
 
 
 def _range(band: "Band") -> str:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
 from runner.base.texts import one_line
-from runner.cli.columns import aligned
+from runner.cli.columns import align_columns
 
 if TYPE_CHECKING:
     from runner.statistics.share import Share
@@ -34,7 +34,7 @@ def check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | Non
         for said, *row in _rows(run, at_most):
             rows.append([*named, *row])
             good.append(said == "kept")
-    print(aligned([[*(["cell"] if cells else []), *HEADER, "verdict"], *rows]))
+    print(align_columns([[*(["cell"] if cells else []), *HEADER, "verdict"], *rows]))
     count = f"{len(good)} bound{'s' if len(good) > 1 else ''}" + (f" of {len(runs)} runs" if len(runs) > 1 else "")
     good_text, bad_text = ("kept in every repetition", "broken") if at_most is None else (
         f"each failing with a probability below {at_most:g}", f"not shown to fail with a probability below {at_most:g}"

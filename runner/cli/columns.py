@@ -12,7 +12,7 @@ COMPARED = ("interval", "n", "effect", "p")
 """Columns of what `answer_cells` returns, between the difference and the word."""
 
 
-def aligned(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
+def align_columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
     """Return rows of equal length as lines with aligned columns; cells are made safe to print."""
     rows = [[one_line(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

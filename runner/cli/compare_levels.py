@@ -5,13 +5,13 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from runner.base.texts import one_line
-from runner.cli.columns import COMPARED, aligned, answer_cells
+from runner.cli.columns import COMPARED, align_columns, answer_cells
 from runner.reporting.answers import EXPLAINED, Asked, judge
 from runner.reporting.comparison.caveats import caveats_of
 from runner.reporting.comparison.cells import label_text
 from runner.reporting.comparison.levels import levels
 from runner.reporting.comparison.side import Side, open_side, stored_part
-from runner.reporting.comparison.words import NOISE_ALONE, counted, noise_alone
+from runner.reporting.comparison.words import NOISE_ALONE, format_count, noise_alone
 from runner.reporting.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep
 from runner.sweeps.finer_step import work_out_sweep
@@ -43,9 +43,11 @@ def _lines(side: Side, axis: str, within: Sequence[str] | None, metrics: Sequenc
     cells = len(measurements.hashes)
     yield one_line(f"{side.folder}  {cells} cells, by {axis}; repetitions in each: {measurements.repetitions}")
     if side.missing:
-        yield one_line(f"{counted(side.missing, 'cell is', 'cells are')} not stored; continue with: {side.command}")
+        yield one_line(
+            f"{format_count(side.missing, 'cell is', 'cells are')} not stored; continue with: {side.command}"
+        )
     if side.failed:
-        yield f"{counted(side.failed, 'cell', 'cells')} failed; a failed repetition counts as beyond every number"
+        yield f"{format_count(side.failed, 'cell', 'cells')} failed; a failed repetition counts as beyond every number"
     along = [difference for difference in measurements.differences if axis in difference.axes or not difference.axes]
     if along:
         yield f"the levels of {axis} differ in more than {axis}; what follows may be due to any of these:"
@@ -53,11 +55,11 @@ def _lines(side: Side, axis: str, within: Sequence[str] | None, metrics: Sequenc
             [difference.key, "; ".join(f"{levels_}: {text}" for levels_, text in difference.values)]
             for difference in along
         ]
-        yield aligned(rows)
+        yield align_columns(rows)
     else:
         yield f"the levels of {axis} differ in {axis} alone"
     caveats = [[one.rule, f"{one.count} of {one.cells} cells", one.worst] for one in caveats_of(side)]
-    yield f"caveats:\n{aligned(caveats)}" if caveats else "no caveats"
+    yield f"caveats:\n{align_columns(caveats)}" if caveats else "no caveats"
     yield ""
     first = first_screen(metrics or whole_metrics({one.metric: None for one in found}))
     answers = judge([Asked(one.metric, one.unit, one.comparison) for one in found], first)
@@ -69,7 +71,7 @@ def _lines(side: Side, axis: str, within: Sequence[str] | None, metrics: Sequenc
     for one, answer in zip(found, answers, strict=True):
         names = [label_text(one.pair.at) if one.pair.at else "all", f"{one.pair.first}, {one.pair.second}"]
         rows.append([*names, one.metric, one.unit, *answer_cells(answer)])
-    yield aligned([header, *rows], indent="")
+    yield align_columns([header, *rows], indent="")
     yield ""
     yield EXPLAINED
     if measurements.repetitions > 1 and noise_alone(config for config, _ in measurements.configs):

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.texts import one_line
-from runner.cli.columns import aligned, number
+from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
@@ -48,13 +48,13 @@ def _told(found: "RecordingComparison") -> str:
         f"recording  {found.recording.path}",
         one_line(words.aligned_text(found)),
         "",
-        aligned([words.RESIDUAL_HEADER, *words.residual_rows(found, number)], indent=""),
+        align_columns([words.RESIDUAL_HEADER, *words.residual_rows(found, number)], indent=""),
         "",
         one_line(words.FIT),
         "",
-        aligned([["metric", "unit", "run", "recording"], *words.metric_rows(found, number)], indent=""),
+        align_columns([["metric", "unit", "run", "recording"], *words.metric_rows(found, number)], indent=""),
         "",
         *words.friction_lines(found),
     ]
     rows = words.friction_rows(found, number)
-    return "\n".join([*parts, *([aligned([words.FRICTION_HEADER, *rows], indent="")] if rows else [])])
+    return "\n".join([*parts, *([align_columns([words.FRICTION_HEADER, *rows], indent="")] if rows else [])])

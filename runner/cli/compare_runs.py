@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from runner.base.texts import one_line
-from runner.cli.columns import COMPARED, aligned, answer_cells, number
+from runner.cli.columns import COMPARED, align_columns, answer_cells, number
 from runner.reporting.comparison.side import letter
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def print_runs(runs: "Sequence[Run]", metrics: Sequence[str]) -> None:
 
 def _print_two(a: "Run", b: "Run", name: str, metrics: Sequence[str], end: str) -> None:
     from runner import store
-    from runner.reporting.comparison.beyond import beyond
+    from runner.reporting.comparison.beyond import find_differences
     from runner.reporting.comparison.cells import one_cell
     from runner.reporting.comparison.side import side_of_run
     from runner.sweeps.finer_step import work_out
@@ -45,7 +45,7 @@ def _print_two(a: "Run", b: "Run", name: str, metrics: Sequence[str], end: str) 
         work_out(run.folder.parent.parent, [run])
     sides = side_of_run("A", a), side_of_run(name, b)
     print(one_line(f"A  {_headline(a)}"), one_line(f"{name}  {_headline(b)}"), "", sep="\n")
-    found = beyond(*sides, one_cell())
+    found = find_differences(*sides, one_cell())
     print(one_line(found.in_words("A", name)))
     print(_differing("config", store.simulated_part(a.config), store.simulated_part(b.config), name))
     if a.urdf != b.urdf:
@@ -53,7 +53,7 @@ def _print_two(a: "Run", b: "Run", name: str, metrics: Sequence[str], end: str) 
     print(_differing("provenance", _provenance(a), _provenance(b), name))
     print(_caveats(a, b, name), end="\n\n")
     header = ["metric", "unit", "A", name, f"{name} - A", f"{name} / A"]
-    print(aligned([header, *_metric_rows(a, b, metrics)], indent=""))
+    print(align_columns([header, *_metric_rows(a, b, metrics)], indent=""))
     print(f"\n{_paired(*sides, metrics)}", end=end)
 
 
@@ -69,7 +69,7 @@ def _differing(what: str, a: Mapping[str, Any], b: Mapping[str, Any], name: str)
         for key in dict.fromkeys([*flat_a, *flat_b])
         if flat_a.get(key) != flat_b.get(key)
     ]
-    return f"{what} differs:\n{aligned([['key', 'A', name], *rows])}" if rows else f"same {what}"
+    return f"{what} differs:\n{align_columns([['key', 'A', name], *rows])}" if rows else f"same {what}"
 
 
 def _flatten(value: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
@@ -88,7 +88,7 @@ def _caveats(a: "Run", b: "Run", name: str) -> str:
     """Return why either result may not be what it seems, or that no rule found anything."""
     found = {"A": a.caveats, name: b.caveats}
     rows = [[side, str(caveat["rule"]), str(caveat["text"])] for side, caveats in found.items() for caveat in caveats]
-    return f"caveats:\n{aligned(rows)}" if rows else "no caveats"
+    return f"caveats:\n{align_columns(rows)}" if rows else "no caveats"
 
 
 def _metric_rows(a: "Run", b: "Run", metrics: Sequence[str]) -> Iterator[list[str]]:
@@ -130,7 +130,7 @@ def _paired(a: "Side", b: "Side", metrics: Sequence[str]) -> str:
     return "\n".join(
         [
             *(answer.sentence(a.name, b.name) for answer in answers if answer.metric in first),
-            aligned([["metric", "unit", f"{b.name} - {a.name}", *COMPARED, f"{b.name} is"], *rows]),
+            align_columns([["metric", "unit", f"{b.name} - {a.name}", *COMPARED, f"{b.name} is"], *rows]),
             EXPLAINED,
             *([NOISE_ALONE] if alone else []),
         ]

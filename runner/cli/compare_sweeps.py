@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from runner.base.texts import one_line
-from runner.cli.columns import COMPARED, aligned, answer_cells, number
+from runner.cli.columns import COMPARED, align_columns, answer_cells, number
 from runner.reporting.answers import EXPLAINED, Asked, judge
 from runner.reporting.comparison.beyond import Beyond, Value
 from runner.reporting.comparison.caveats import SideCaveat, caveats_of
@@ -51,7 +51,7 @@ def _lines(found: SweepComparison, metrics: Sequence[str]) -> Iterator[str]:
     yield from _values(found.beyond, a.name, b.name)
     yield from map(one_line, cells_told(found))
     caveats = [*caveats_of(a), *caveats_of(b)]
-    yield f"caveats:\n{aligned(list(map(_caveat, caveats)))}" if caveats else "no caveats"
+    yield f"caveats:\n{align_columns(list(map(_caveat, caveats)))}" if caveats else "no caveats"
     yield ""
     first = first_screen(metrics or whole_metrics([one.metric for one in found.pooled]))
     answers = judge([Asked(one.metric, one.unit, one.comparison) for one in found.pooled], first)
@@ -71,12 +71,12 @@ def _lines(found: SweepComparison, metrics: Sequence[str]) -> Iterator[str]:
     ]
     rows = [[*_head(one), *answer_cells(answer), f"{one.below}, {one.above}"]
             for one, answer in zip(found.pooled, answers, strict=True)]  # fmt: skip
-    yield aligned([header, *rows], indent="")
+    yield align_columns([header, *rows], indent="")
     if found.cells:
         yield ""
         yield f"largest differences in one cell, relative to the metric (chosen from {found.candidates}, not tested):"
         rows = [[label_text(one.cell), *_head(one), number(one.comparison.difference)] for one in found.cells]
-        yield aligned([["cell", *header[:5]], *rows])
+        yield align_columns([["cell", *header[:5]], *rows])
     yield ""
     yield f"{POOLED} {EXPLAINED}"
     if found.noise_alone:
@@ -87,9 +87,9 @@ def _values(found: Beyond, a: str, b: str) -> Iterator[str]:
     """Yield tables of the values that differ, and of what made the runs."""
     values = [*found.options, *found.values]
     if values:
-        yield aligned([["key", a, b, "at"], *map(_value, values)])
+        yield align_columns([["key", a, b, "at"], *map(_value, values)])
     if found.provenance:
-        yield f"provenance differs:\n{aligned([['made by', a, b, ''], *map(_value, found.provenance)])}"
+        yield f"provenance differs:\n{align_columns([['made by', a, b, ''], *map(_value, found.provenance)])}"
     else:
         yield "same provenance"
 

@@ -41,7 +41,7 @@ def tell_run(run: "Run", made: bool, thresholds: Any) -> int:
 
 def _tell_metrics(run: "Run", made: bool) -> None:
     """Print what was run, where it is, and the metrics that say most of it."""
-    from runner.cli.columns import aligned
+    from runner.cli.columns import align_columns
     from runner.reporting.key_metrics import key_metrics
 
     config, count = run.config, run.record["repetitions"]
@@ -51,17 +51,17 @@ def _tell_metrics(run: "Run", made: bool) -> None:
     print(one_line(f"runner: {what}: {repetitions}, {where}"), file=sys.stderr)
     rows = [[metric.title, metric.value, metric.remark] for metric in key_metrics(run, _METRICS)]
     if rows:
-        print(aligned(rows), file=sys.stderr)
+        print(align_columns(rows), file=sys.stderr)
 
 
 def _tell_spec(run: "Run") -> None:
     """Print how often the bounds of a run's spec are kept, where it has any."""
     if run.spec is None:
         return
-    from runner.cli.columns import aligned
+    from runner.cli.columns import align_columns
     from runner.reporting.spec_words import HEADER, lacking_text, spec_rows
 
-    print(aligned([HEADER, *spec_rows(run.spec)]), file=sys.stderr)
+    print(align_columns([HEADER, *spec_rows(run.spec)]), file=sys.stderr)
     lacking = lacking_text(run.spec, run.metrics)
     if lacking:
         print(one_line(f"runner: {lacking}"), file=sys.stderr)
@@ -81,12 +81,12 @@ def _tell_caveats(run: "Run", thresholds: Any) -> None:
 def tell_sweep(ended: "Ended") -> int:
     """Tell of a sweep; return its exit code."""
     if ended.failures:
-        from runner.cli.columns import aligned
+        from runner.cli.columns import align_columns
 
         rows = [[" ".join(overrides), why, str(where)] for overrides, why, where in ended.failures[:_FAILURES_SHOWN]]
         count = len(ended.failures)
         print(f"runner: {count} run{'s' if count > 1 else ''} failed", file=sys.stderr)
-        print(aligned([["run", "why", "more in"], *rows]), file=sys.stderr)
+        print(align_columns([["run", "why", "more in"], *rows]), file=sys.stderr)
         if len(ended.failures) > len(rows):
             print(f"  and {len(ended.failures) - len(rows)} more", file=sys.stderr)
     counts = ended.ends.caveats

@@ -49,10 +49,10 @@ def main(arguments: Sequence[str]) -> int:
     width = _millimetres(options.width)
     quiet_environment()
     from runner.reporting.charts.sheet import column
-    from runner.reporting.export.figures import chosen, figures_of, write_figures
+    from runner.reporting.export.figures import choose_figures, figures_of, write_figures
 
     document, report = _document(options.folder)
-    figures = chosen(figures_of(document), options.only)
+    figures = choose_figures(figures_of(document), options.only)
     folder = report / "figures" if options.output is None else options.output
     for name in write_figures(figures, folder, column(width)):
         print(name)

@@ -85,16 +85,16 @@ def _read_bullets(docstring: str) -> dict[str, str]:
 
 
 def _list_claims(_: Sequence[Path]) -> dict[str, str]:
-    from runner.reporting.claims import claimed, load_claims, load_statements, stated
+    from runner.reporting.claims import load_claims, load_statements, works_with_claims, works_with_statements
 
     claims = {
         f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
-        for source in claimed()
+        for source in works_with_claims()
         for claim in load_claims(source)
     }
     statements = {
         f"{source} {number}": f"{each.statement} ({each.place})"
-        for source in stated()
+        for source in works_with_statements()
         for number, each in enumerate(load_statements(source), start=1)
     }
     return claims | statements

@@ -12,9 +12,9 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import NoReturn
 
-from runner.base.errors import DISK_FULL, RunnerError, nearest, told, unwritten, user_place
+from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, nearest, user_place
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
-from runner.base.progress import shown
+from runner.base.progress import show_progress
 from runner.base.texts import one_line
 from runner.cli.completion import answer, is_asked
 
@@ -98,7 +98,7 @@ def main() -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0  # nobody reads on, as in `runner list | head -1`
         if not isinstance(error, BrokenPipeError):
-            print(f"runner: {unwritten(error) if error.errno in DISK_FULL else error}", file=sys.stderr)
+            print(f"runner: {describe_write_error(error) if error.errno in DISK_FULL else error}", file=sys.stderr)
             code = 2
     sys.exit(code)
 
@@ -128,7 +128,7 @@ def dispatch(arguments: Sequence[str]) -> int:
     try:
         if is_asked(arguments):
             return answer(arguments, os.environ)
-        with shown():
+        with show_progress():
             return _choose(_take_plugins(arguments))
     except RunnerError as error:
         print(f"runner: {error}", file=sys.stderr)
@@ -141,7 +141,7 @@ def dispatch(arguments: Sequence[str]) -> int:
 
         if not (user_place(error) and has_users_parts()):  # a fault of ours: its whole trace is of use
             raise
-        print(one_line(f"runner: your plug-in failed: {told(error)}"), file=sys.stderr)
+        print(one_line(f"runner: your plug-in failed: {describe_part_error(error)}"), file=sys.stderr)
         return 2
     except KeyboardInterrupt as error:
         ended, code = ("terminated", 143) if isinstance(error, TerminatedError) else ("interrupted", 130)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from runner.base.quiet import quiet_environment
-from runner.cli.arguments import Parser, name_list, stored
+from runner.cli.arguments import Parser, name_list, stored_folder
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -12,7 +12,7 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument(
         "folders",
         nargs="+",
-        type=stored("run", "sweep", "tuning"),
+        type=stored_folder("run", "sweep", "tuning"),
         metavar="DIR",
         help="run folders, sweep folders, or the folder of one tuning; or latest",
     )

@@ -20,7 +20,7 @@ from runner.base.progress.stages import of_audit, of_work
 from runner.base.quiet import quiet_environment
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
-from runner.plugins.discovery import in_use, named
+from runner.plugins.discovery import in_use, named_parts
 from runner.store.latest import note
 from runner.study.changes import FILE
 from runner.study.names import find_work, work_names
@@ -79,7 +79,7 @@ def main(arguments: Sequence[str]) -> int:
     if options.work not in (AUDIT, "all"):
         find_work(options.work, (AUDIT, "all"))  # one that is not there is told at once
     quiet_environment()
-    plugins = [word for text in named() for word in ("--plugin", text)]
+    plugins = [word for text in named_parts() for word in ("--plugin", text)]
     command = shlex.join(["runner", *plugins, "reproduce", *arguments])
     way = _Way(options.output, options.overrides, command, options.profile, options.code, _parts(options.work))
     made = dict(_reproduce(work, way) for work in _chosen(options.work, way))
@@ -140,13 +140,13 @@ def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
 
 def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
     """Print the findings that no longer hold and the caveats that are not expected; return whether there are any."""
-    from runner.study.conclusions import fallen
+    from runner.study.conclusions import list_failed_findings
     from runner.study.expected_caveats import unexpected_caveats
 
     lines = [
         f"{work}: {line}"
         for work, each in made.items()
-        for line in (*fallen(each.document), *unexpected_caveats(each.runs, each.expected))
+        for line in (*list_failed_findings(each.document), *unexpected_caveats(each.runs, each.expected))
     ]
     for line in lines:
         print(f"runner: {line}", file=sys.stderr)

@@ -12,8 +12,8 @@ import numpy as np
 
 from runner.base import progress
 from runner.base.quiet import quiet_environment
-from runner.cli.arguments import Parser, name_list, stored
-from runner.cli.columns import aligned, number
+from runner.cli.arguments import Parser, name_list, stored_folder
+from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.analysis.sensitivity import Sensitivity
@@ -33,7 +33,7 @@ _GROUPS = (
 def main(arguments: Sequence[str]) -> int:
     """Print a table for each metric; return 1 where differences disagree."""
     parser = Parser("sensitivity", __doc__)
-    parser.add_argument("run", type=stored("run"), metavar="RUN", help="folder of a run, or latest")
+    parser.add_argument("run", type=stored_folder("run"), metavar="RUN", help="folder of a run, or latest")
     parser.add_argument("--metrics", type=name_list, metavar="A,B", help="which metrics; default: the main ones")
     parser.add_argument(
         "--parameters",
@@ -59,7 +59,7 @@ def main(arguments: Sequence[str]) -> int:
     print(_about(run, found))
     for name in names:
         print(f"\n{name}: {number(found.metrics[name])} {_unit(name)}")
-        print(aligned(_rows(found, name, compared.get(name))))
+        print(align_columns(_rows(found, name, compared.get(name))))
     print(*_notes(found), sep="\n")
     return _compare(found, compared) if options.finite_differences else 0
 

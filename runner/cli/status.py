@@ -4,13 +4,15 @@ import sys
 from collections.abc import Sequence
 
 from runner.base.quiet import quiet_environment
-from runner.cli.arguments import Parser, stored
+from runner.cli.arguments import Parser, stored_folder
 
 
 def main(arguments: Sequence[str]) -> int:
     """Print how many runs are done, failed or have caveats, what is left and for how long, and how to go on."""
     parser = Parser("status", __doc__)
-    parser.add_argument("folder", type=stored("sweep", "tuning"), metavar="DIR", help="folder of a sweep, or latest")
+    parser.add_argument(
+        "folder", type=stored_folder("sweep", "tuning"), metavar="DIR", help="folder of a sweep, or latest"
+    )
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner.base.progress import in_words

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from runner.base.errors import RunnerError, StoreError
 from runner.base.quiet import quiet_environment
 from runner.base.texts import one_line
-from runner.cli.arguments import Parser, name_list, stored
+from runner.cli.arguments import Parser, name_list, stored_folder
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -28,7 +28,10 @@ def main(arguments: Sequence[str]) -> int:
     """Write the whole table into the sweep's folder, and print that as the last line; or what the options ask for."""
     parser = Parser("table", __doc__)
     parser.add_argument(
-        "folder", type=stored("sweep", "run", "tuning"), metavar="DIR", help="folder of a sweep or run, or latest"
+        "folder",
+        type=stored_folder("sweep", "run", "tuning"),
+        metavar="DIR",
+        help="folder of a sweep or run, or latest",
     )
     parser.add_argument("--format", metavar="FORMAT", choices=FORMATS, help=", ".join(FORMATS))
     parser.add_argument("--metrics", type=name_list, metavar="A,B", help="which metrics")
@@ -127,11 +130,11 @@ def _of_run(options: "Namespace", chosen: str) -> int:
         if not chosen:
             print(options.folder)
         return 0
-    from runner.reporting.export.paper_table import measured
+    from runner.reporting.export.paper_table import measure_run
     from runner.reporting.export.tidy import as_csv, as_parquet, of_one
 
-    frame = of_one(measured(run), options.metrics)
-    return _put(as_parquet(frame, measured(run)) if chosen == "parquet" else as_csv(frame), options.output)
+    frame = of_one(measure_run(run), options.metrics)
+    return _put(as_parquet(frame, measure_run(run)) if chosen == "parquet" else as_csv(frame), options.output)
 
 
 def _for_paper(table: "PaperTable", chosen: str) -> bytes:

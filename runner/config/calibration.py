@@ -13,7 +13,7 @@ from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
 from runner.config.arms import build_robot
 from runner.config.compose.compose import Composed
-from runner.config.compose.problems import Problems, sure
+from runner.config.compose.problems import Problems, require
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
 from runner.config.robot import RobotConfig
 from runner.plugins.registry import KindConfig
@@ -83,7 +83,7 @@ def validate_calibration(composed: Composed) -> CalibrationConfig:
     bench = None if calibration is None else problems.attempt(_make_bench, robot, arm, sensor)
     procedure = problems.attempt(CALIBRATIONS.build, calibration, bench)
     problems.report()
-    return CalibrationConfig(sure(settings), sure(robot), sure(arm), sure(procedure), resolved)
+    return CalibrationConfig(require(settings), require(robot), require(arm), require(procedure), resolved)
 
 
 def _check_keys(composed: Composed) -> None:

@@ -7,7 +7,7 @@ from runner.config.flexible_joints import find_flexibility
 from runner.config.run import RunConfig
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
 from runner.robots.armature import with_armature
-from runner.robots.beams import stiffened
+from runner.robots.beams import stiffen_robot
 from runner.robots.robot import Robot
 
 _FASTEST = 0.5  # step times the largest rate; see runner/config/flexible_joints.py
@@ -22,7 +22,7 @@ def with_nominal_links(config: RunConfig, nominal: Robot) -> Robot:
     """Return a rigid nominal robot with the masses of flexible links and motors."""
     if not isinstance(config.plant, Rk4FlexibleLinksConfig):
         return nominal
-    return with_armature(stiffened(nominal, config.plant.beams(config.arm)), config.plant.motors(config.arm))
+    return with_armature(stiffen_robot(nominal, config.plant.beams(config.arm)), config.plant.motors(config.arm))
 
 
 def check_flexible_links(config: RunConfig) -> None:

@@ -9,7 +9,7 @@ from runner.base.errors import ConfigError
 from runner.base.memory import Memory
 from runner.base.texts import few
 from runner.config.arms import build_loaded, build_robot
-from runner.config.compose.problems import Problems, sure
+from runner.config.compose.problems import Problems, require
 from runner.config.computation import check_computation, computation_of, count_late
 from runner.config.disturbance_observer import check_observer
 from runner.config.endpoint_sensor import endpoint_ticks
@@ -68,8 +68,8 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     steps = problems.recall(count_steps, arm, groups.plant, groups.controller)
     problems.report()
     # What follows is made from parts that are sound, each for itself. Parts of the user's may remember other runs.
-    build_loops = problems.recall if CONTROLLERS.is_ours(sure(groups.controller).kind) else problems.attempt
-    build_path = problems.recall if TRAJECTORIES.is_ours(sure(groups.trajectory).kind) else problems.attempt
+    build_loops = problems.recall if CONTROLLERS.is_ours(require(groups.controller).kind) else problems.attempt
+    build_path = problems.recall if TRAJECTORIES.is_ours(require(groups.trajectory).kind) else problems.attempt
     loaded = problems.recall(build_loaded, *made_of)
     ignore_base_rotation = problems.recall(_ignores_base_rotation, arm, groups.plant)
     path = build_path(_build_path, arm, groups.trajectory, ignore_base_rotation)
@@ -80,26 +80,26 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     late = problems.recall(count_late, groups.plant, loops)
     problems.report()
     return _checked(RunConfig(
-        settings=sure(groups.settings),
-        robot=sure(groups.robot),
-        arm=sure(arm),
-        loaded=sure(loaded),
-        plant=sure(groups.plant),
-        controller=sure(groups.controller),
-        loops=sure(loops),
-        commands=CONTROLLERS.commands(sure(groups.controller).kind),
-        path=sure(path),
-        environment=sure(groups.environment),
-        noise=noise or exact_encoders(sure(arm)),  # a plug-in's measure in its place
-        torque_limits=sure(torque_limits),
-        wrist_sensor=sure(groups.wrist_sensor),
-        joint_torques=sure(groups.joint_torque_sensor).by_joint(sure(arm)),
-        mismatch=sure(groups.mismatch), endpoint_sensor=sure(groups.endpoint_sensor),
-        disturbance_observer=sure(groups.disturbance_observer), notch=groups.notch,
-        timing=Timing(*sure(steps), sure(late), computation_of(sure(groups.plant)).is_even, sure(ticks)),
-        ignore_base_rotation=sure(ignore_base_rotation),
-        sweep=sure(groups.sweep), limits=sure(groups.limits),
-        caveats=sure(groups.caveats), spec=sure(groups.spec),
+        settings=require(groups.settings),
+        robot=require(groups.robot),
+        arm=require(arm),
+        loaded=require(loaded),
+        plant=require(groups.plant),
+        controller=require(groups.controller),
+        loops=require(loops),
+        commands=CONTROLLERS.commands(require(groups.controller).kind),
+        path=require(path),
+        environment=require(groups.environment),
+        noise=noise or exact_encoders(require(arm)),  # a plug-in's measure in its place
+        torque_limits=require(torque_limits),
+        wrist_sensor=require(groups.wrist_sensor),
+        joint_torques=require(groups.joint_torque_sensor).by_joint(require(arm)),
+        mismatch=require(groups.mismatch), endpoint_sensor=require(groups.endpoint_sensor),
+        disturbance_observer=require(groups.disturbance_observer), notch=groups.notch,
+        timing=Timing(*require(steps), require(late), computation_of(require(groups.plant)).is_even, require(ticks)),
+        ignore_base_rotation=require(ignore_base_rotation),
+        sweep=require(groups.sweep), limits=require(groups.limits),
+        caveats=require(groups.caveats), spec=require(groups.spec),
         plugged=groups.plugged, resolved=resolved,
     ))  # fmt: skip
 
@@ -108,7 +108,7 @@ def _shape(groups: Groups, arm: Robot, path: Trajectory, loops: tuple[Loop, ...]
     """Return the desired motion as an input shaper leaves it, if any; it starts where the motion itself does."""
     if groups.input_shaper is None:
         return path
-    controller, plant = sure(groups.controller), sure(groups.plant)
+    controller, plant = require(groups.controller), require(groups.plant)
     q = (
         path.q_start
         if isinstance(path, TipOfJoints)

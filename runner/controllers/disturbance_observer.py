@@ -265,7 +265,7 @@ class Ticks(Protocol):
         ...
 
 
-def observed(
+def add_observers(
     config: DisturbanceObserverConfig, robot: Robot, loops: tuple[Loop, ...], limits: FloatArray, ticks: Ticks
 ) -> tuple[Loop, ...]:
     """Return control loops with the observers that a config gives their laws, if any.

@@ -149,7 +149,7 @@ class NotchedController:
         return passed
 
 
-def notched(loops: tuple[Loop, ...], frequency: FloatArray, width: float) -> tuple[Loop, ...]:
+def add_notch(loops: tuple[Loop, ...], frequency: FloatArray, width: float) -> tuple[Loop, ...]:
     """Return control loops whose torques pass a notch.
 
     Args:

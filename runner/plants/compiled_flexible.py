@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.plants.compiled_motion import ArmCode, Mover
 from runner.robots.model import RobotModel
 from runner.symbolic.algebra import ArmAlgebra
-from runner.symbolic.arm import known
+from runner.symbolic.arm import to_scalars
 from runner.symbolic.code import ROWS, STATE, Part
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.places import Slots
@@ -86,12 +86,12 @@ class CompiledFlexibleStep(ArmCode):
         self._springs = stiffness[flexible], damping[flexible], motors[flexible]
 
     def _names(self) -> tuple[str, str]:
-        springs = [known(own, any_number) for own in self._springs]
+        springs = [to_scalars(own, any_number) for own in self._springs]
         pattern = f"flexible step {arm_pattern(self._model)} {self._on} {springs!r}"
         return pattern, f"the motion of {self._model.nq} joints with springs"
 
     def _scalars(self, number: Callable[[float], Any]) -> tuple[Any, ...]:
-        return *super()._scalars(number), Springs(*(known(own, number) for own in self._springs))
+        return *super()._scalars(number), Springs(*(to_scalars(own, number) for own in self._springs))
 
     def _express(self, at: Slots) -> list[Part]:
         parts, n, on = list[Part](), self._model.nq, self._on

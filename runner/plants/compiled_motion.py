@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.robots.robot import StageBase
 from runner.symbolic.algebra import ArmAlgebra, Factors
-from runner.symbolic.arm import ArmConstants, constants_of, known
+from runner.symbolic.arm import ArmConstants, constants_of, to_scalars
 from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat
 from runner.symbolic.expression import Value, absolute, both, equal, less, places, select
 from runner.symbolic.places import Slots
@@ -75,7 +75,7 @@ def motion_scalars(motion: "Motion", step: float, tick: float, number: Callable[
         elif index:
             base = constants_of(robot.model, number, [0.0] * 3, str(robot.stages[index].base_frame))
         constants = constants_of(arm.model, number, own)
-        arms.append(ArmScalars(constants, known(arm.viscous, number), known(arm.coulomb, number), base))
+        arms.append(ArmScalars(constants, to_scalars(arm.viscous, number), to_scalars(arm.coulomb, number), base))
     return MotionScalars(number(step), number(tick), gravity, tuple(arms))
 
 

@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
-from runner.base.errors import ConfigError, RunnerError, nearest, told
+from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest
 
 GROUPS = (
     "calibration", "controller", "environment", "joint_torque_sensor", "metric", "mismatch", "noise", "plant",
@@ -70,7 +70,7 @@ def in_use() -> tuple[str, ...]:
     return tuple(os.environ.get(_VARIABLE, "").splitlines())
 
 
-def named() -> list[str]:
+def named_parts() -> list[str]:
     """Return the parts named on the command line, as it takes them; files relative to the working directory."""
     found = []
     for line in in_use():
@@ -79,7 +79,7 @@ def named() -> list[str]:
     return found
 
 
-def added(group: str) -> tuple[EntryPoint, ...]:
+def added_parts(group: str) -> tuple[EntryPoint, ...]:
     """Return the parts of a group that do not come with this package.
 
     Installed packages are read once for each `sys.path`, as that takes milliseconds and is asked for each group.
@@ -90,7 +90,7 @@ def added(group: str) -> tuple[EntryPoint, ...]:
 
 def has_users_parts() -> bool:
     """Tell whether there are parts of the user's; those of our own works are none."""
-    return any(not point.value.startswith("runner.") for group in GROUPS for point in added(group))
+    return any(not point.value.startswith("runner.") for group in GROUPS for point in added_parts(group))
 
 
 def load(group: str, name: str, module: str) -> ModuleType:
@@ -104,7 +104,9 @@ def load(group: str, name: str, module: str) -> ModuleType:
     except Exception as error:
         if module.startswith("runner."):
             raise
-        raise ConfigError([f"{group} {name}: module {module} cannot be imported: {told(error)}"]) from error
+        raise ConfigError(
+            [f"{group} {name}: module {module} cannot be imported: {describe_part_error(error)}"]
+        ) from error
 
 
 def source_files(module: str) -> list[Path]:
@@ -124,7 +126,7 @@ def source_files(module: str) -> list[Path]:
 def digests() -> dict[str, str]:
     """Return a digest of the source of each part named on the command line, by what names it."""
     found = {}
-    for text in named():
+    for text in named_parts():
         content = b"\0".join(path.read_bytes() for path in source_files(_point(text).value))
         found[text] = hashlib.sha256(content).hexdigest()[:24]
     return found

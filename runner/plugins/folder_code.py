@@ -9,7 +9,7 @@ from importlib.util import module_from_spec
 from pathlib import Path
 from types import ModuleType
 
-from runner.base.errors import RunnerError, told
+from runner.base.errors import RunnerError, describe_part_error
 from runner.base.paths import package_dir
 
 
@@ -32,7 +32,7 @@ def folder_module(folder: Path, name: str, package: str = "") -> ModuleType:
         return importlib.import_module(f"{package or _package_of(folder)}.{name}")
     except Exception as error:
         path = folder.joinpath(*name.split(".")).with_suffix(".py")
-        raise RunnerError(f"{path} cannot be imported: {told(error)}") from error
+        raise RunnerError(f"{path} cannot be imported: {describe_part_error(error)}") from error
 
 
 def _package_of(folder: Path) -> str:

@@ -6,7 +6,7 @@ from importlib import import_module
 from types import ModuleType
 
 from runner.base.errors import ConfigError
-from runner.plugins.discovery import added, load
+from runner.plugins.discovery import added_parts, load
 
 FAMILIES = tuple(f"runner.metrics.{name}" for name in ("positioning", "tracking", "effort", "reaching", "contact"))
 """Modules of the built-in families of metrics, in the order in which reports list them."""
@@ -23,7 +23,7 @@ def families() -> list[ModuleType]:
 
 def added_families() -> list[ModuleType]:
     """Return the modules of the user-supplied families of metrics; see `families`."""
-    return [_load(point.name, point.value) for point in added("metric")]
+    return [_load(point.name, point.value) for point in added_parts("metric")]
 
 
 def _load(name: str, place: str) -> ModuleType:

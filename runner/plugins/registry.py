@@ -11,9 +11,9 @@ from functools import lru_cache
 from types import ModuleType
 from typing import Concatenate, Generic, Literal, ParamSpec, Protocol, TypeVar, runtime_checkable
 
-from runner.base.errors import ConfigError, RunnerError, nearest, told
+from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest
 from runner.base.former_names import explain_value
-from runner.plugins.discovery import added, load
+from runner.plugins.discovery import added_parts, load
 from runner.schema.model import StrictModel
 
 
@@ -112,7 +112,7 @@ class Kinds:
         return load(self.group, kind, modules[kind])
 
     def _plugins(self) -> dict[str, str]:
-        return {point.name: point.value for point in added(self.group)}
+        return {point.name: point.value for point in added_parts(self.group)}
 
 
 class Registry(Kinds, Generic[C, P, T]):
@@ -156,4 +156,6 @@ class Registry(Kinds, Generic[C, P, T]):
         except RunnerError:
             raise
         except Exception as error:
-            raise ConfigError([f"{self.group}.kind: '{config.kind}' cannot be built: {told(error)}"]) from error
+            raise ConfigError(
+                [f"{self.group}.kind: '{config.kind}' cannot be built: {describe_part_error(error)}"]
+            ) from error

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from runner.base.quantities import Shown, fewest_powers, fitting, number, smaller_units
+from runner.base.quantities import Shown, choose_unit, fewest_powers, number, smaller_units
 from runner.reporting.document import Block, Document, Section, Table
 
 _UNITS = ("m", "s")
@@ -36,7 +36,7 @@ def _column(head: str, cells: Sequence[str]) -> tuple[str, Sequence[str]]:
     numbers = [cell.value for cell in cells if isinstance(cell, Shown)]
     if unit is None or not any(numbers) or any(_holds_number(cell) for cell in cells):
         return head, cells
-    factor, name = fewest_powers(numbers, [fitting(max(map(abs, numbers)), unit), *smaller_units(unit)], _PLAIN)
+    factor, name = fewest_powers(numbers, [choose_unit(max(map(abs, numbers)), unit), *smaller_units(unit)], _PLAIN)
     if name == unit:
         return head, cells
     return f"{head.removesuffix(f'({unit})')}({name})", [_scaled(cell, factor) for cell in cells]

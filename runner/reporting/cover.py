@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.reporting.charts.moving_arm import moving_arm
-from runner.reporting.charts.thinning import spaced
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Cover
 from runner.reporting.figures import columns, joint_columns, model_of, playback, until_time
 from runner.store import Run
@@ -22,7 +22,7 @@ def cover(run: Run, caption: str, until: float | None = None) -> Cover:
     trace = until_time(run, until)
     trace = trace[np.isfinite(joint_columns(trace, "q")).all(axis=1)]
     q, t, tip = joint_columns(trace, "q"), trace["t"].to_numpy(), columns(trace, "tip")
-    few, path = spaced(len(t), _FRAMES), spaced(len(t), 5 * _FRAMES)
+    few, path = spaced_indices(len(t), _FRAMES), spaced_indices(len(t), 5 * _FRAMES)
     desired = columns(trace, "desired")[path]
     moving = moving_arm(model_of(run), q[few], float(t[-1] - t[0]), tip[path], desired)
     return Cover(caption, moving, playback(run, caption, until).still)

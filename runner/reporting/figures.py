@@ -5,7 +5,7 @@ import pandas as pd
 
 from runner.reporting.bodies import playback_bodies
 from runner.reporting.charts import arm_motion
-from runner.reporting.charts.thinning import spaced
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Curves, Origin, Panel, Playback, Series
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
@@ -104,8 +104,8 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
     trace = trace[np.isfinite(np.hstack([joint_columns(trace, "q"), columns(trace, "tip")])).all(axis=1)]
     model = model_of(run)
     q, t, tip = joint_columns(trace, "q"), trace["t"].to_numpy(), columns(trace, "tip")
-    shown = spaced(len(t), frames)
-    stills = spaced(len(t), _STILLS)
+    shown = spaced_indices(len(t), frames)
+    stills = spaced_indices(len(t), _STILLS)
     desired = columns(trace, "desired")
     moving = bool(np.ptp(desired, axis=0).any())
     path = desired if moving else np.vstack([tip[0], desired[0]])

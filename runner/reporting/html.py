@@ -59,8 +59,8 @@ def render(document: Document) -> str:
             plots=_Pack(),
             pictures=_Pack(),
             scene=playback.record,
-            player=packed(player) if player else "",
-            plotly=packed(library) if library else "",
+            player=compress_text(player) if player else "",
+            plotly=compress_text(library) if library else "",
             script_sources=lambda own: _script_sources([*own, *([library] if library else [])], player),
             palette={"light": palette.LIGHT, "dark": palette.DARK},
             style=_asset("style.css"),
@@ -88,11 +88,11 @@ class _Pack:
 
     def packed(self) -> str:
         """Return all items as the page holds them."""
-        return packed(json.dumps(self._items, separators=(",", ":"))) if self._items else ""
+        return compress_text(json.dumps(self._items, separators=(",", ":"))) if self._items else ""
 
 
 @lru_cache(maxsize=16)
-def packed(text: str) -> str:
+def compress_text(text: str) -> str:
     """Return a text as base64 of its gzip, the same each time; `inflate` in report.js undoes it."""
     return base64.b64encode(gzip.compress(text.encode("utf-8"), compresslevel=9, mtime=0)).decode("ascii")
 

@@ -11,7 +11,7 @@ from runner.reporting.charts.map_scale import (
     printed_values,
     prints_values,
     scale_marks,
-    scaled,
+    scale_values,
     value_range,
 )
 from runner.reporting.charts.units import map_in_readable_units
@@ -33,7 +33,7 @@ def maps_spec(block: Maps) -> list[Json]:
 
 def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
     columns, rows = list(range(len(panel.x_names))), list(range(len(panel.y_names)))
-    colors = scaled(panel.values, block.log)
+    colors = scale_values(panel.values, block.log)
     places, marks = scale_marks(block)
     drawn: Json = {
         "type": "contour" if panel.contours else "heatmap",

@@ -76,13 +76,13 @@ def anchor(number: str) -> str:
     return "s" + number.replace(".", "-")
 
 
-def marked(text: str, mark: str) -> str:
+def mark_text(text: str, mark: str) -> str:
     """Return a text with the marks of "emphasis" or "code" around it."""
     first, last = MARKS[mark]
     return f"{first}{text}{last}"
 
 
-def linked(text: str, address: str) -> str:
+def link_text(text: str, address: str) -> str:
     """Return a text as a link to an address of the web; any other address is shown beside it."""
     before, between, behind = _ADDRESS_MARKS
     return f"{before}{text}{between}{address}{behind}"

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 
-from runner.base.quantities import labelled
+from runner.base.quantities import label_with_unit
 from runner.plugins.metric_units import families, units
 
 TITLES = {
@@ -52,7 +52,7 @@ def title(name: str) -> str:
 
 def metric_label(name: str, unit: str) -> str:
     """Return the title of a metric with its unit, as on the axis of a figure."""
-    return labelled(title(name), unit)
+    return label_with_unit(title(name), unit)
 
 
 def _added_titles() -> dict[str, str]:

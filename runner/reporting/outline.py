@@ -45,15 +45,15 @@ class Chapter:
 
 def chapters(document: Document) -> list[Chapter]:
     """Return all sections of a document in reading order, numbered."""
-    return list(numbered(document.sections))
+    return list(number_sections(document.sections))
 
 
-def numbered(sections: Sequence[Section], prefix: str = "") -> Iterator[Chapter]:
+def number_sections(sections: Sequence[Section], prefix: str = "") -> Iterator[Chapter]:
     """Yield sections and those below them in reading order, numbered from 1 behind a prefix such as "2."."""
     for index, section in enumerate(sections, start=1):
         number = f"{prefix}{index}"
         yield Chapter(number, number.count(".") + 1, section)
-        yield from numbered(section.sections, number + ".")
+        yield from number_sections(section.sections, number + ".")
 
 
 def blocks(document: Document) -> Iterator[Block]:

@@ -9,7 +9,7 @@ from runner.base.progress.stages import of_report
 from runner.reporting import html, outline, pdf
 from runner.reporting.column_units import in_readable_units
 from runner.reporting.document import Document
-from runner.reporting.series_colors import colored
+from runner.reporting.series_colors import color_series
 from runner.store.atomic import write_atomically
 
 _RENDERERS: dict[str, Callable[[Document], bytes]] = {
@@ -37,7 +37,7 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
         raise RunnerError(f"unknown report format {', '.join(unknown)}; allowed: {', '.join(_RENDERERS)}")
     folder.mkdir(parents=True, exist_ok=True)
     progress.plan(of_report(formats, outline.count_figures(document)))
-    shown = in_readable_units(colored(document))
+    shown = in_readable_units(color_series(document))
     written = [folder / f"report.{name}" for name in formats]
     for name, path in zip(formats, written, strict=True):
         write_atomically(path, _RENDERERS[name](shown))

@@ -8,7 +8,7 @@ from runner.reporting.document import Block, Curves, Document, Panel, Section, S
 from runner.reporting.outline import blocks
 
 
-def colored(document: Document) -> Document:
+def color_series(document: Document) -> Document:
     """Return a report in which all curves of one name have one palette index, unless their figure chose another.
 
     A name has the index that its meaning or the first figure that chose one gives it, otherwise the first that no

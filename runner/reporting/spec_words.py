@@ -4,7 +4,7 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from runner.base.errors import nearest
-from runner.base.quantities import number, quantity, ranged
+from runner.base.quantities import format_range, number, quantity
 from runner.config.spec import Bound
 from runner.plugins.metric_units import unit_of
 from runner.reporting.metric_titles import title
@@ -46,7 +46,7 @@ def _ends_text(metric: str, low: float | None, high: float | None) -> str:
     unit = unit_of(metric) or "1"
     if low is None:
         return "none" if high is None else f"at most {quantity(high, unit, _DIGITS)}"
-    return f"at least {quantity(low, unit, _DIGITS)}" if high is None else ranged(low, high, unit)
+    return f"at least {quantity(low, unit, _DIGITS)}" if high is None else format_range(low, high, unit)
 
 
 def share_texts(share: "Share | None") -> tuple[str, str, str]:

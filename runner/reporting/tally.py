@@ -83,7 +83,7 @@ def _square(claim: str, found: ClaimResult) -> Square:
     return Square(claim + "*" * bool(found.hangs), found.verdict, claim_place(claim), words)
 
 
-def hanging(document_blocks: Iterable[Block]) -> str:
+def find_conditional_claims(document_blocks: Iterable[Block]) -> str:
     """Return which claims have a verdict that hangs on more than they say, and on what; empty for none."""
     found: dict[str, list[str]] = {}
     for block in document_blocks:

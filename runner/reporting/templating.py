@@ -96,7 +96,7 @@ def typst_value(value: object) -> str:
         TypeError: If the value is anything else.
     """
     if isinstance(value, str):
-        return value if hasattr(value, "__html__") else Code(quoted(value))
+        return value if hasattr(value, "__html__") else Code(quote_typst(value))
     if isinstance(value, bool):
         return Code(str(value).lower())
     if isinstance(value, int | float):
@@ -104,7 +104,7 @@ def typst_value(value: object) -> str:
     raise TypeError(f"a Typst template can insert texts and numbers, not {type(value).__name__}")
 
 
-def quoted(text: str) -> str:
+def quote_typst(text: str) -> str:
     """Return a text as a Typst string in quotes."""
     escaped = plain(text).replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'

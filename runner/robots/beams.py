@@ -71,7 +71,7 @@ def parts_of(length: float, count: int) -> list[Part]:
     return [Part(*ends) for ends in zip([0.0, *cuts], [*cuts, length], strict=True)]
 
 
-def stiffened(robot: Robot, beams: Mapping[str, Beam]) -> Robot:
+def stiffen_robot(robot: Robot, beams: Mapping[str, Beam]) -> Robot:
     """Return a robot whose links have the masses of beams along them, and do not bend."""
     links = moving_links(robot.model)
     rods = [

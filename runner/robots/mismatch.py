@@ -68,12 +68,12 @@ def nominal_robot(
     def change(model: RobotModel, joints: slice, bears_payload: bool) -> RobotModel:
         loaded = model.with_payload(mismatch.payload, payload_position) if bears_payload else model
         masses, centres = (factors[joints] * (mismatch.mass, mismatch.centre_of_mass)).T
-        return scaled(loaded, masses, centres, np.full(len(masses) + 1, mismatch.length), mismatch.gravity)
+        return scale_model(loaded, masses, centres, np.full(len(masses) + 1, mismatch.length), mismatch.gravity)
 
     return with_models(robot, change)
 
 
-def scaled(
+def scale_model(
     model: RobotModel, masses: FloatArray, centres: FloatArray, lengths: FloatArray, gravity: float = 1.0
 ) -> RobotModel:
     """Return a model with its numbers scaled.

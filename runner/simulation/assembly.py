@@ -12,9 +12,9 @@ from runner.config.flexible_links import is_flexible, with_nominal_links
 from runner.config.run import RunConfig
 from runner.config.start import start_posture
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
-from runner.controllers.disturbance_observer import observed
+from runner.controllers.disturbance_observer import add_observers
 from runner.controllers.kinds import FollowsWithinReach
-from runner.controllers.notch import notched
+from runner.controllers.notch import add_notch
 from runner.environments import ENVIRONMENTS
 from runner.environments.interaction import Interaction
 from runner.environments.wall import Wall
@@ -142,8 +142,8 @@ def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loo
         loops = CONTROLLERS.build_for(config.controller, nominal, isinstance(config.path, TipOfJoints))
     loops = CONTROLLERS.tell_limits(config.controller, loops, config.torque_limits)
     if config.notch is not None:
-        loops = notched(loops, config.notch.by_joint(config.arm), config.notch.width)
-    return nominal, observed(config.disturbance_observer, nominal, loops, config.torque_limits, config.timing)
+        loops = add_notch(loops, config.notch.by_joint(config.arm), config.notch.width)
+    return nominal, add_observers(config.disturbance_observer, nominal, loops, config.torque_limits, config.timing)
 
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> LoopProgram | CompiledCommands | None:

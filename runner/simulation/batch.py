@@ -17,7 +17,7 @@ from runner.base.trace import Trace, Traces
 from runner.config.run import RunConfig
 from runner.config.timing import Timing
 from runner.metrics import MetricContext
-from runner.plugins.discovery import added
+from runner.plugins.discovery import added_parts
 from runner.robots.robot import Robot, end_points
 from runner.sensing.encoders import encoder_errors
 from runner.simulation.assembly import assemble_program, metric_context, reach_of
@@ -106,7 +106,7 @@ class BatchSimulator:
         Raises:
             ConfigError: see assemble.
         """
-        if added("metric") or not config.compilable:  # metrics of one trace; sensors that no code has
+        if added_parts("metric") or not config.compilable:  # metrics of one trace; sensors that no code has
             return None
         numbers = range(config.settings.repetitions) if chosen is None else chosen
         if config.mismatch.spread == 0.0:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.errors import SimulationError
-from runner.base.progress.ticks import counted
+from runner.base.progress.ticks import track_ticks
 from runner.base.trace import Trace
 from runner.sensing import Encoders, TorqueSensors, WristSensor
 from runner.simulation.acting import CommandTiming, constant_delay
@@ -58,7 +58,7 @@ def simulate(
         if closed.interaction is not None and wrist is not None:
             contact = Contact(closed, closed.interaction, wrist)
         # A diverging run ends as a failure, not as a warning.
-        with counted(recorder.clock, closed.ticks), np.errstate(over="ignore", invalid="ignore"):
+        with track_ticks(recorder.clock, closed.ticks), np.errstate(over="ignore", invalid="ignore"):
             if isinstance(closed.compiled, LoopProgram):
                 run_program(closed.compiled, closed, encoders, recorder)
             elif isinstance(closed.compiled, CompiledCommands):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.statistics.permutation import Levels, Sample, Tested, recoded
+from runner.statistics.permutation import Levels, Sample, Tested, recode_levels
 
 PERMUTATIONS = 999
 MOST_VALUES = 5_000
@@ -86,19 +86,19 @@ def axis_effects(
     rng = np.random.default_rng(seed)
     kept = np.flatnonzero(np.isfinite(values))
     left_out = len(values) - len(kept)
-    of = np.arange(len(kept)) if blocks is None else recoded(blocks[kept])
+    of = np.arange(len(kept)) if blocks is None else recode_levels(blocks[kept])
     if len(kept) > MOST_VALUES:
         drawn = _drawn(of, rng)
         kept, of = kept[drawn], of[drawn]
     y = values[kept]
     logarithmic = bool(y.size and y.min() > 0 and y.max() > _DECADE * y.min())
     sample = Sample(np.log10(y) if logarithmic else y, of, rng, permutations)
-    levels = {name: recoded(level[kept]) for name, level in axes.items()}
+    levels = {name: recode_levels(level[kept]) for name, level in axes.items()}
     beside = {name: [other for key, other in levels.items() if key != name] for name in levels}
     tests = [((name,), beside[name], level) for name, level in levels.items()]
     coarse = {name: _grouped(level) for name, level in levels.items()}
     pairs = itertools.combinations(levels, 2)
-    both = [((a, b), list(levels.values()), recoded(coarse[a] * MOST_GROUPS + coarse[b])) for a, b in pairs]
+    both = [((a, b), list(levels.values()), recode_levels(coarse[a] * MOST_GROUPS + coarse[b])) for a, b in pairs]
     effects = [_effect(names, sample.test(others, level)) for names, others, level in [*tests, *both]]
     return EffectAnalysis(effects, len(y), left_out, logarithmic, sample.shared())
 

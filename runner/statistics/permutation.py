@@ -45,7 +45,7 @@ class Sample:
     def __init__(self, y: FloatArray, blocks: Levels, rng: np.random.Generator, permutations: int) -> None:
         self._y = y
         # Values that have nothing in common with each other make one block, within which all of them are permuted.
-        self._blocks = recoded(blocks) if np.unique(blocks).size < len(y) else np.zeros(len(y), dtype=np.intp)
+        self._blocks = recode_levels(blocks) if np.unique(blocks).size < len(y) else np.zeros(len(y), dtype=np.intp)
         self._sizes = np.bincount(self._blocks)
         starts, order = np.cumsum(self._sizes) - self._sizes, np.argsort(self._blocks, kind="stable")
         self._rows = [
@@ -139,7 +139,7 @@ class Sample:
         return sum(lgamma(size + 1) for size in self._sizes.tolist()) - sum(lgamma(c + 1) for c in counts.tolist())
 
 
-def recoded(level: Levels) -> Levels:
+def recode_levels(level: Levels) -> Levels:
     """Return levels counted from zero without gaps."""
     return np.unique(level, return_inverse=True)[1]
 

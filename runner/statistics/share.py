@@ -72,7 +72,7 @@ def share_ends(kept: IntArray, of: IntArray) -> tuple[FloatArray, FloatArray]:
     return low, high
 
 
-def needed(seen: Share, probability: float) -> int | None:
+def needed_repetitions(seen: Share, probability: float) -> int | None:
     """Return how many repetitions in all tell a share from a probability, where it stays what it is.
 
     None where no number does: the share is the probability itself. Of a share of 0 it is ln(0.025) / ln(1 - p).

@@ -3,7 +3,7 @@
 from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
 from runner.store.finished import Finished, find_outcome, find_run
 from runner.store.identity import run_hash, run_hashes, simulated_part
-from runner.store.judging import judged
+from runner.store.judging import judge_run
 from runner.store.run import Run, is_run, open_run
 from runner.store.seal import DamagedError, SchemaError
 from runner.store.shards import Outcome
@@ -24,7 +24,7 @@ __all__ = [
     "find_run",
     "is_run",
     "is_sweep",
-    "judged",
+    "judge_run",
     "open_calibration",
     "open_run",
     "open_runs",

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO
 
-from runner.base.errors import StoreError, unwritten
+from runner.base.errors import StoreError, describe_write_error
 
 _STALE = 60.0  # s; a temporary file lives for milliseconds
 
@@ -45,7 +45,7 @@ def open_atomically(path: Path, flush: bool = True) -> Iterator[BinaryIO]:
                 os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
-        raise StoreError(unwritten(error, path)) from error
+        raise StoreError(describe_write_error(error, path)) from error
     finally:
         with contextlib.suppress(OSError):  # the first error says more
             temporary.unlink(missing_ok=True)

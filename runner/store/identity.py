@@ -6,10 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-from runner.base.engines import installed
+from runner.base.engines import installed_versions
 from runner.base.memory import Memory
-from runner.config.compose.data_files import has_data_file, unnamed
-from runner.plugins.discovery import GROUPS, added, source_files
+from runner.config.compose.data_files import has_data_file, without_file_name
+from runner.plugins.discovery import GROUPS, added_parts, source_files
 from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest
 from runner.symbolic.engine import evaluator
@@ -75,12 +75,12 @@ _key_text = lru_cache(maxsize=256)(_sorted_text)
 def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a config that decide about the result: of a data file its content, and not its name."""
     kept = {key: value for key, value in resolved.items() if key not in _LEFT_OUT}
-    return kept | {"trajectory": _MEMORY.recall(unnamed, kept["trajectory"])} if has_data_file(kept) else kept
+    return kept | {"trajectory": _MEMORY.recall(without_file_name, kept["trajectory"])} if has_data_file(kept) else kept
 
 
 def _parts(resolved: Mapping[str, Any]) -> set[tuple[str, str]]:
     """Return name and module of the user's parts that a run uses: whose kinds its config names, and all metrics."""
-    points = [(group, point) for group in GROUPS for point in added(group)]
+    points = [(group, point) for group in GROUPS for point in added_parts(group)]
     if not points:
         return set()
     kinds = {str(resolved["kind"])} if "kind" in resolved else set()
@@ -100,7 +100,7 @@ def _kinds(group: Mapping[str, Any]) -> frozenset[str]:
 def _engines(plant: str) -> dict[str, str]:
     """Return the versions of what a plant, given by its kind, is simulated by; a stranger's may use any engine."""
     used = _ENGINES.get(plant, ("mujoco", "pybullet"))
-    return installed((*used, "pin")) | evaluator()
+    return installed_versions((*used, "pin")) | evaluator()
 
 
 @lru_cache(maxsize=16)

@@ -9,7 +9,7 @@ from runner.store.run import Run
 from runner.store.stored import write_job
 
 
-def judged(run: Run, bounds: Mapping[str, Bound], date: str = "") -> Run:
+def judge_run(run: Run, bounds: Mapping[str, Bound], date: str = "") -> Run:
     """Return a run with the shares of its repetitions that keep some bounds, stored with it; new ones are told.
 
     Nothing is simulated: the shares follow from the stored values. Without bounds those that it was judged by stay.

@@ -9,7 +9,7 @@ from functools import cache, lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.base.engines import STAND_IN, installed
+from runner.base.engines import STAND_IN, installed_versions
 from runner.base.paths import package_dir
 from runner.plugins import discovery as plugins
 from runner.statistics.spec.history import today
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _LIBRARIES = ("arm-control-runner", "pybullet", "mujoco", "pin", "numpy", "scipy", "hydra-core")
 
 
-def made(composed: "Composed", *subcommand: str) -> dict[str, Any]:
+def describe_origin(composed: "Composed", *subcommand: str) -> dict[str, Any]:
     """Return what made a result: date, command, digests of plug-ins, commit, versions, machine.
 
     Args:
@@ -42,7 +42,7 @@ def made(composed: "Composed", *subcommand: str) -> dict[str, Any]:
 def job_provenance(config: "RunConfig", composed: "Composed", notices: Sequence[str] = ()) -> dict[str, Any]:
     """Return where a run comes from: what made it, choices, time steps, seed, warnings."""
     return {
-        **made(composed),
+        **describe_origin(composed),
         "choices": dict(composed.choices),
         "plant_step": config.timing.step,
         "steps_per_tick": config.timing.steps_per_tick,
@@ -56,14 +56,16 @@ def job_provenance(config: "RunConfig", composed: "Composed", notices: Sequence[
 
 def command(composed: "Composed", *subcommand: str) -> str:
     """Return the command that does what was composed, folders relative to where it was given."""
-    added = [word for text in plugins.named() for word in ("--plugin", text)]
+    added = [word for text in plugins.named_parts() for word in ("--plugin", text)]
     own = [word for folder in composed.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
     resolved: Any = composed.resolved
-    kept = [override for override in settled(composed.overrides, resolved) if not override.startswith("outputs=")]
+    kept = [
+        override for override in portable_overrides(composed.overrides, resolved) if not override.startswith("outputs=")
+    ]
     return " ".join(map(_quoted, ["runner", *added, *subcommand, *own, *kept]))
 
 
-def settled(overrides: Sequence[str], config: Mapping[str, Any]) -> list[str]:
+def portable_overrides(overrides: Sequence[str], config: Mapping[str, Any]) -> list[str]:
     """Return overrides that make the same run on any machine: they name the plant that `default` was.
 
     Args:
@@ -104,7 +106,7 @@ def commit() -> str | None:
 @cache
 def versions() -> dict[str, str]:
     """Return the versions of Python and of the libraries that results depend on."""
-    return {"python": platform.python_version(), **installed(_LIBRARIES), **evaluator()}
+    return {"python": platform.python_version(), **installed_versions(_LIBRARIES), **evaluator()}
 
 
 @cache

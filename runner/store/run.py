@@ -122,11 +122,11 @@ class Run(Stored):
             later: When bounds were set; those that it was made with were set before.
         """
         from runner.statistics.spec import bounds_of, judge
-        from runner.statistics.spec.history import merged, settings
+        from runner.statistics.spec.history import merge_histories, settings
 
         spec = judge(bounds, self.record["repetitions"], self.metrics, self.values)
         made_with = settings({**dict.fromkeys(later), **bounds_of(self.config)}, self.provenance["date"])
-        history = merged(made_with, self.record.get("spec", {}).get("history", {}), later)
+        history = merge_histories(made_with, self.record.get("spec", {}).get("history", {}), later)
         return replace(self, record={**self.record, "spec": {**spec.record(), "history": history}})
 
     @property

@@ -47,7 +47,7 @@ def digest(content: bytes) -> str:
 
 def sealed_json(content: Mapping[str, Any]) -> bytes:
     """Return a JSON text of its content, with schema and digest before it; see `sealed`."""
-    return sealed(json.dumps({**head(), **content}, indent=1, allow_nan=False) + "\n")
+    return seal_text(json.dumps({**head(), **content}, indent=1, allow_nan=False) + "\n")
 
 
 def head() -> dict[str, Any]:
@@ -55,7 +55,7 @@ def head() -> dict[str, Any]:
     return {"schema": SCHEMA, "digest": _BLANK}
 
 
-def sealed(text: str) -> bytes:
+def seal_text(text: str) -> bytes:
     """Return a JSON text with a digest over all the rest of it in its place."""
     content = text.encode()
     return content.replace(_BLANK.encode(), digest(content).encode(), 1)

@@ -50,7 +50,7 @@ class Stored:
         Raises:
             DamagedError: if the file is missing or damaged.
         """
-        return decoded(self.folder / "robot.urdf", self.read("robot.urdf"))
+        return decode_text(self.folder / "robot.urdf", self.read("robot.urdf"))
 
     def read(self, name: str) -> bytes:
         """Return the content of one of its files beside the record.
@@ -96,7 +96,7 @@ def read_job(folder: Path, record_name: str) -> tuple[dict[str, Any], dict[str, 
     """
     record = _read_record(folder / record_name)
     path = folder / "config.yaml"
-    text = decoded(path, read_file(path, record["files"], MEND))
+    text = decode_text(path, read_file(path, record["files"], MEND))
     try:  # the runner writes no aliases and nothing in braces, which are all that could be too much; bounds take time
         ours = len(text) <= STORED.size.most and not _UNUSUAL.search(text)
         config = yaml.load(text, yaml.CSafeLoader) if ours else read_yaml(text, path)
@@ -129,7 +129,7 @@ def _read_record(path: Path) -> dict[str, Any]:
     return record
 
 
-def decoded(path: Path, content: bytes) -> str:
+def decode_text(path: Path, content: bytes) -> str:
     """Return a file's content as text.
 
     Raises:

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from runner.base.errors import StoreError
 from runner.config.spec import Bound
-from runner.statistics.spec.history import Histories, merged, settings, today
+from runner.statistics.spec.history import Histories, merge_histories, settings, today
 from runner.store.atomic import write_atomically
 from runner.store.axes import Counted, GridOverrides, read_axes
 from runner.store.finished import Finished
 from runner.store.names import Names
 from runner.store.run import Run, open_run
-from runner.store.seal import DamagedError, digest, head, read_file, read_json, sealed
+from runner.store.seal import DamagedError, digest, head, read_file, read_json, seal_text
 
 _FILE = "sweep.json"
 _RUNS = "runs.bin"  # of a grid: the hash of each cell's run, 12 bytes each
@@ -148,7 +148,7 @@ def write_grid(
     runs = names.packed()
     write_atomically(folder / _RUNS, runs)
     content = {**_head(folder, command, spec), "axes": axes.content(), "cells": len(names), "runs": digest(runs)}
-    write_atomically(folder / _FILE, sealed(json.dumps(content, indent=1) + "\n"))
+    write_atomically(folder / _FILE, seal_text(json.dumps(content, indent=1) + "\n"))
     return folder
 
 
@@ -165,14 +165,14 @@ def _head(folder: Path, command: str, spec: Mapping[str, Bound], date: str = "")
         known = {}
     told = {
         "spec": {metric: bound.model_dump() for metric, bound in spec.items()},
-        "history": merged(known, settings(spec, date or today())),
+        "history": merge_histories(known, settings(spec, date or today())),
     }
     return {**head(), "command": command, **{key: value for key, value in told.items() if value}}
 
 
 def _sealed_sweep(rows: Sequence[str], begin: Mapping[str, Any]) -> bytes:
     start = json.dumps(begin)[:-1]
-    return sealed(f'{start}, "jobs": [\n' + ",\n".join(rows) + "\n]}\n")
+    return seal_text(f'{start}, "jobs": [\n' + ",\n".join(rows) + "\n]}\n")
 
 
 def _rows(jobs: Iterable[tuple[Sequence[str], str]]) -> Iterator[str]:
@@ -249,7 +249,7 @@ def open_sweep(folder: Path) -> Sweep:
 def _read_spec(path: Path, content: Mapping[str, Any]) -> tuple[dict[str, Bound], Histories]:
     try:
         bounds = {metric: Bound.model_validate(bound) for metric, bound in content.get("spec", {}).items()}
-        return bounds, merged(dict.fromkeys(bounds, ()), content.get("history", {}))
+        return bounds, merge_histories(dict.fromkeys(bounds, ()), content.get("history", {}))
     except (AttributeError, TypeError, ValueError) as error:  # of pydantic, too
         raise DamagedError(f"cannot read {path}: its spec holds no bounds; {_MEND}") from error
 

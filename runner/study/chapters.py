@@ -18,7 +18,7 @@ from runner.reporting.audit.report import rows
 from runner.reporting.claim import Claim
 from runner.reporting.claims import CLAIMS, FACTOR, Verdict, load_claims
 from runner.reporting.document import Equations, Origin, Section, Verdicts
-from runner.reporting.outline import numbered
+from runner.reporting.outline import number_sections
 from runner.store import Calibration, Run
 from runner.study.about import About, Part
 from runner.study.claims import judged_claims, legend
@@ -76,7 +76,7 @@ class Chapters:
     def concluded(self, name: str) -> tuple[list[Finding], Mapping[str, Any]]:
         """Return the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
         made = self.reading(name)
-        everything = [block for each in numbered([made.section]) for block in each.section.blocks]
+        everything = [block for each in number_sections([made.section]) for block in each.section.blocks]
         return [block for block in everything if isinstance(block, Finding)], made.values.named
 
     def reading(self, stem: str) -> Reading:

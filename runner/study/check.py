@@ -9,7 +9,7 @@ from runner.reporting.document import Document
 from runner.reporting.formulas import faulty
 from runner.store import Calibration, Run
 from runner.study.chapters import Chapters, chapter_text
-from runner.study.conclusions import fallen
+from runner.study.conclusions import list_failed_findings
 from runner.study.expected_caveats import unexpected_caveats
 from runner.study.job import LeftOutError, MissingError
 from runner.study.prose.trying import never_failing
@@ -40,7 +40,7 @@ def problems(work: Work, runs: Mapping[str, Run], calibrations: Mapping[str, Cal
         yield f"{work.folder.name}/{WORK_FILE}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
     if not faults:
         document = work.document(runs, calibrations, chapters)
-        yield from fallen(document)
+        yield from list_failed_findings(document)
         yield from formulas_at(work, document)
 
 

@@ -124,7 +124,7 @@ def _places(sections: Sequence[Section]) -> tuple[dict[str, str], dict[str, str]
     """Return the section of each title, and that in which each number of the source stands first, in small letters."""
     titles: dict[str, str] = {}
     numbers: dict[str, str] = {}
-    for chapter in outline.numbered(sections):
+    for chapter in outline.number_sections(sections):
         place = f"§{chapter.number}"
         titles[chapter.section.title] = place
         for block in chapter.section.blocks:

@@ -6,11 +6,11 @@ from functools import partial
 
 import numpy as np
 
-from runner.base.quantities import quantity, ranged, spread
+from runner.base.quantities import format_range, quantity, spread
 from runner.metrics.positioning import STEADY_WINDOW
 from runner.reporting.claim import Claim, ClaimResult, EquationVerdict
 from runner.reporting.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
-from runner.reporting.claims.judging import Simulated, scaled, simulated_by, verdict_on
+from runner.reporting.claims.judging import Simulated, scale_bound, simulated_by, verdict_on
 from runner.reporting.figures import columns
 from runner.reporting.words import PLANT
 from runner.store import Run
@@ -193,7 +193,8 @@ class _Claimed:
         claim, told = self._claim, [self._claim.reason]
         if claim.bound is not None:
             found = {
-                preset: scaled(claim.bound, self._claims, partial(self._median, preset)) for preset in self._presets
+                preset: scale_bound(claim.bound, self._claims, partial(self._median, preset))
+                for preset in self._presets
             }
             times = " and ".join(f"{quantity(one, claim.unit)}{self._under(preset)}" for preset, one in found.items())
             told = [f"{claim.bound.reason} {claim.bound.name} is {times}."]
@@ -233,4 +234,4 @@ def _printed(claim: PublishedClaim) -> str:
     if not claim.printed:
         return "in words"
     low, high = claim.printed[0], claim.printed[-1]
-    return quantity(high, claim.unit, _DIGITS) if low == high else ranged(low, high, claim.unit)
+    return quantity(high, claim.unit, _DIGITS) if low == high else format_range(low, high, claim.unit)

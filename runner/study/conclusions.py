@@ -10,7 +10,7 @@ from runner.study.expected_caveats import ExpectedCaveat, caveats_as_data
 from runner.study.findings import findings
 
 
-def fallen(document: Document) -> list[str]:
+def list_failed_findings(document: Document) -> list[str]:
     """Return the findings of a report that no longer hold, a line for each failed condition."""
     return [
         f"section {number}: {found.claim}: not so: {condition.text} ({condition.measured})"

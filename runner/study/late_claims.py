@@ -5,7 +5,7 @@ from pathlib import Path
 
 from runner.reporting.claims import CLAIMS, load_claims
 from runner.reporting.claims.judging import simulated_by
-from runner.statistics.spec.history import merged, set_after, today
+from runner.statistics.spec.history import merge_histories, set_after, today
 from runner.store import Run
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
@@ -31,7 +31,7 @@ def late_claims(outputs: Path, work: Work, runs: Mapping[str, Run], date: str = 
         if all(name in runs for name in names):
             value = claim.model_dump(mode="json", include=_JUDGED_BY)
             key = " ".join([str(claim.number), *(runs[name].hash for name in names)])
-            known = merged(known, {key: [[date or today(), value]]})
+            known = merge_histories(known, {key: [[date or today(), value]]})
             when, before = set_after(known[key], value)
             changed = {name: old for name, old in (before[-1] if before else {}).items() if old != value[name]}
             told = ", ".join(f"{name}: {old}" for name, old in changed.items())

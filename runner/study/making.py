@@ -9,7 +9,7 @@ from runner import store
 from runner.base import progress
 from runner.base.progress.stages import SOON
 from runner.store import Calibration, Run
-from runner.store.provenance import settled
+from runner.store.provenance import portable_overrides
 from runner.study.estimate import counted, estimate_all, planned, told
 from runner.study.items import Way, listed, make_items
 from runner.study.job import Made
@@ -73,7 +73,7 @@ def _tell_estimate(work: Work, tunings: Sequence[Tuning], way: Way) -> None:
 
 
 def _command(work: Work, overrides: Sequence[str], run: Run) -> str:
-    return shlex.join(["runner", *work.options(overrides), *settled(overrides, run.config)])
+    return shlex.join(["runner", *work.options(overrides), *portable_overrides(overrides, run.config)])
 
 
 def count_missing(work: Work, outputs: Path) -> int:

@@ -18,7 +18,7 @@ from runner.sweeps.listed import Item
 from runner.sweeps.loading import Loader
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective
-from runner.sweeps.tuning.sampler import ended, propose
+from runner.sweeps.tuning.sampler import make_optuna_trial, propose
 from runner.sweeps.tuning.trial import Trial, best
 
 ROUNDS = 3
@@ -61,7 +61,7 @@ class _Search:
             return [{}] if number == 0 else []
         most, spread = self.tuning.trials, self.tuning.trials // 2
         until = most if number == ROUNDS - 1 else spread + (most - spread) // (ROUNDS - 1) * number
-        history = [ended(self.keys, trial) for trial in self.trials]
+        history = [make_optuna_trial(self.keys, trial) for trial in self.trials]
         chosen: list[Mapping[str, float]] = [] if history else [self.start]
         while len(history) + len(chosen) < until:
             chosen.append(propose(self.keys, [self.objective], history, chosen, self.seed, spread))

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
 from runner.reporting.markup import literal, literals
-from runner.reporting.outline import numbered
+from runner.reporting.outline import number_sections
 from runner.reporting.run_report import provenance
-from runner.reporting.tally import hanging
+from runner.reporting.tally import find_conditional_claims
 from runner.store import Calibration, Run
 from runner.study.checklist import Checklist
 from runner.study.citing import citing_section
@@ -52,14 +52,14 @@ def work_document(
 
 def _notes(chapters: Sequence[Section], runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[str]:
     """Return what the words of verdicts mean, what these hang on, and how many caveats the runs have."""
-    blocks = [block for each in numbered(chapters) for block in each.section.blocks]
+    blocks = [block for each in number_sections(chapters) for block in each.section.blocks]
     legends = dict.fromkeys(block.legend for block in blocks if isinstance(block, Verdicts))
     everything = distinct(runs)
     carrying = sum(bool(run.caveats) for run in everything)
     strange = len(unexpected_caveats(runs, expected))
     told = f"{strange} caveats are not expected" if strange else "all of them expected and explained"
     caveats = f"Caveats: {carrying} of {len(everything)} runs carry some, {told}." if carrying else ""
-    return [text for text in (*legends, hanging(blocks), caveats) if text]
+    return [text for text in (*legends, find_conditional_claims(blocks), caveats) if text]
 
 
 def _where_from(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], code: str) -> Section:

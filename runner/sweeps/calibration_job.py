@@ -115,7 +115,7 @@ def judge(outcomes: Sequence[Outcome]) -> dict[str, Any] | None:
 def _provenance(config: CalibrationConfig, composed: Composed, outcomes: Sequence[Outcome]) -> dict[str, Any]:
     messages = next((outcome.messages for outcome in outcomes if outcome.messages), ())
     return {
-        **provenance.made(composed, "calibrate"),
+        **provenance.describe_origin(composed, "calibrate"),
         "choices": {group: choice for group, choice in composed.choices.items() if group in config.resolved},
         "flange": config.arm.flange,
         "joints": list(config.arm.model.joint_names),

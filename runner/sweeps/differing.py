@@ -119,7 +119,7 @@ class Resolved:
         return found
 
 
-def differing(configs: Iterable[Mapping[str, Any]], axes: Sequence["Axis"]) -> list[Difference]:
+def find_differing_values(configs: Iterable[Mapping[str, Any]], axes: Sequence["Axis"]) -> list[Difference]:
     """Return the resolved values that differ between the cells of a sweep beyond its axes.
 
     Left out are the axes themselves; of a group that is swept, such as `robot`, its name and kind, what only some of

@@ -52,7 +52,7 @@ def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
         stored = None
     if stored is not None:
         note(stored.folder)
-        return store.judged(stored, config.spec.metrics), False
+        return store.judge_run(stored, config.spec.metrics), False
     ticks, seconds = config.timing.ticks * config.settings.repetitions, None
     if ticks > _SURELY_ALLOWED:
         seconds = seconds_per_tick(config, composed) * ticks

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from runner import store
-from runner.base.errors import DISK_FULL, RunnerError, StoreError, unwritten, user_place
-from runner.base.progress.ticks import told
+from runner.base.errors import DISK_FULL, RunnerError, StoreError, describe_write_error, user_place
+from runner.base.progress.ticks import report_ticks
 from runner.base.quiet import quiet_environment
 from runner.config.calibration import validate_calibration
 from runner.config.compose.compose import Composed
@@ -93,7 +93,7 @@ def work(chunk: Chunk, tell: Callable[[int], None] | None = None) -> Report:
     start = time.perf_counter()
     outcomes: list[store.Outcome] = []
     trouble = ""
-    with _one_at_a_time, told(tell), ThreadPoolExecutor(1) as disk:
+    with _one_at_a_time, report_ticks(tell), ThreadPoolExecutor(1) as disk:
         try:
             use_only(chunk.rules.plugins)
             _check_folder(chunk.rules)
@@ -220,7 +220,7 @@ def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]
             found = f"no result within sweep.time_limit, {limit:g} s{f' ({place})' if place else ''}", ""
         except Exception as error:
             if isinstance(error, OSError) and error.errno in DISK_FULL:  # no fault of the run
-                raise StoreError(unwritten(error)) from error
+                raise StoreError(describe_write_error(error)) from error
             place = user_place(error)
             found = f"{type(error).__name__}: {error}{f' ({place})' if place else ''}", traceback.format_exc()
     return None, *found

@@ -16,12 +16,12 @@ from runner.symbolic.vectors import (
     minus,
     plus,
     product,
+    rotate_tensor,
     scale,
-    shifted,
+    shift_inertia,
     subtract,
     times,
     transpose,
-    turned,
 )
 
 _ZERO: Vector = [0.0, 0.0, 0.0]
@@ -159,7 +159,7 @@ class ArmAlgebra:
             if parent is None:
                 continue
             moment = product(R, moments[index])
-            about_parent = shifted(turned(R, inertias[index]), moment, masses[index], p)
+            about_parent = shift_inertia(rotate_tensor(R, inertias[index]), moment, masses[index], p)
             inertias[parent] = [add(a, b) for a, b in zip(inertias[parent], about_parent, strict=True)]
             moments[parent] = add(moments[parent], moment, scale(masses[index], p))
             masses[parent] = plus(masses[parent], masses[index])

@@ -170,11 +170,11 @@ def _axis_to_z(joint: Any) -> FloatArray:
     return np.column_stack([across, np.cross(axis, across), axis])
 
 
-def known(values: Any, number: Callable[[float], Scalar]) -> Any:
+def to_scalars(values: Any, number: Callable[[float], Scalar]) -> Any:
     """Return numbers as scalars, nested as they are: 0, 1 and -1 as floats, others as `number` makes them."""
     values = _rounded(values)
     if isinstance(values, list):
-        return [known(value, number) for value in values]
+        return [to_scalars(value, number) for value in values]
     return _scalar(values, number)
 
 

@@ -45,7 +45,7 @@ class Repeat:
 Part = Block | Repeat
 
 
-def written(ticks: Sequence[Part], between: Sequence[Part], widths: Mapping[str, int], lanes: int) -> str:
+def write_program(ticks: Sequence[Part], between: Sequence[Part], widths: Mapping[str, int], lanes: int) -> str:
     """Return a program as a module with the function `run`.
 
     Its argument is a frame: the addresses of the arrays given, rows, state, scratch, pars and table, and the integers

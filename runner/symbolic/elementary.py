@@ -7,7 +7,7 @@ Functions, 1980), good for |x| up to some 10^6 rad. A joint beyond that has dive
 
 import math
 
-from runner.symbolic.expression import Value, absolute, equal, floor, less, rounded, select
+from runner.symbolic.expression import Value, absolute, equal, floor, less, round_to_even, select
 
 _PI_2 = (1.57079632673412561417e00, 6.07710050630396597660e-11, 2.02226624879595063154e-21)
 _SINE = (
@@ -45,7 +45,7 @@ def sine_cosine(x: Value) -> tuple[Value, Value]:
     """Return sine and cosine of an angle, in rad."""
     if isinstance(x, float):
         return math.sin(x), math.cos(x)
-    n = rounded(x * (2.0 / math.pi))
+    n = round_to_even(x * (2.0 / math.pi))
     r = x - n * _PI_2[0]
     r = r - n * _PI_2[1]
     r = r - n * _PI_2[2]

@@ -131,7 +131,7 @@ def absolute(a: Value) -> Value:
     return Expression("fabs", expression(a))
 
 
-def rounded(a: Value) -> Value:
+def round_to_even(a: Value) -> Value:
     """Return the nearest whole number, of two equally near ones the even."""
     return Expression("rint", expression(a))
 

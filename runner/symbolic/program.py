@@ -12,7 +12,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.paths import package_dir
 from runner.symbolic import cache as kept
-from runner.symbolic.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE, Part, written
+from runner.symbolic.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE, Part, write_program
 from runner.symbolic.engine import Function, evaluator, load, machine_code, processor
 
 LANES = 8
@@ -140,7 +140,7 @@ def _program(key: str, what: str, ours: bool, lanes: int, maker: _Maker) -> Prog
     make, maker.make = maker.make, None  # nothing of the first caller is kept
     assert make is not None  # noqa: S101 - asked once for each key
     expressed = make()
-    code = machine_code(written(expressed.ticks, expressed.between, expressed.widths, lanes))
+    code = machine_code(write_program(expressed.ticks, expressed.between, expressed.widths, lanes))
     if ours:
         kept.write(key, code, {"widths": dict(expressed.widths), "errors": list(expressed.errors)})
     return _loaded(code, expressed.widths, expressed.errors, lanes)

@@ -8,7 +8,7 @@ import numpy as np
 from runner.base.errors import RunnerError
 from runner.controllers.torque_law import TorqueLaw
 from runner.robots.model import RobotModel
-from runner.symbolic.arm import constants_of, known
+from runner.symbolic.arm import constants_of, to_scalars
 from runner.symbolic.vectors import Scalar, as_array
 
 
@@ -34,9 +34,9 @@ def scalars(numbers: Any, number: Callable[[float], Scalar]) -> Any:
         inner = [scalars(value, number) for value in numbers]
         return type(numbers)(*inner) if hasattr(numbers, "_fields") else tuple(inner)
     if isinstance(numbers, np.ndarray):
-        flat = [known(value, number) for value in numbers.ravel()]
+        flat = [to_scalars(value, number) for value in numbers.ravel()]
         return as_array(flat).reshape(numbers.shape)
-    return known(numbers, number)
+    return to_scalars(numbers, number)
 
 
 def law_cache_key(law: TorqueLaw[Any]) -> str:

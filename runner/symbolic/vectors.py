@@ -106,12 +106,12 @@ def symmetric_product(A: Matrix, B: Matrix) -> Matrix:
     return [[upper[min(i, j), max(i, j)] for j in range(len(A))] for i in range(len(A))]
 
 
-def turned(R: Matrix, A: Matrix) -> Matrix:
+def rotate_tensor(R: Matrix, A: Matrix) -> Matrix:
     """Return R A R^T of a symmetric A, shapes (3, 3)."""
     return symmetric_product(matrix_product(R, A), transpose(R))
 
 
-def shifted(inertia: Matrix, moment: Vector, mass: Scalar, r: Vector) -> Matrix:
+def shift_inertia(inertia: Matrix, moment: Vector, mass: Scalar, r: Vector) -> Matrix:
     r"""Return the inertia of a body about a point from which the first one is r away, shape (3, 3).
 
     .. math:: I' = I + (2 r^T h + m r^T r) 1 - (h r^T + r h^T + m r r^T)

@@ -29,7 +29,7 @@ from runner.reporting.document import (
     Text,
     Verdicts,
 )
-from runner.reporting.markup import linked, marked
+from runner.reporting.markup import link_text, mark_text
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20" width="40" height="20"><path d="M0 0h40v20z"/></svg>'
 
@@ -107,8 +107,8 @@ def document(text: str = "words") -> Document:
         Text(text),
         Items(
             (
-                f"of {marked('emphasis', 'emphasis')} and $tau_1$",
-                f"{marked('code <b>', 'code')}; {linked('page', 'https://example.org/a')}",
+                f"of {mark_text('emphasis', 'emphasis')} and $tau_1$",
+                f"{mark_text('code <b>', 'code')}; {link_text('page', 'https://example.org/a')}",
             )
         ),
         Code(text),

@@ -81,7 +81,7 @@ def analyse(composed: Composed, groups: Sequence[str] = GROUPS, repetition: int 
     """
     slopes = slopes_of(composed, groups, repetition)
     scene = slopes.scene
-    trace, metrics = simulated(scene)
+    trace, metrics = simulate_run(scene)
     parameters = slopes.parameters
     if not parameters:
         why = "".join(f"; {', '.join(names)}: {reason}" for reason, names in slopes.left_out.items())
@@ -131,7 +131,7 @@ def by_runge_kutta(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> 
     return validate({**resolved, "plant": {**kept, "kind": "rk4", "step": None}}, config_dirs)
 
 
-def simulated(run: RunSpec) -> tuple[Trace, Mapping[str, float | None]]:
+def simulate_run(run: RunSpec) -> tuple[Trace, Mapping[str, float | None]]:
     """Return the trace and metrics of one run.
 
     Raises:

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from runner.config.compose.in_si import Place, leaves, put
+from runner.config.compose.in_si import Place, leaves, set_value
 from runner.config.compose.key_units import units_at
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
 from runner.robots.armature import with_armature
-from runner.robots.mismatch import scaled
+from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
 from runner.store import simulated_part
@@ -92,7 +92,7 @@ class Key:
     def _with(self, numbers: Mapping[Place, float]) -> RunConfig:
         changed: Any = copy.deepcopy(dict(self.config.resolved))
         for place, number in numbers.items():
-            put(changed, place, number)
+            set_value(changed, place, number)
         return self.recomposed(f"{self.name}={json.dumps(reduce(getitem, self.name.split('.'), changed))}")
 
 
@@ -152,7 +152,7 @@ def _with_scaled(config: RunConfig, row: int, joint: int, own: float, value: flo
 
     def change(model: RobotModel, joints: slice, _: bool) -> RobotModel:
         masses, lengths = factors[:, joints.start : joints.stop + 1]
-        return scaled(model, masses[1:], np.ones(model.nq), lengths)
+        return scale_model(model, masses[1:], np.ones(model.nq), lengths)
 
     return _with_robot(config, with_models(config.arm, change))
 

@@ -11,7 +11,7 @@ _MOST = 3  # marked terms in a row that are shown
 _Term = tuple[bool, Node]
 
 
-def shortened(node: Node, marked: Set[Node]) -> Node:
+def shorten_expression(node: Node, marked: Set[Node]) -> Node:
     """Return an expression in which dots stand for what is not marked, and for most of many marked terms in a row."""
     if node in marked or size(node) <= _SHORT:
         return node
@@ -36,7 +36,7 @@ def holds(node: Node, marked: Set[Node]) -> bool:
 def _inner(node: Node, marked: Set[Node]) -> Node:
     if size(node) > _SHORT and not holds(node, marked):
         return _dots(node, bracketed=isinstance(node, Sum))
-    return shortened(node, marked)
+    return shorten_expression(node, marked)
 
 
 def _few(terms: Sequence[_Term], marked: Set[Node]) -> Iterator[_Term]:
@@ -49,7 +49,7 @@ def _few(terms: Sequence[_Term], marked: Set[Node]) -> Iterator[_Term]:
                 yield False, _dots(term)
             dotted = True
             continue
-        yield minus, shortened(term, marked)
+        yield minus, shorten_expression(term, marked)
         dotted = False
 
 

@@ -21,7 +21,7 @@ begin, named, plan, step = _work.begin, _work.named, _work.plan, _work.step
 
 
 @contextlib.contextmanager
-def shown() -> Iterator[None]:
+def show_progress() -> Iterator[None]:
     """Show what is done within, from the second second on, where standard error is a terminal or a notebook's."""
     if _shown.locked():  # by who called
         yield

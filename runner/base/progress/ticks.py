@@ -23,7 +23,7 @@ _adding = threading.Lock()
 
 
 @contextmanager
-def counted(clock: NDArray[np.int64], ticks: int) -> Iterator[None]:
+def track_ticks(clock: NDArray[np.int64], ticks: int) -> Iterator[None]:
     """Count the ticks of a repetition while it goes on, by its clock: when each row began, in ns, 0 before it did."""
     _count.clock = clock
     try:
@@ -39,7 +39,7 @@ def add_ticks(ticks: int) -> None:
         _count.ended += ticks
 
 
-def made() -> int:
+def completed_ticks() -> int:
     """Return the number of ticks so far, from any thread."""
     clock = _count.clock
     return _count.ended + (0 if clock is None else int(np.count_nonzero(clock)))
@@ -47,12 +47,12 @@ def made() -> int:
 
 def counter() -> Callable[[], int]:
     """Return what tells, from any thread, how many ticks have been simulated since now."""
-    before = made()
-    return lambda: made() - before
+    before = completed_ticks()
+    return lambda: completed_ticks() - before
 
 
 @contextmanager
-def told(tell: Callable[[int], None] | None) -> Iterator[None]:
+def report_ticks(tell: Callable[[int], None] | None) -> Iterator[None]:
     """Tell each second from a thread how many ticks have been simulated within; None tells nobody."""
     if tell is None:
         yield

@@ -34,7 +34,7 @@ def take_data_file(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> 
         group["duration"] = group["columns"]["t"][-1]
 
 
-def unnamed(trajectory: Mapping[str, Any]) -> dict[str, Any]:
+def without_file_name(trajectory: Mapping[str, Any]) -> dict[str, Any]:
     """Return the group of a trajectory without the name of its file."""
     return {key: value for key, value in trajectory.items() if key != "file"}
 

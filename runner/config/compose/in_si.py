@@ -34,11 +34,11 @@ def put_in_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> 
         for unit in units.at(place):
             value = quantity.in_unit(unit)
             if value is not None:
-                put(resolved, place, value)
+                set_value(resolved, place, value)
                 if units.sliding:
                     of_joints.append((place, text, "m" if unit == units.sliding else "rad"))
     for place, text in _wrong_joints(resolved, of_joints, config_dirs) if of_joints else ():
-        put(resolved, place, text)
+        set_value(resolved, place, text)
 
 
 def leaves(value: object, place: Place = ()) -> Iterator[tuple[Place, object]]:
@@ -51,7 +51,7 @@ def leaves(value: object, place: Place = ()) -> Iterator[tuple[Place, object]]:
             yield from leaves(item, (*place, key))
 
 
-def put(config: Any, place: Place, value: object) -> None:
+def set_value(config: Any, place: Place, value: object) -> None:
     """Put a value at a place of a config."""
     for key in place[:-1]:
         config = config[key]

@@ -12,7 +12,7 @@ _OF_THE_PARSER = re.compile(
 )
 
 
-def malformed(override: str) -> str | None:
+def find_syntax_error(override: str) -> str | None:
     """Return what is wrong with the form of KEY=VALUE, and how to mend it; None where nothing is seen."""
     key, given, value = override.partition("=")
     if not given:

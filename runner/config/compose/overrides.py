@@ -8,7 +8,7 @@ from runner.base.errors import ConfigError
 from runner.base.interpolation import calls_function
 from runner.base.texts import quoted
 from runner.config.compose.in_si import with_numbers
-from runner.config.compose.malformed import malformed
+from runner.config.compose.malformed import find_syntax_error
 from runner.config.compose.options import groups
 from runner.config.compose.user_settings import SAYS_HOW
 
@@ -53,7 +53,7 @@ def _problem(override: str, names: set[str]) -> str | None:
         return f"{quoted(override)} is no override: nested deeper than {CONFIG.depth} levels"
     if calls_function(override.replace("\\", "")):  # Hydra takes them away
         return f"{quoted(override)} calls a function; a value may refer to keys alone, as in ${{robot.period}}"
-    fault = malformed(override)
+    fault = find_syntax_error(override)
     if fault:
         return f"{quoted(override)} is no override: {fault}"
     group = key.lstrip("+~").partition("@")[0]

@@ -75,7 +75,7 @@ def _made(check: Callable[..., T], *parts: object) -> tuple[T | None, Sequence[s
         return None, error.problems
 
 
-def sure(value: T | None) -> T:
+def require(value: T | None) -> T:
     """Return what a check gave, which is there once no problem was found."""
     assert value is not None  # noqa: S101 - a check that gives nothing has found a problem
     return value

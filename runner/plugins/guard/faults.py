@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.base.errors import RunnerError, SimulationError, told
+from runner.base.errors import RunnerError, SimulationError, describe_part_error
 
 
 def is_write(error: Exception) -> bool:
@@ -20,7 +20,7 @@ def is_write(error: Exception) -> bool:
 def told_of_part(error: Exception) -> str:
     """Return what an error of the user's part says, with its place and, where it tried to write, what to do."""
     hint = "; a plug-in cannot change what it is given: work on a copy" if is_write(error) else ""
-    return told(error) + hint
+    return describe_part_error(error) + hint
 
 
 def ask(part: Callable[..., Any], time: float, *handed: Any) -> Any:

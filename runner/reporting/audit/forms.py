@@ -6,12 +6,12 @@ from runner.audit.entry import Entry, Form
 from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
-from runner.base.expressions.shortening import holds, shortened
+from runner.base.expressions.shortening import holds, shorten_expression
 from runner.base.expressions.tree import Node, Sum, size
 from runner.base.expressions.typesetting import linear
 from runner.reporting.audit.formula_marks import marked_formulas
 from runner.reporting.audit.likeness import Likeness
-from runner.reporting.audit.matrices import gathered
+from runner.reporting.audit.matrices import gather_elements
 from runner.reporting.audit.pieces import LONG, cut, pieces
 from runner.reporting.equation import EquationForm, Matrix
 
@@ -127,7 +127,7 @@ def _shown(
 ) -> EquationForm:
     """Return a form that can be read: all of it where it is short or stands alone, else what is marked."""
     whole = linear(_text(form))
-    groups, marks = gathered(elements), frozenset(marked)
+    groups, marks = gather_elements(elements), frozenset(marked)
     if alone or sum(map(size, elements.values())) <= _SYMBOLS:
         return EquationForm(label, groups, marks, note=note)
     if like:
@@ -150,8 +150,8 @@ def _holds(part: Node | Matrix, marked: Set[Node]) -> bool:
 
 def _cut(part: Node | Matrix, marked: Set[Node]) -> Node | Matrix:
     if isinstance(part, Matrix):
-        return Matrix([[shortened(node, marked) for node in row] for row in part.rows])
-    return shortened(part, marked)
+        return Matrix([[shorten_expression(node, marked) for node in row] for row in part.rows])
+    return shorten_expression(part, marked)
 
 
 def _begun(groups: _Shown) -> _Shown:

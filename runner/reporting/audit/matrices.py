@@ -10,7 +10,7 @@ _ELEMENT = re.compile(r"(?P<name>\w+?)_(?P<place>\d\d|[xyz])")
 _VECTOR = ("x", "y", "z")
 
 
-def gathered(elements: Mapping[str, Node]) -> list[tuple[Node, Node | Matrix]]:
+def gather_elements(elements: Mapping[str, Node]) -> list[tuple[Node, Node | Matrix]]:
     """Return elements such as T_11 to T_44, or P_x, P_y and P_z, as one matrix, and the others as they are.
 
     A matrix is whole: it has an element in each row and column, from 0 or 1 on.

@@ -29,7 +29,7 @@ from runner.reporting.document import (
     Table,
     Text,
 )
-from runner.reporting.markup import literals, marked
+from runner.reporting.markup import literals, mark_text
 from runner.store import provenance
 
 COMMAND = "runner reproduce audit"
@@ -173,7 +173,7 @@ def _runs(source: str, names: Iterable[str]) -> Section:
     for name in names:
         found.append(run_rollout(source, name))
         progress.step()
-    told = [f"{marked(words.title, 'emphasis')}: {words.text}" for words, _ in found]
+    told = [f"{mark_text(words.title, 'emphasis')}: {words.text}" for words, _ in found]
     panels = [
         Panel(
             words.title,

@@ -20,7 +20,7 @@ _SMALLEST, _LARGEST = 1e-4, 1e4  # of values without a power of ten
 _MOST_PRINTED = 10  # cells beside each other whose values can be read
 
 
-def scaled(values: FloatArray, log: bool) -> FloatArray:
+def scale_values(values: FloatArray, log: bool) -> FloatArray:
     """Return what the colours follow: the values or their logarithms, NaN where there is none."""
     if not log:
         return np.where(np.isfinite(values), values, np.nan)
@@ -35,15 +35,15 @@ def value_range(figure: MapFigure) -> tuple[float, float]:
     difference that can be told.
     """
     parts = [part for panel in figure.panels for part in (panel.values, panel.low, panel.high) if part is not None]
-    everything = np.concatenate([np.zeros(0), *(scaled(part, figure.log).ravel() for part in parts)])
+    everything = np.concatenate([np.zeros(0), *(scale_values(part, figure.log).ravel() for part in parts)])
     finite = everything[np.isfinite(everything)]
     if not finite.any():
         return (0.0, 1.0)
     low, high = float(finite.min()), float(finite.max())
-    return widened(low, high, -math.log10(1.0 - EQUAL) if figure.log else EQUAL * max(abs(low), abs(high)))
+    return widen_range(low, high, -math.log10(1.0 - EQUAL) if figure.log else EQUAL * max(abs(low), abs(high)))
 
 
-def widened(low: float, high: float, least: float) -> tuple[float, float]:
+def widen_range(low: float, high: float, least: float) -> tuple[float, float]:
     """Return a range about the same middle that is at least so wide."""
     room = 0.5 * max(0.0, least - (high - low))
     return low - room, high + room

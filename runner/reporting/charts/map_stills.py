@@ -18,11 +18,11 @@ from runner.reporting.charts.map_scale import (
     printed_values,
     prints_values,
     scale_marks,
-    scaled,
+    scale_values,
     value_range,
 )
-from runner.reporting.charts.names import Names, literal, names_below, names_beside, wrapped
-from runner.reporting.charts.sheet import REPORT, Sheet, saved
+from runner.reporting.charts.names import Names, literal, names_below, names_beside, wrap_text
+from runner.reporting.charts.sheet import REPORT, Sheet, render_figure
 from runner.reporting.charts.units import map_in_readable_units
 
 # Measures in inches, for letters of the size of a report.
@@ -46,15 +46,15 @@ class _Frame:
 
     @property
     def title(self) -> str:
-        return wrapped(self.panel.title, self.width / self.sheet.character)
+        return wrap_text(self.panel.title, self.width / self.sheet.character)
 
     @property
     def x_label(self) -> str:
-        return wrapped(self.panel.x_label, self.width / self.sheet.character)
+        return wrap_text(self.panel.x_label, self.width / self.sheet.character)
 
     @property
     def lines(self) -> list[str]:
-        return [wrapped(series.name, self.width / self.sheet.character) for series in self.panel.lines]
+        return [wrap_text(series.name, self.width / self.sheet.character) for series in self.panel.lines]
 
     @property
     def top(self) -> float:
@@ -72,12 +72,12 @@ class _Frame:
 
 def draw(maps: MapFigure, sheet: Sheet = REPORT) -> str:
     """Return the maps as SVG; the same maps give the same text."""
-    return saved(lambda: _figure(maps, sheet), sheet, "svg").decode()
+    return render_figure(lambda: _figure(maps, sheet), sheet, "svg").decode()
 
 
 def draw_pdf(maps: MapFigure, sheet: Sheet = REPORT) -> bytes:
     """Return the maps as PDF, a page of their size; the same maps give the same bytes."""
-    return saved(lambda: _figure(maps, sheet), sheet, "pdf")
+    return render_figure(lambda: _figure(maps, sheet), sheet, "pdf")
 
 
 def _figure(maps: MapFigure, sheet: Sheet) -> Figure:
@@ -112,13 +112,13 @@ def _figure(maps: MapFigure, sheet: Sheet) -> Figure:
     bottom = 1 - ((tops[0] if tops else 0.0) + height) / total
     bar = figure.add_axes(((room + 0.1) / sheet.width, bottom, 0.1 / sheet.width, height / total))
     figure.colorbar(ScalarMappable(colors, _COLORS), cax=bar).set_ticks(places, labels=marks)
-    literal(bar.yaxis.label, wrapped(maps.value_label, height / sheet.character))
+    literal(bar.yaxis.label, wrap_text(maps.value_label, height / sheet.character))
     bar.grid(False)
     return figure
 
 
 def _beside(panel: Map, height: float, sheet: Sheet) -> str:
-    return wrapped(panel.y_label, height / sheet.character)
+    return wrap_text(panel.y_label, height / sheet.character)
 
 
 def _draw_map(axes: Axes, frame: _Frame, maps: MapFigure, colors: Normalize) -> None:
@@ -126,7 +126,7 @@ def _draw_map(axes: Axes, frame: _Frame, maps: MapFigure, colors: Normalize) -> 
     literal(axes.set_title("", loc="left", y=1.0, pad=4), frame.title)
     literal(axes.xaxis.label, frame.x_label)
     literal(axes.yaxis.label, _beside(panel, frame.height, sheet))
-    values = scaled(panel.values, maps.log)
+    values = scale_values(panel.values, maps.log)
     axes.grid(False)
     rows, columns = values.shape
     if panel.contours:

@@ -97,7 +97,7 @@ def literal(label: Text, text: str) -> None:
     label.set_text(text)
 
 
-def wrapped(text: str, characters: float) -> str:
+def wrap_text(text: str, characters: float) -> str:
     """Return a text in lines of so many characters."""
     return "\n".join(textwrap.wrap(plain(text).strip(), max(10, int(characters))))
 

@@ -66,7 +66,7 @@ def column(millimetres: float) -> Sheet:
     return Sheet(millimetres / _MM, 8.0, 8.0, 8.0)
 
 
-def saved(make: Callable[[], Figure], sheet: Sheet, kind: Literal["svg", "pdf"]) -> bytes:
+def render_figure(make: Callable[[], Figure], sheet: Sheet, kind: Literal["svg", "pdf"]) -> bytes:
     """Return what is drawn, in the style of all stills, as SVG or PDF; the same figure gives the same bytes.
 
     Letters are outlines in SVG, and an embedded font in PDF.

@@ -18,8 +18,8 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 from runner.base.texts import plain
 from runner.reporting.charts import palette
 from runner.reporting.charts.figure import CurveFigure, Panel, Series, shares_legend, upright
-from runner.reporting.charts.names import Names, literal, names_below, wrapped
-from runner.reporting.charts.sheet import REPORT, Sheet, saved, style
+from runner.reporting.charts.names import Names, literal, names_below, wrap_text
+from runner.reporting.charts.sheet import REPORT, Sheet, render_figure, style
 from runner.reporting.charts.thinning import thin, usable
 from runner.reporting.charts.ticks import Mark, at_2_and_5, marks
 from runner.reporting.charts.units import in_readable_units
@@ -54,7 +54,7 @@ class _Frame:
 
     @property
     def x_label(self) -> str:
-        return wrapped(self.panel.x_label, self.width / self.sheet.character)
+        return wrap_text(self.panel.x_label, self.width / self.sheet.character)
 
     @property
     def y_label(self) -> str:
@@ -82,12 +82,12 @@ class _Frame:
 
 def draw(curves: CurveFigure, sheet: Sheet = REPORT) -> str:
     """Return the figure as SVG; the same figure gives the same text."""
-    return saved(lambda: _figure(curves, sheet), sheet, "svg").decode()
+    return render_figure(lambda: _figure(curves, sheet), sheet, "svg").decode()
 
 
 def draw_pdf(curves: CurveFigure, sheet: Sheet = REPORT) -> bytes:
     """Return the figure as PDF, a page of its size; the same figure gives the same bytes."""
-    return saved(lambda: _figure(curves, sheet), sheet, "pdf")
+    return render_figure(lambda: _figure(curves, sheet), sheet, "pdf")
 
 
 def as_figure(curves: CurveFigure, sheet: Sheet = REPORT) -> Figure:
@@ -140,7 +140,7 @@ def _figure(curves: CurveFigure, sheet: Sheet, kind: type[Figure] = Figure) -> F
 
 def _beside(panel: Panel, height: float, sheet: Sheet) -> str:
     """Return the label beside an axis of a height, broken to it."""
-    return wrapped(panel.y_label, (height + _ABOVE) / sheet.character)
+    return wrap_text(panel.y_label, (height + _ABOVE) / sheet.character)
 
 
 def _bare(row: Sequence[_Frame], below: Sequence[_Frame]) -> list[_Frame]:
@@ -150,9 +150,9 @@ def _bare(row: Sequence[_Frame], below: Sequence[_Frame]) -> list[_Frame]:
 
 
 def _frame(panel: Panel, sheet: Sheet, width: float, height: float, named: bool = True) -> _Frame:
-    title = wrapped(panel.title, width / sheet.character)
+    title = wrap_text(panel.title, width / sheet.character)
     handle = _HANDLE * sheet.scale
-    entries = [wrapped(series.name if named else "", (width - handle) / sheet.character) for series in panel.series]
+    entries = [wrap_text(series.name if named else "", (width - handle) / sheet.character) for series in panel.series]
     longest = max((len(line) for name in entries for line in name.splitlines()), default=0)
     count = sum(map(bool, entries))
     fitting = max(1, min(count, int((width + _GAP) / (longest * sheet.character + handle))))

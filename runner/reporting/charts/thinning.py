@@ -54,7 +54,7 @@ def envelope(series: Series, samples: int) -> Series:
     )
 
 
-def spaced(count: int, most: int) -> list[int]:
+def spaced_indices(count: int, most: int) -> list[int]:
     """Return at most `most` of the indices below `count`, evenly spaced, the first and the last among them."""
     return [int(place) for place in np.linspace(0, count - 1, min(count, most)).round()]
 

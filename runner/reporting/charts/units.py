@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import fitting
+from runner.base.quantities import choose_unit
 from runner.reporting.charts.figure import MapFigure, Panel, Series
 
 MapOf = TypeVar("MapOf", bound=MapFigure)
@@ -34,7 +34,7 @@ def map_in_readable_units(figure: MapOf) -> MapOf:
     if found is None:
         return figure
     values = np.concatenate([np.zeros(1), *(panel.values.ravel() for panel in figure.panels)])
-    factor, unit = fitting(float(np.abs(values[np.isfinite(values)]).max()), found[1])
+    factor, unit = choose_unit(float(np.abs(values[np.isfinite(values)]).max()), found[1])
     panels = [
         replace(
             panel,
@@ -53,7 +53,7 @@ def _in_unit(panel: Panel, row: Sequence[Panel], axis: str) -> Panel:
     if found is None or (axis == "x" and panel.x_names):
         return panel
     alike = [each for each in row if getattr(each, f"{axis}_label") == label]
-    factor, name = fitting(max(_largest(each, axis) for each in alike), found[1])
+    factor, name = choose_unit(max(_largest(each, axis) for each in alike), found[1])
     if factor == 1.0:
         return panel
     limits = getattr(panel, f"{axis}_range")

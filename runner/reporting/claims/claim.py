@@ -117,7 +117,7 @@ class PublishedClaim(StrictModel):
         return self.printed[-1] if self.printed else None
 
 
-def claimed() -> list[str]:
+def works_with_claims() -> list[str]:
     """Return the names of the works that have claims, sorted."""
     return works_with(FILE)
 

@@ -22,13 +22,13 @@ def compared_with(claim: PublishedClaim, simulated: Simulated) -> float | None:
     return claim.value if claim.like is None else simulated(claim.like.experiment, claim.like.metric)
 
 
-def scaled(bound: Bound, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
+def scale_bound(bound: Bound, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
     """Return what the simulated number of the other claim that a bound names leads one to expect."""
     value = simulated(*simulated_by(_other(bound, claims)))
     return None if value is None else value * bound.scale
 
 
-def expected(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
+def expected_value(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
     """Return what the source's other number, or the simulated one in its place where larger, lets one expect.
 
     None where the claim has no bound.
@@ -37,7 +37,7 @@ def expected(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulated:
     if bound is None:
         return None
     printed = _other(bound, claims).value
-    both = [None if printed is None else printed * bound.scale, scaled(bound, claims, simulated)]
+    both = [None if printed is None else printed * bound.scale, scale_bound(bound, claims, simulated)]
     return max((value for value in both if value is not None), default=None)
 
 
@@ -52,7 +52,7 @@ def verdict_on(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulate
     printed = compared_with(claim, simulated)
     if printed is None:
         return None
-    verdict = judge(printed, simulated(*simulated_by(claim)), expected(claim, claims, simulated))
+    verdict = judge(printed, simulated(*simulated_by(claim)), expected_value(claim, claims, simulated))
     return "differs" if claim.like is not None and verdict != "matches" else verdict
 
 

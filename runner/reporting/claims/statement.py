@@ -25,7 +25,7 @@ class PublishedStatement(StrictModel):
     reason: str = ""
 
 
-def stated() -> list[str]:
+def works_with_statements() -> list[str]:
     """Return the names of the works that have statements, sorted."""
     return works_with(_FILE)
 

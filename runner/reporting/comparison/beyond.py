@@ -77,7 +77,7 @@ class Beyond:
         return f"{a} and {b} differ in {told}{beside}. What follows may be due to any of these."
 
 
-def beyond(a: Side, b: Side, matched: Matched) -> Beyond:
+def find_differences(a: Side, b: Side, matched: Matched) -> Beyond:
     """Return all resolved values that differ between the matched cells of two sweeps.
 
     Of a group of which they take other options only those values count that both options have, such as their gains; of

@@ -1,6 +1,6 @@
 """Tables of what differs between two sweeps."""
 
-from runner.base.quantities import labelled
+from runner.base.quantities import label_with_unit
 from runner.config.compose.key_units import key_unit
 from runner.reporting.comparison.beyond import Value
 from runner.reporting.comparison.sweeps import SweepComparison
@@ -28,7 +28,7 @@ def tables(found: SweepComparison) -> list[Block]:
 
 
 def _row(value: Value) -> list[str]:
-    label = labelled(value.key, UNITS.get(value.key) or key_unit(value.key))
+    label = label_with_unit(value.key, UNITS.get(value.key) or key_unit(value.key))
     return literals([label, _short(value.a), _short(value.b), value.cells or "all cells"])
 
 

@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.base.quantities import labelled
+from runner.base.quantities import label_with_unit
 from runner.reporting.answers import Answer, Asked, judge
 from runner.reporting.comparison.cells import Matched, label_text
-from runner.reporting.comparison.metrics import shown
+from runner.reporting.comparison.metrics import choose_metrics
 from runner.reporting.comparison.sweeps import SweepComparison, by_cell
 from runner.reporting.document import Block, Curves, Panel, Series, Table
 from runner.reporting.markup import literal, literals
@@ -21,7 +21,7 @@ _MOST_CELLS = 24
 
 def blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
     """Return a figure of the first metrics that differ, or of the first ones."""
-    known = shown(found, wanted)
+    known = choose_metrics(found, wanted)
     moved = [one for one in known if one.below or one.above] or known
     chosen = [one.metric for one in moved[:MOST_METRICS]]
     a, b = found.a.name, found.b.name
@@ -72,7 +72,7 @@ def _differences(found: SweepComparison, metric: str) -> Panel:
     across = "cell" if numbered or not matched.keys else ", ".join(matched.keys)
     unit = found.a.measurements.units[metric]
     name = title(metric)
-    label = labelled(f"{found.b.name} - {found.a.name}", unit)
+    label = label_with_unit(f"{found.b.name} - {found.a.name}", unit)
     return Panel(f"{name[:1].upper()}{name[1:]}", across, label, series, x_names=names)
 
 
@@ -96,5 +96,10 @@ def _against(found: SweepComparison, metric: str) -> Panel:
     ]
     name = title(metric)
     return Panel(
-        f"{name[:1].upper()}{name[1:]}", labelled(found.a.name, unit), labelled(found.b.name, unit), series, log, log
+        f"{name[:1].upper()}{name[1:]}",
+        label_with_unit(found.a.name, unit),
+        label_with_unit(found.b.name, unit),
+        series,
+        log,
+        log,
     )

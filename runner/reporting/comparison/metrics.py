@@ -14,7 +14,7 @@ from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import first_screen, whole_metrics
 
 
-def shown(found: SweepComparison, wanted: Sequence[str]) -> list[MetricComparison]:
+def choose_metrics(found: SweepComparison, wanted: Sequence[str]) -> list[MetricComparison]:
     """Return those asked for, or all but those of one direction or joint, errors first."""
     by_name = {one.metric: one for one in found.pooled}
     return [by_name[name] for name in (wanted or whole_metrics(by_name)) if name in by_name]
@@ -22,7 +22,7 @@ def shown(found: SweepComparison, wanted: Sequence[str]) -> list[MetricCompariso
 
 def answers(found: SweepComparison, wanted: Sequence[str]) -> dict[str, Answer]:
     """Return the answer over all cells in each metric, those of the first screen first."""
-    first = first_screen([one.metric for one in shown(found, wanted)])
+    first = first_screen([one.metric for one in choose_metrics(found, wanted)])
     asked = [Asked(one.metric, one.unit, one.comparison) for one in found.pooled]
     judged = {answer.metric: answer for answer in judge(asked, first)}
     return {name: judged[name] for name in dict.fromkeys([*first, *judged])}
@@ -31,7 +31,7 @@ def answers(found: SweepComparison, wanted: Sequence[str]) -> dict[str, Answer]:
 def blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
     """Return what is compared and how, the table over all cells, and that of those with the largest differences."""
     a, b = found.a.name, found.b.name
-    whole = shown(found, wanted)
+    whole = choose_metrics(found, wanted)
     parts = [one for one in found.pooled if one not in whole]
     text = f"The difference is {b} - {a}. {EXPLAINED} {POOLED}"
     judged = answers(found, wanted)

@@ -7,7 +7,7 @@ from runner.reporting.comparison.caveats import caveats_of
 from runner.reporting.comparison.side import Side
 from runner.reporting.comparison.summary import cells_told, size_told
 from runner.reporting.comparison.sweeps import SweepComparison, compare_sweeps
-from runner.reporting.comparison.words import NOISE_ALONE, counted
+from runner.reporting.comparison.words import NOISE_ALONE, format_count
 from runner.reporting.document import Block, Code, Document, Items, Notice, Provenance, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
@@ -45,7 +45,7 @@ def _abstract(found: Sequence[SweepComparison], wanted: Sequence[str]) -> list[s
     told = [one.beyond.in_words(one.a.name, one.b.name) for one in found]
     for one in found:
         judged = metrics.answers(one, wanted)
-        first = first_screen([each.metric for each in metrics.shown(one, wanted)])
+        first = first_screen([each.metric for each in metrics.choose_metrics(one, wanted)])
         told += [judged[name].sentence(one.a.name, one.b.name) for name in first]
     return [*told, *noise]
 
@@ -59,7 +59,7 @@ def _key_numbers(found: SweepComparison, wanted: Sequence[str]) -> list[tuple[st
     numbers = [("cells in both", str(len(found.matched.labels)), alone)]
     names = found.beyond.names
     more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-    numbers.append((f"{a} and {b} differ in", counted(len(names), "value", "values"), "".join([*names[:1], more])))
+    numbers.append((f"{a} and {b} differ in", format_count(len(names), "value", "values"), "".join([*names[:1], more])))
     first = next(iter(metrics.answers(found, wanted).values()))
     difference, interval, n, *_ = first.cells
     return [*numbers, (f"{title(first.metric)}, {b} - {a}", difference, f"{interval}, {n} pairs: {first.word}")]

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from runner.reporting.comparison.cells import label_text
 from runner.reporting.comparison.side import Side
 from runner.reporting.comparison.sweeps import SweepComparison
-from runner.reporting.comparison.words import counted
+from runner.reporting.comparison.words import format_count
 
 _NAMED = 3  # cells of one sweep alone
 
@@ -13,7 +13,7 @@ _NAMED = 3  # cells of one sweep alone
 def size_told(side: Side) -> str:
     """Return how many cells a sweep has, and repetitions in each."""
     failed = f", {side.failed} of them failed" if side.failed else ""
-    cells = counted(len(side.measurements.hashes), "cell", "cells")
+    cells = format_count(len(side.measurements.hashes), "cell", "cells")
     return f"{cells}{failed}; repetitions in each: {side.measurements.repetitions}"
 
 
@@ -22,19 +22,19 @@ def cells_told(found: SweepComparison) -> Iterator[str]:
     matched = found.matched
     by = f", matched by {', '.join(matched.keys)}" if matched.keys else ""
     repetitions = min(side.measurements.repetitions for side in (found.a, found.b))
-    both = counted(len(matched.labels), "cell is", "cells are")
+    both = format_count(len(matched.labels), "cell is", "cells are")
     yield (f"{both} in both{by}; up to {repetitions} repetitions of each are compared")
     if matched.other_seeds:
-        more = counted(matched.other_seeds, "more cell is", "more cells are")
+        more = format_count(matched.other_seeds, "more cell is", "more cells are")
         yield f"{more} in both with different seeds, and not compared"
     for side, alone in zip((found.a, found.b), matched.alone, strict=True):
         if alone:
-            yield (f"{counted(len(alone), 'cell is', 'cells are')} in {side.name} alone: {_some(alone)}")
+            yield (f"{format_count(len(alone), 'cell is', 'cells are')} in {side.name} alone: {_some(alone)}")
         if side.missing:
-            left = counted(side.missing, "cell", "cells")
+            left = format_count(side.missing, "cell", "cells")
             yield (f"{left} of {side.name} not stored; continue with: {side.command}")
         if side.failed:
-            failed = counted(side.failed, "cell", "cells")
+            failed = format_count(side.failed, "cell", "cells")
             yield f"{failed} of {side.name} failed; a failed repetition counts as beyond every number"
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
-from runner.reporting.comparison.beyond import Beyond, beyond
+from runner.reporting.comparison.beyond import Beyond, find_differences
 from runner.reporting.comparison.cells import Matched, match
 from runner.reporting.comparison.pairs import CellPairs, compare
 from runner.reporting.comparison.side import Side
@@ -92,7 +92,7 @@ def compare_sweeps(a: Side, b: Side, metrics: Sequence[str] = ()) -> SweepCompar
     configs = [config for side in (a, b) for config, _ in side.measurements.configs]
     repeated = min(a.measurements.repetitions, b.measurements.repetitions) > 1
     alone = repeated and noise_alone(configs)
-    return SweepComparison(a, b, matched, beyond(a, b, matched), pooled, cells, candidates, alone)
+    return SweepComparison(a, b, matched, find_differences(a, b, matched), pooled, cells, candidates, alone)
 
 
 def by_cell(found: SweepComparison, metric: str) -> list[MetricComparison]:

@@ -14,7 +14,7 @@ POOLED = (
 )
 
 
-def counted(count: int, one: str, many: str) -> str:
+def format_count(count: int, one: str, many: str) -> str:
     """Return a number with what is counted, such as "1 cell is" or "2 cells are"."""
     return f"{count} {one if count == 1 else many}"
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import ROUNDING, fewest_powers, fitting, smaller_units
+from runner.base.quantities import ROUNDING, choose_unit, fewest_powers, smaller_units
 from runner.statistics import Interval, median_interval
 
 _SMALLEST, _LARGEST = 1e-2, 1e5  # outside of these the head of a column has a power of ten
@@ -89,7 +89,7 @@ def column(title: str, unit: str, samples: FloatArray) -> Column:
     shown = [value for each in found if each is not None for value in (each.median, each.low, each.high)
              if value is not None and math.isfinite(value) and abs(value) >= ROUNDING]  # fmt: skip
     largest = max(map(abs, shown), default=0.0)
-    factor, name = fewest_powers(shown, [fitting(largest, unit), *smaller_units(unit)], _PLAIN)
+    factor, name = fewest_powers(shown, [choose_unit(largest, unit), *smaller_units(unit)], _PLAIN)
     power = _power(factor * largest)
     scale = factor * 10.0**-power
     lost = np.isinf(samples).sum(axis=1)

@@ -15,7 +15,7 @@ from runner.reporting.export.points import Figure, as_csv
 from runner.reporting.markup import Literal, spans
 from runner.reporting.outline import blocks
 from runner.reporting.places import Places
-from runner.reporting.series_colors import colored
+from runner.reporting.series_colors import color_series
 from runner.store.atomic import write_atomically
 
 _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')
@@ -29,7 +29,7 @@ def figures_of(document: Document) -> dict[str, Figure]:
     A name is the figure's address in the HTML report, such as figure-3-5 where it has a number and s1-figure-2 where it
     has none, and the first words of its caption.
     """
-    document = colored(document)
+    document = color_series(document)
     places = Places(document)
     return {
         f"{places.of(block)}-{_slug(block.caption)}".strip("-"): block
@@ -38,7 +38,7 @@ def figures_of(document: Document) -> dict[str, Figure]:
     }
 
 
-def chosen(figures: Mapping[str, Figure], only: str | None) -> dict[str, Figure]:
+def choose_figures(figures: Mapping[str, Figure], only: str | None) -> dict[str, Figure]:
     """Return the figures that are asked for: by a whole name, or by how names begin.
 
     Raises:

@@ -29,7 +29,7 @@ def latex(table: PaperTable) -> str:
     columns = [*("l" for _ in table.heads), *map(_column, table.columns), *("r" if counts else "")]
     body = [
         _row([*map(_label, labels), *(part for each in table.columns for part in _numbers(each, row)),
-              *([escaped(counts[row])] if counts else [])])
+              *([escape_latex(counts[row])] if counts else [])])
         for row, labels in enumerate(table.labels)
     ]  # fmt: skip
     tabular = [
@@ -44,7 +44,7 @@ def latex(table: PaperTable) -> str:
     comments = [
         r"Needs \usepackage{booktabs} and \usepackage{siunitx}, version 3 or later.",
         *(source for source in table.sources),
-        rf"\caption{{{escaped(' '.join(table.notes))}}}",
+        rf"\caption{{{escape_latex(' '.join(table.notes))}}}",
     ]
     if any(ord(letter) > _LATIN for letter in "".join(tabular)):
         comments.insert(1, "Has letters that LuaLaTeX or XeLaTeX sets, and pdfLaTeX does not.")
@@ -66,9 +66,9 @@ def _head(table: PaperTable) -> list[str]:
     last = ["n"] if table.counts else []
     if not any(each.has_intervals for each in table.columns):
         parts = [title if each.title else "{median}" for title, each in zip(titles, table.columns, strict=True)]
-        return [_row([*map(escaped, table.heads), *parts, *last])]
+        return [_row([*map(escape_latex, table.heads), *parts, *last])]
     parts = [part for each in table.columns for part in (["{median}", r"95\,\% interval"][: 1 + each.has_intervals])]
-    below = _row([*map(escaped, table.heads), *parts, *last])
+    below = _row([*map(escape_latex, table.heads), *parts, *last])
     if not any(each.title for each in table.columns):
         return [below]
     above, rules, place = ["" for _ in table.heads], [], len(table.heads) + 1
@@ -82,23 +82,23 @@ def _head(table: PaperTable) -> list[str]:
 
 def _title(column: Column) -> str:
     unit = unit_macro(column.unit)
-    return f"{escaped(column.title)} ({unit})" if unit else escaped(column.title)
+    return f"{escape_latex(column.title)} ({unit})" if unit else escape_latex(column.title)
 
 
 def _label(label: Label) -> str:
-    return unit_macro(label) if isinstance(label, Unit) else escaped(label)
+    return unit_macro(label) if isinstance(label, Unit) else escape_latex(label)
 
 
 def _numbers(column: Column, row: int) -> list[str]:
     cell = column.cells[row]
-    median = cell.median if _is_number(cell.median) else _braced(escaped(cell.median))
+    median = cell.median if _is_number(cell.median) else _braced(escape_latex(cell.median))
     return [median, _interval(cell)] if column.has_intervals else [median]
 
 
 def _interval(cell: Cell) -> str:
     if not cell.low:
         return ""
-    low, high = (rf"\num{{{end}}}" if _is_number(end) else escaped(end) for end in (cell.low, cell.high))
+    low, high = (rf"\num{{{end}}}" if _is_number(end) else escape_latex(end) for end in (cell.low, cell.high))
     return f"{{[}}{low}, {high}{{]}}"
 
 
@@ -125,13 +125,13 @@ def unit_macro(unit: Unit) -> str:
 
 
 def _own(unit: Unit) -> str:
-    return "" if unit == "1" else escaped(str(unit))
+    return "" if unit == "1" else escape_latex(str(unit))
 
 
 def _factor(divided: str, name: str, exponent: str) -> str:
     return (r"\per" if divided else "") + _UNITS[name] + (rf"\tothe{{{exponent}}}" if exponent else "")
 
 
-def escaped(text: str) -> str:
+def escape_latex(text: str) -> str:
     """Return a text of which no character means anything to LaTeX."""
     return "".join(_MEANT.get(letter, letter) for letter in plain(text))

@@ -13,24 +13,24 @@ _MEANT = re.compile(r"([\\`*{}\[\]#|~$!])|(?<![^\W_])(_)|(_)(?![^\W_])")  # an u
 def markdown(table: PaperTable) -> str:
     """Return the table as Markdown, its notes below it."""
     counts = table.counts
-    heads = [*map(escaped, table.heads), *map(_head, table.columns), *(["n"] if counts else [])]
+    heads = [*map(escape_markdown, table.heads), *map(_head, table.columns), *(["n"] if counts else [])]
     marks = ["---"] * len(table.heads) + ["---:"] * (len(heads) - len(table.heads))
     lines = [heads, marks]
     for row, labels in enumerate(table.labels):
         numbers = [_numbers(column.cells[row]) for column in table.columns]
         lines.append([*map(_label, labels), *numbers, *([counts[row]] if counts else [])])
-    below = "  \n".join(map(escaped, [" ".join(table.notes), *table.sources]))
+    below = "  \n".join(map(escape_markdown, [" ".join(table.notes), *table.sources]))
     return "\n".join(["| " + " | ".join(line) + " |" for line in lines]) + f"\n\n{below}\n"
 
 
 def _head(column: Column) -> str:
     unit = unit_name(column.unit)
     untitled = "median [95 % interval]" if column.has_intervals else "median"
-    return escaped(f"{column.title} ({unit})" if unit else column.title or untitled)
+    return escape_markdown(f"{column.title} ({unit})" if unit else column.title or untitled)
 
 
 def _label(label: Label) -> str:
-    return escaped(unit_name(label) if isinstance(label, Unit) else label)
+    return escape_markdown(unit_name(label) if isinstance(label, Unit) else label)
 
 
 def _numbers(cell: Cell) -> str:
@@ -43,7 +43,7 @@ def unit_name(unit: Unit) -> str:
     return f"{power} {unit_text(str(unit))}".strip()
 
 
-def escaped(text: str) -> str:
+def escape_markdown(text: str) -> str:
     """Return a text of which no character means anything to Markdown."""
     safe = plain(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return _MEANT.sub(lambda found: f"\\{found[0]}", safe)

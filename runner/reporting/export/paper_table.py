@@ -93,7 +93,7 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
     Raises:
         RunnerError: If a metric is none of the run's.
     """
-    known = measured(run)
+    known = measure_run(run)
     each = [column(title(name), known.units[name], known.values[name]) for name in known.named(metrics)]
     together = Column("", Unit("1"), [own.cells[0] for own in each])
     notes = _of_numbers([together], [1])
@@ -105,7 +105,7 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
     return PaperTable(["metric", "unit"], [[own.title, own.unit] for own in each], [together], notes, sources)
 
 
-def measured(run: Run) -> Measurements:
+def measure_run(run: Run) -> Measurements:
     """Return one run as a sweep of one cell."""
     values: dict[str, FloatArray] = {
         name: np.where(np.isnan(own := run.values(name)), np.inf, own)[None] for name in run.metrics

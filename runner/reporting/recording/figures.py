@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from runner.base.quantities import labelled
+from runner.base.quantities import label_with_unit
 from runner.recordings.compare import RecordingComparison
 from runner.recordings.residuals import Residual
-from runner.reporting.charts.thinning import spaced
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.figures import origin
 from runner.reporting.markup import literal
@@ -20,7 +20,7 @@ def both(found: RecordingComparison) -> Curves:
         Panel(
             literal(_capital(one.signal.words)),
             "time of the run (s)",
-            labelled(one.signal.kind, one.unit),
+            label_with_unit(one.signal.kind, one.unit),
             [
                 Series("recorded", one.t, one.recorded, color=_RECORDED),
                 Series("run", one.t, one.simulated, "dashed", color=_SIMULATED),
@@ -40,7 +40,7 @@ def residuals(found: RecordingComparison) -> Curves:
         Panel(
             f"{_capital(kind)}, recorded - run",
             "time of the run (s)",
-            labelled("residual", unit),
+            label_with_unit("residual", unit),
             [Series(literal(one.signal.of), one.t, one.values) for one in group],
         )
         for (kind, unit), group in groups.items()
@@ -52,7 +52,9 @@ def lags(found: RecordingComparison) -> Curves:
     """Return the correlation of the speeds over the time of the recording at which the run begins."""
     offset = found.offset
     best = int(np.argmax(offset.correlations))
-    shown = np.unique(np.append(spaced(len(offset.lags), _MOST_POINTS), np.arange(max(0, best - 50), best + 50)))
+    shown = np.unique(
+        np.append(spaced_indices(len(offset.lags), _MOST_POINTS), np.arange(max(0, best - 50), best + 50))
+    )
     shown = shown[shown < len(offset.lags)]
     found_at = np.full(2, offset.start)
     panel = Panel(
@@ -82,8 +84,8 @@ def friction(found: RecordingComparison) -> Curves:
             Series("residual torque", joint.speed, joint.torque, "points", color=_RECORDED),
             Series("friction", x, y, color=_SIMULATED),
         ]
-        label = labelled("torque" if turns else "force", "N m" if turns else "N")
-        panels.append(Panel(literal(joint.joint), labelled("speed", f"{joint.unit}/s"), label, series))
+        label = label_with_unit("torque" if turns else "force", "N m" if turns else "N")
+        panels.append(Panel(literal(joint.joint), label_with_unit("speed", f"{joint.unit}/s"), label, series))
     caption = "Torque that the run's model and other masses leave over, against the speed, and the friction identified."
     return Curves(caption, panels, origin=origin(found.run))
 

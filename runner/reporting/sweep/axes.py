@@ -2,7 +2,7 @@
 
 import math
 
-from runner.base.quantities import labelled
+from runner.base.quantities import label_with_unit
 from runner.config.compose.key_units import key_unit
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal, literals
@@ -70,7 +70,7 @@ def _also_differs(subject: Subject) -> list[Block]:
     for difference in subject.measurements.differences[:_MOST_ROWS]:
         values = [f"{levels}: {_short(text)}" if levels else _short(text) for levels, text in difference.values]
         shown = values if len(values) <= _MOST_PLACES else [*values[: _MOST_PLACES - 2], "...", values[-1]]
-        label = labelled(difference.key, UNITS.get(difference.key) or key_unit(difference.key))
+        label = label_with_unit(difference.key, UNITS.get(difference.key) or key_unit(difference.key))
         rows.append([label, ", ".join(difference.axes) or "none", "; ".join(shown)])
     left = [difference.key for difference in subject.measurements.differences[_MOST_ROWS:]]
     if not rows:

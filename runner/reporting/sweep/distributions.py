@@ -3,10 +3,10 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.reporting.charts.thinning import POINTS, spaced
+from runner.reporting.charts.thinning import POINTS, spaced_indices
 from runner.reporting.document import Block, Curves, Panel, Section, Series
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, grouped, spans_decades
+from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, group_levels, spans_decades
 from runner.sweeps.measurements import Axis
 
 _MOST_LINES = 8
@@ -29,9 +29,9 @@ def section(subject: Subject) -> Section:
 
 def _shares(subject: Subject, metric: str, axis: Axis) -> Panel:
     values = subject.measurements.values[metric]
-    groups = grouped(axis)
+    groups = group_levels(axis)
     series = []
-    for group in spaced(int(groups.max()) + 1, _MOST_LINES):
+    for group in spaced_indices(int(groups.max()) + 1, _MOST_LINES):
         chosen = groups == group
         pooled = values[chosen]
         x, y = _distribution(pooled[~np.isnan(pooled)])
@@ -53,8 +53,8 @@ def _distribution(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _in_order(subject: Subject, metric: str) -> Curves:
     ranked = subject.ranked
-    rank = np.array(spaced(len(ranked), POINTS), dtype=float) + 1.0
-    ranked = [ranked[place] for place in spaced(len(ranked), POINTS)]
+    rank = np.array(spaced_indices(len(ranked), POINTS), dtype=float) + 1.0
+    ranked = [ranked[place] for place in spaced_indices(len(ranked), POINTS)]
     values = subject.measurements.values[metric]
     low, high = np.full(len(ranked), np.nan), np.full(len(ranked), np.nan)
     for place, cell in enumerate(ranked):

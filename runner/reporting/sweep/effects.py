@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from runner.base.quantities import labelled, number
-from runner.reporting.charts.thinning import spaced
+from runner.base.quantities import label_with_unit, number
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
@@ -28,7 +28,7 @@ def section(subject: Subject) -> Section:
     return Section("Effects of the axes", blocks)
 
 
-def shared(subject: Subject) -> list[str]:
+def describe_shared_variation(subject: Subject) -> list[str]:
     """Return in a sentence which share of the variation of the first metric the draws of the repetitions make."""
     metric = subject.metrics[0]
     found = subject.effects[metric].shared
@@ -105,7 +105,7 @@ def _main_effects(subject: Subject) -> list[Curves]:
 
 def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
     values = subject.measurements.values[metric]
-    shown = spaced(len(axis.values), _MOST_LEVELS)
+    shown = spaced_indices(len(axis.values), _MOST_LEVELS)
     quartiles = np.full((3, len(shown)), np.nan)
     for place, level in enumerate(shown):
         pooled = values[axis.level == level]
@@ -120,7 +120,7 @@ def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
     if axis.numbers is None:
         series = at_texts(series[0])
     unit = subject.measurements.units[metric]
-    return axis_panel("", axis, labelled("median", unit), series, quartiles)
+    return axis_panel("", axis, label_with_unit("median", unit), series, quartiles)
 
 
 def _percent(share: float) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.reporting.charts.thinning import spaced
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Section, Table
 from runner.reporting.markup import literals
 from runner.reporting.sweep.subject import Subject
@@ -35,5 +35,5 @@ def _by_level(axis: Axis, failed: NDArray[np.bool_]) -> list[list[str]]:
     """Return how many cells failed at each value of an axis at which any did; of many values some, spread evenly."""
     count, lost = (np.bincount(axis.level[chosen], minlength=len(axis.values)) for chosen in (slice(None), failed))
     levels = np.flatnonzero(lost)
-    chosen = levels[spaced(len(levels), _MOST_ROWS)].tolist()
+    chosen = levels[spaced_indices(len(levels), _MOST_ROWS)].tolist()
     return [[axis.name, axis.text(level), f"{lost[level]} of {count[level]}"] for level in chosen]

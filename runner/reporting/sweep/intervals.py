@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.reporting.charts.map_scale import EQUAL, widened
+from runner.reporting.charts.map_scale import EQUAL, widen_range
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
 from runner.sweeps.measurements import Axis
@@ -71,5 +71,5 @@ def axis_panel(title: str, axis: Axis, y_label: str, series: list[Series], y: Fl
     drawn = np.concatenate([edge[np.isfinite(edge)] for edge in edges])
     least = EQUAL * float(np.abs(drawn).max(initial=0.0))
     close = drawn.size and np.ptp(drawn) < least  # such differences are not to fill the panel
-    y_range = widened(float(drawn.min()), float(drawn.max()), least) if close else None
+    y_range = widen_range(float(drawn.min()), float(drawn.max()), least) if close else None
     return Panel(title, axis_label(axis), y_label, series, x_log, spans_decades(y), y_range=y_range, x_names=names)

@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.reporting import metric_titles
-from runner.reporting.charts.thinning import spaced
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Map, Maps, Section
 from runner.reporting.markup import literal
 from runner.reporting.sweep import theory
@@ -23,7 +23,7 @@ _MOST_POINTED = 5000  # cells that tell about themselves; a page with more would
 
 def section(subject: Subject) -> Section:
     """Return the maps of a sweep over two axes or more, in which every value is that of one cell."""
-    x, y, *others = chosen(subject)
+    x, y, *others = choose_axes(subject)
     blocks: list[Block] = [
         _maps(subject, metric, x, y, others) for metric in subject.metrics if np.isfinite(subject.medians[metric]).any()
     ]
@@ -32,10 +32,10 @@ def section(subject: Subject) -> Section:
 
 def is_readable(subject: Subject) -> bool:
     """Tell whether maps of a sweep can be read: over two axes or more, and of few enough values."""
-    return len(subject.axes) > 1 and all(len(axis.values) <= _MOST_VALUES for axis in chosen(subject)[:2])
+    return len(subject.axes) > 1 and all(len(axis.values) <= _MOST_VALUES for axis in choose_axes(subject)[:2])
 
 
-def chosen(subject: Subject) -> list[Axis]:
+def choose_axes(subject: Subject) -> list[Axis]:
     """Return the axes of the maps: horizontal, vertical, and where there are more those of the multiples."""
     axes = [axis for axis in subject.axes if axis.name != POOLED]
     if len(axes) < 2:
@@ -72,7 +72,7 @@ def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis
     else:
         levels = np.column_stack([axis.level for axis in others])
         combinations = np.unique(levels, axis=0)
-        shown = spaced(len(combinations), _MOST_MULTIPLES)
+        shown = spaced_indices(len(combinations), _MOST_MULTIPLES)
         panels = [
             _map(subject, of, x, y, np.flatnonzero((levels == some).all(axis=1)).tolist(),
                  ", ".join(f"{axis.name} = {axis.text(int(level))}"

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, judge
-from runner.reporting.charts.thinning import spaced
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.comparison.levels import SEED, LevelPair, level_pairs
 from runner.reporting.comparison.pairs import compare
 from runner.reporting.document import Block, Section, Table, Text
@@ -23,7 +23,7 @@ def section(subject: Subject) -> Section | None:
     for axis in axes:
         within = level_pairs(subject.measurements, axis.name)
         overall = level_pairs(subject.measurements, axis.name, ()) if any(pair.at for pair in within) else []
-        chosen = [within[place] for place in spaced(len(within), _MOST_ROWS)]
+        chosen = [within[place] for place in spaced_indices(len(within), _MOST_ROWS)]
         fewer = (
             f" ({len(chosen)} of {len(within)} pairs, spread evenly over the sweep)"
             if len(chosen) < len(within)

@@ -35,7 +35,7 @@ class Question:
     at: Sequence[tuple[LevelPair, Sequence[Answer]]]
 
 
-def ask(subject: Subject) -> Question | None:
+def find_question(subject: Subject) -> Question | None:
     """Return what a sweep asks and the answers; None where no two cells differ in one axis and share their seeds.
 
     Asked about is the first axis whose values are choices, such as controllers, else the first one. Its values are
@@ -88,7 +88,7 @@ def sentences(question: Question, subject: Subject) -> list[str]:
 def in_short(subject: Subject) -> str:
     """Return the first answer, as a command that made a sweep ends with it; else the range of medians, and why."""
     few = too_few(subject)
-    question = None if few else ask(subject)
+    question = None if few else find_question(subject)
     if question is not None and len(question.overall) == 1:
         ((pair, answers),) = question.overall
         return answers[0].sentence(pair.first, pair.second, _at(question, pair, answers[0].metric))

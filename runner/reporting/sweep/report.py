@@ -20,7 +20,7 @@ from runner.reporting.sweep import (
     spec,
     tradeoff,
 )
-from runner.reporting.sweep.question import ask, range_told, sentences, too_few
+from runner.reporting.sweep.question import find_question, range_told, sentences, too_few
 from runner.reporting.sweep.subject import Subject, choose
 from runner.store import Sweep
 from runner.sweeps.measurements import measure_sweep
@@ -105,9 +105,9 @@ def _abstract(subject: Subject, sweep: Sweep) -> str:
         texts.append(spec.summary(subject, sweep))
     if subject.ranked and subject.axes:
         few = too_few(subject)
-        question = None if few else ask(subject)
+        question = None if few else find_question(subject)
         texts += [few] if few else [] if question is None else sentences(question, subject)
-        texts += effects.shared(subject)
+        texts += effects.describe_shared_variation(subject)
     return " ".join(texts)
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.config.spec import Bound
-from runner.reporting.charts.thinning import spaced
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.spec_blocks import RULE
@@ -17,7 +17,7 @@ from runner.reporting.spec_words import bound_text, late_text, probability
 from runner.reporting.sweep import maps
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
 from runner.statistics.spec import bounds_of
-from runner.statistics.spec.history import merged, settings
+from runner.statistics.spec.history import merge_histories, settings
 from runner.statistics.spec.kept import within
 from runner.store import Sweep
 from runner.sweeps.measurements import Axis
@@ -120,7 +120,7 @@ def _late(subject: Subject, sweep: Sweep) -> str:
     """Return in sentences which bounds were set after the result of some cells was known."""
     texts: Counter[str] = Counter()
     for config, cells in subject.measurements.configs:
-        history = merged(settings({**dict.fromkeys(sweep.spec), **bounds_of(config)}, ""), sweep.history)
+        history = merge_histories(settings({**dict.fromkeys(sweep.spec), **bounds_of(config)}, ""), sweep.history)
         for metric, bound in sweep.spec.items():
             late = late_text(metric, bound, history[metric])
             texts.update({bound_text(metric, bound) + late: len(cells)} if late else {})
@@ -153,10 +153,10 @@ def _curve(one: Failing, axis: Axis) -> Curves:
 
 def _maps(subject: Subject, one: Failing) -> Maps:
     """Return maps of the share that failed and of the upper end of the interval, a row for each value of more axes."""
-    x, y, *others = maps.chosen(subject)
+    x, y, *others = maps.choose_axes(subject)
     levels = np.column_stack([axis.level for axis in others] or [np.zeros((len(one.of), 0), dtype=np.intp)])
     combinations = np.unique(levels, axis=0)
-    shown = combinations[spaced(len(combinations), _MOST_MULTIPLES)]
+    shown = combinations[spaced_indices(len(combinations), _MOST_MULTIPLES)]
     panels: list[Map] = []
     for some in shown:
         named = ", ".join(f"{axis.name} = {axis.text(int(level))}" for axis, level in zip(others, some, strict=True))
@@ -204,7 +204,7 @@ def _texts(failing: Failing) -> list[str]:
 def _table(subject: Subject, failing: Sequence[Failing]) -> Table:
     """Return each cell with the probability of failing each bound, those that fail most often first."""
     order = np.argsort(-np.nan_to_num(failing[-1].share), kind="stable")
-    shown = [int(order[place]) for place in spaced(len(order), _MOST_ROWS)]
+    shown = [int(order[place]) for place in spaced_indices(len(order), _MOST_ROWS)]
     texts = [_texts(one) for one in failing]
     rows = [[literal(subject.cell_name(cell)), *(literal(own[cell]) for own in texts)] for cell in shown]
     caption = "Repetitions that failed, with the probability of failing and its 95 % interval."

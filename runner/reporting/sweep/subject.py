@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import labelled, quantity
+from runner.base.quantities import label_with_unit, quantity
 from runner.config.compose.key_units import key_unit
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.measurements import Axis, Measurements
@@ -88,7 +88,7 @@ class Subject:
         from runner.statistics import axis_effects  # SciPy, a second, which the end of a sweep does without
 
         present = ~np.isnan(values).ravel()
-        levels = {axis.name: np.repeat(grouped(axis), values.shape[1])[present] for axis in self.axes}
+        levels = {axis.name: np.repeat(group_levels(axis), values.shape[1])[present] for axis in self.axes}
         return axis_effects(levels, values.ravel()[present], self.measurements.draws.ravel()[present])
 
     @cached_property
@@ -131,7 +131,7 @@ class Subject:
         return [self.measurements.hashes[cell] for cell in cells]
 
 
-def grouped(axis: Axis) -> NDArray[np.intp]:
+def group_levels(axis: Axis) -> NDArray[np.intp]:
     """Return the level of each cell on an axis, shape (cells,): neighbours together where there are very many."""
     count = len(axis.values)
     return axis.level * MOST_GROUPS // count if count > MOST_GROUPS else axis.level
@@ -139,7 +139,7 @@ def grouped(axis: Axis) -> NDArray[np.intp]:
 
 def axis_label(axis: Axis) -> str:
     """Return the key of an axis with its unit, as on the axis of a figure."""
-    return labelled(axis.name, key_unit(axis.name))
+    return label_with_unit(axis.name, key_unit(axis.name))
 
 
 def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:

@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
-from runner.reporting.charts.thinning import POINTS, spaced
+from runner.reporting.charts.thinning import POINTS, spaced_indices
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
@@ -47,7 +47,7 @@ def section(subject: Subject, metrics: tuple[str, str]) -> Section:
     a, b = (subject.medians[metric] for metric in metrics)
     best = front(a, b)
     present = np.flatnonzero(np.isfinite(a) & np.isfinite(b)).tolist()
-    shown = [present[place] for place in spaced(len(present), POINTS)]
+    shown = [present[place] for place in spaced_indices(len(present), POINTS)]
     panel = Panel(
         "",
         subject.label(metrics[0]),
@@ -74,7 +74,7 @@ def section(subject: Subject, metrics: tuple[str, str]) -> Section:
 
 def _table(subject: Subject, metrics: tuple[str, str], best: Sequence[int]) -> Table:
     # Of a long front, cells along the whole of it.
-    chosen = [best[index] for index in spaced(len(best), _MOST_ROWS)]
+    chosen = [best[index] for index in spaced_indices(len(best), _MOST_ROWS)]
     units = subject.measurements.units
     rows = [
         [

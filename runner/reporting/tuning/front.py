@@ -3,7 +3,7 @@
 from itertools import combinations
 
 from runner.base.quantities import quantity
-from runner.reporting.charts.thinning import spaced
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literals
 from runner.reporting.metric_titles import title
@@ -38,7 +38,7 @@ def section(subject: Subject) -> Section:
 def _table(subject: Subject) -> Table:
     # Of a long front, trials along the whole of it.
     rows = []
-    for trial in (subject.best[place] for place in spaced(len(subject.best), _MOST_ROWS)):
+    for trial in (subject.best[place] for place in spaced_indices(len(subject.best), _MOST_ROWS)):
         found = subject.trials[trial]
         values = zip(subject.objectives, found.values, strict=True)
         settings = [key_value(found.params[key.name]) for key in subject.keys]

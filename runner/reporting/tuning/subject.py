@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import labelled, number, quantity
+from runner.base.quantities import label_with_unit, number, quantity
 from runner.config.compose.key_units import key_unit
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.tuning.key import Key
@@ -90,7 +90,7 @@ def label(objective: Objective) -> str:
 
 def key_label(key: Key) -> str:
     """Return the name of a key with its unit, as on the axis of a figure."""
-    return labelled(key.name, key_unit(key.name))
+    return label_with_unit(key.name, key_unit(key.name))
 
 
 def key_value(value: float) -> str:

@@ -19,7 +19,7 @@ from runner.simulation.compiled.law import LawScalars, expressed_torque, law_sca
 from runner.simulation.compiled.maths import SymbolicBackend
 from runner.symbolic.code import GIVEN, ROWS, STATE, Block
 from runner.symbolic.end_points import PointScalars, expressed_points, point_scalars
-from runner.symbolic.expression import Value, both, equal, less, rounded, select
+from runner.symbolic.expression import Value, both, equal, less, round_to_even, select
 from runner.symbolic.maths import Array
 from runner.symbolic.places import Slots
 from runner.symbolic.structure import any_number, law_cache_key
@@ -246,7 +246,7 @@ def _asked(
     """Return the torques that a loop asks for, how the state goes on, and what may go wrong."""
     measured = [position + wrong for position, wrong in zip(given.q, given.errors, strict=True)]
     for joint, step in numbers.resolution.items():
-        measured[joint] = rounded(measured[joint] / step) * step
+        measured[joint] = round_to_even(measured[joint] / step) * step
     velocity: Sequence[Value] = given.dq
     changes: list[tuple[str, int, Any]] = []
     way, count = commands.noise.velocity, len(measured)

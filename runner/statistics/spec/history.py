@@ -26,7 +26,7 @@ def settings(bounds: Mapping[str, Bound | None], date: str) -> Histories:
     return {metric: [[date, ends_of(bound)]] for metric, bound in bounds.items()}
 
 
-def merged(*histories: Histories) -> dict[str, list[Sequence[Any]]]:
+def merge_histories(*histories: Histories) -> dict[str, list[Sequence[Any]]]:
     """Return histories one after the other, each value with the date on which it was first set."""
     found: dict[str, list[Sequence[Any]]] = {}
     for name, history in (item for each in histories for item in each.items()):

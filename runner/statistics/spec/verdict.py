@@ -36,6 +36,6 @@ def judge_share(share: "Share", at_most: float | None) -> Verdict:
         return Verdict("kept")
     if failing.low > at_most:
         return Verdict("broken")
-    from runner.statistics.share import needed
+    from runner.statistics.share import needed_repetitions
 
-    return Verdict("untold", needed(failing, at_most))
+    return Verdict("untold", needed_repetitions(failing, at_most))

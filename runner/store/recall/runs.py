@@ -29,7 +29,7 @@ def find_again(key: str | None) -> "tuple[Run, Any] | None":
     if not (isinstance(answer, dict) and answer.keys() == {"run", "outputs", "thresholds", "spec"}):
         return None
     from runner.statistics.spec import bounds_of
-    from runner.store import DamagedError, find_run, judged
+    from runner.store import DamagedError, find_run, judge_run
 
     try:
         run = find_run(Path(answer["outputs"]), answer["run"])
@@ -38,7 +38,7 @@ def find_again(key: str | None) -> "tuple[Run, Any] | None":
     if run is None:
         return None
     note(run.folder)
-    return judged(run, bounds_of(answer)), answer["thresholds"]
+    return judge_run(run, bounds_of(answer)), answer["thresholds"]
 
 
 def keep_run(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import number, quantity, ranged
+from runner.base.quantities import format_range, number, quantity
 from runner.metrics.caveats.torques import CHATTER
 from runner.reporting.charts.thinning import envelope
 from runner.reporting.claims import PublishedClaim
@@ -137,7 +137,7 @@ def _line(x: Sequence[float], y: Sequence[float], label: str) -> Series:
 
 def _told(claim: PublishedClaim) -> str:
     low, high = claim.printed[0], claim.printed[-1]
-    return f"printed {quantity(high, claim.unit) if low == high else ranged(low, high, claim.unit)}"
+    return f"printed {quantity(high, claim.unit) if low == high else format_range(low, high, claim.unit)}"
 
 
 def _at_rest(run: Run) -> FloatArray:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from runner.base.quantities import above_rounding, number, quantity, ranged
+from runner.base.quantities import above_rounding, format_range, number, quantity
 from runner.reporting.claims import judge, load_claims
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_step import describe_plant, percent
@@ -83,7 +83,7 @@ def _of_metric(metric: str, claim: int, run: Run, error: Mapping[str, Any]) -> s
         return ""
     text = (
         f"There the tip {_METRICS[metric]} {quantity(other, unit)}, {'within' if inside else 'outside'} the "
-        f"{ranged(low, high, unit)} of {_plant(run)}'s {run.record['repetitions']} repetitions"
+        f"{format_range(low, high, unit)} of {_plant(run)}'s {run.record['repetitions']} repetitions"
     )
     return f"{text}." if ours == theirs else f"{text}: claim {claim} would read {theirs} in place of {ours}."
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import number, quantity, ranged
+from runner.base.quantities import format_range, number, quantity
 from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.thesis.figures import at_rest
@@ -72,7 +72,7 @@ def at_rest_text(run: Run) -> str:
     if not errors:
         return "failed"
     low, high = min(errors), max(errors)
-    return ranged(low, high, "m") if high - low > ROUNDING else quantity(high, "m", rounding=ROUNDING)
+    return format_range(low, high, "m") if high - low > ROUNDING else quantity(high, "m", rounding=ROUNDING)
 
 
 def parting(first: Run, second: Run) -> FloatArray:

@@ -10,7 +10,7 @@ from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from runner.reporting.document import Block, Items, Section, Text
-from runner.reporting.markup import linked, literal, marked
+from runner.reporting.markup import link_text, literal, mark_text
 from runner.study.prose.expressions import PLACEHOLDER, Values
 from runner.study.prose.problem import ProseError
 from runner.study.prose.shown import filled
@@ -108,7 +108,7 @@ class Paragraphs:
             elif child.type == "softbreak":
                 parts.append(" ")
             elif child.type == "code_inline":
-                parts.append(marked(filled(literal(child.content), self._values, self._file), "code"))
+                parts.append(mark_text(filled(literal(child.content), self._values, self._file), "code"))
             elif child.type == "math_inline":
                 parts.append(f"${filled(child.content, self._values, self._file, mathematics=True)}$")
             elif child.type in ("em_open", "link_open"):
@@ -126,7 +126,7 @@ class Paragraphs:
                 raise ProseError(self._file, line, "emphasis and links hold plain words only")
             words.append(filled(literal(child.content), self._values, self._file) or " ")
         text = "".join(words)
-        return marked(text, "emphasis") if opening.type == "em_open" else linked(text, str(opening.attrs["href"]))
+        return mark_text(text, "emphasis") if opening.type == "em_open" else link_text(text, str(opening.attrs["href"]))
 
     def _refused(self, token: Token, line: int) -> ProseError:
         what = _NAMES.get(token.type, token.type.removesuffix("_open").replace("_", " "))

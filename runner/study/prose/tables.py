@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.quantities import Shown, above_rounding, labelled
+from runner.base.quantities import Shown, above_rounding, label_with_unit
 from runner.reporting.document import Origin, Table
 from runner.reporting.figures import origin
 from runner.reporting.metric_titles import title
@@ -174,7 +174,7 @@ def _with_unit(metric: str, run: Run) -> str:
 def _header(given: Column, rows: Sequence[Found]) -> str:
     if not given.metric or given.title.endswith(")"):
         return given.title
-    return labelled(given.title, next((_unit(row.run, given.metric) for row in rows if row.run.metrics), "1"))
+    return label_with_unit(given.title, next((_unit(row.run, given.metric) for row in rows if row.run.metrics), "1"))
 
 
 def _unit(run: Run, metric: str) -> str:

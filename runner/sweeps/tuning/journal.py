@@ -11,11 +11,11 @@ from optuna.storages import JournalStorage
 from optuna.storages.journal import BaseJournalBackend
 from optuna.trial import FrozenTrial
 
-from runner.base.errors import StoreError, unwritten
+from runner.base.errors import StoreError, describe_write_error
 from runner.store.seal import DamagedError, Lines
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective
-from runner.sweeps.tuning.sampler import ended, read_ended
+from runner.sweeps.tuning.sampler import make_optuna_trial, read_ended
 from runner.sweeps.tuning.trial import Trial
 
 
@@ -50,7 +50,7 @@ class Journal:
                     storage=_open(path), study_name=path.parent.name, directions=directions
                 )
         except OSError as error:
-            raise StoreError(unwritten(error, path)) from error
+            raise StoreError(describe_write_error(error, path)) from error
 
     def append(self, trial: Trial) -> None:
         """Add a trial that ended.
@@ -58,11 +58,11 @@ class Journal:
         Raises:
             StoreError: if the disk does not take it.
         """
-        frozen = ended(self._keys, trial)
+        frozen = make_optuna_trial(self._keys, trial)
         try:
             self._study.add_trial(frozen)
         except OSError as error:
-            raise StoreError(unwritten(error, self._path)) from error
+            raise StoreError(describe_write_error(error, self._path)) from error
         self.history.append(frozen)
         self.trials.append(trial)
 

@@ -63,7 +63,7 @@ def _spread(keys: Sequence[Key], objectives: Sequence[Objective], number: int, s
     return asked[-1].params
 
 
-def ended(keys: Sequence[Key], trial: Trial) -> FrozenTrial:
+def make_optuna_trial(keys: Sequence[Key], trial: Trial) -> FrozenTrial:
     """Return a trial that has ended, as Optuna keeps it; a failed one violates a constraint, and so ranks last."""
     return create_trial(
         params=dict(trial.params),
@@ -96,7 +96,7 @@ def importances(keys: Sequence[Key], trials: Sequence[Trial], objective: Objecti
         return {}
     study = _study([objective], None)
     for trial in good:
-        study.add_trial(ended(keys, Trial(trial.params, (trial.values[place],), trial.run, "")))
+        study.add_trial(make_optuna_trial(keys, Trial(trial.params, (trial.values[place],), trial.run, "")))
     return optuna.importance.get_param_importances(study)
 
 

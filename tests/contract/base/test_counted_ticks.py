@@ -15,7 +15,7 @@ from runner.sweeps.job import simulate_job
 def test_those_of_a_repetition_under_way_count():
     clock = np.zeros(101, dtype=np.int64)
     count = ticks.counter()
-    with ticks.counted(clock, 100):
+    with ticks.track_ticks(clock, 100):
         clock[:30] = 7
         assert count() == 30
     assert count() == 100
@@ -25,7 +25,7 @@ def test_those_of_a_repetition_under_way_count():
 
 def test_a_repetition_that_ends_early_counts_as_made():
     count = ticks.counter()
-    with pytest.raises(ValueError, match="diverged"), ticks.counted(np.zeros(11, dtype=np.int64), 10):
+    with pytest.raises(ValueError, match="diverged"), ticks.track_ticks(np.zeros(11, dtype=np.int64), 10):
         raise ValueError("diverged")
     assert count() == 10
 
@@ -48,7 +48,7 @@ def test_they_are_told_from_a_thread_that_ends_with_the_work(monkeypatch):
         told.append((count, threading.current_thread()))
         enough.set()
 
-    with ticks.told(tell):
+    with ticks.report_ticks(tell):
         ticks.add_ticks(3)
         assert enough.wait(PATIENCE)
     count, thread = told[-1]
@@ -59,5 +59,5 @@ def test_they_are_told_from_a_thread_that_ends_with_the_work(monkeypatch):
 
 def test_nobody_is_told_where_nobody_asks():
     before = threading.active_count()
-    with ticks.told(None):
+    with ticks.report_ticks(None):
         assert threading.active_count() == before

@@ -44,7 +44,7 @@ def test_another_config_is_another_calibration(job, change):
 def test_the_command_names_ones_own_parts_and_folders(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("mine").mkdir()
-    monkeypatch.setattr(plugins, "named", lambda: ["calibration=mine/own.py"])
+    monkeypatch.setattr(plugins, "named_parts", lambda: ["calibration=mine/own.py"])
     composed = compose(("seed=1", "outputs=else"), [Path("mine")], root="calibrate")
     assert provenance.command(composed, "calibrate") == (
         "runner --plugin calibration=mine/own.py calibrate --config-dir mine seed=1"

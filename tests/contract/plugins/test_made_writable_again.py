@@ -120,14 +120,14 @@ BELIEF = """
     from typing import Literal
     import numpy as np
     from runner.plugins.registry import StrictModel
-    from runner.robots.mismatch import scaled
+    from runner.robots.mismatch import scale_model
     from runner.robots.robot import with_models
     class CONFIG(StrictModel):
         kind: Literal["NAME"]
     def build(config, robot, generator):
         def change(model, joints, bears_payload):
             ones = np.ones(model.nq)
-            return scaled(model, 0.9 * ones, ones, np.ones(model.nq + 1))
+            return scale_model(model, 0.9 * ones, ones, np.ones(model.nq + 1))
         believed = copy.deepcopy(with_models(robot, change))
         if SPOILS:
             robot.model.pin_model.gravity.linear = np.zeros(3)

@@ -151,11 +151,11 @@ def test_every_command_takes_a_plug_in_wherever_it_stands(mine):
 
 def test_a_module_by_name_is_found_where_python_looks(mine, monkeypatch):
     monkeypatch.syspath_prepend(mine / "mine")
-    plugins.added("trajectory")
+    plugins.added_parts("trajectory")
     plugins.use_plugins(["controller=spring"])
-    assert next((point.name, point.value) for point in plugins.added("controller")) == ("spring", "spring")
-    assert all(point.value != "spring" for point in plugins.added("trajectory"))
-    assert plugins.named() == ["controller=spring"]
+    assert next((point.name, point.value) for point in plugins.added_parts("controller")) == ("spring", "spring")
+    assert all(point.value != "spring" for point in plugins.added_parts("trajectory"))
+    assert plugins.named_parts() == ["controller=spring"]
 
 
 def test_worker_processes_inherit_plug_ins(mine):

@@ -11,7 +11,7 @@ from support.sample_document import HOSTILE, SVG, curves, document, maps, playba
 from runner.base.errors import RunnerError
 from runner.reporting.charts.sheet import column
 from runner.reporting.document import Curves, Document, Maps, Origin, Panel, Picture, Section, Series
-from runner.reporting.export.figures import chosen, figures_of, write_figures
+from runner.reporting.export.figures import choose_figures, figures_of, write_figures
 from runner.reporting.export.points import as_csv
 
 SHEETS = {88.0: column(88.0), 180.0: column(180.0)}
@@ -23,7 +23,7 @@ def report(*blocks):
 
 
 def written(folder, blocks, sheet=SHEETS[88.0], only=None):
-    return list(write_figures(chosen(figures_of(report(*blocks)), only), folder, sheet))
+    return list(write_figures(choose_figures(figures_of(report(*blocks)), only), folder, sheet))
 
 
 def letters(pdf):
@@ -114,17 +114,17 @@ def test_any_text_in_any_field_is_drawn(tmp_path):
 
 def test_one_figure_may_be_asked_for():
     figures = figures_of(report(curves("One."), curves("Two.", origin=Origin("2.1")), maps("Three")))
-    assert list(chosen(figures, "figure-2-1")) == ["figure-2-1-two"]
-    assert list(chosen(figures, "s1-figure-1-one")) == ["s1-figure-1-one"]
-    assert list(chosen(figures, None)) == list(figures)
+    assert list(choose_figures(figures, "figure-2-1")) == ["figure-2-1-two"]
+    assert list(choose_figures(figures, "s1-figure-1-one")) == ["s1-figure-1-one"]
+    assert list(choose_figures(figures, None)) == list(figures)
     with pytest.raises(RunnerError, match="no figure 'figure-2-2'") as told:
-        chosen(figures, "figure-2-2")
+        choose_figures(figures, "figure-2-2")
     assert all(name in str(told.value) for name in figures)
 
 
 def test_a_report_without_figures_is_told():
     with pytest.raises(RunnerError, match="the report has no figures"):
-        chosen(figures_of(report()), None)
+        choose_figures(figures_of(report()), None)
 
 
 def test_panels_stand_below_each_other_in_a_narrow_column(tmp_path):

@@ -44,7 +44,9 @@ def test_a_family_from_outside_may_have_titles_of_its_own(titles, text, tmp_path
     module.write_text(
         f"UNITS = {{'way_q': 'm'}}\nTITLES = {titles}\n\n\ndef evaluate(trace, context):\n    return {{}}\n"
     )
-    monkeypatch.setattr(summary, "added", lambda group: [type("Point", (), {"name": "own", "value": str(module)})()])
+    monkeypatch.setattr(
+        summary, "added_parts", lambda group: [type("Point", (), {"name": "own", "value": str(module)})()]
+    )
     monkeypatch.setattr(summary, "load", lambda group, name, value: _executed(module))
     assert title("way_q_y") == text
 
@@ -56,4 +58,4 @@ def _executed(path):
 
 
 def test_plugins_are_asked_through_the_registry():
-    assert summary.added is plugins.added
+    assert summary.added_parts is plugins.added_parts

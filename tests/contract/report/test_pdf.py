@@ -8,7 +8,7 @@ from support.sample_document import HOSTILE, document
 
 from runner.reporting import pdf
 from runner.reporting.document import Block, Document, Section, Table
-from runner.reporting.templating import quoted, typst_environment, typst_value
+from runner.reporting.templating import quote_typst, typst_environment, typst_value
 
 
 @pytest.mark.parametrize("kind", get_args(Block), ids=lambda kind: kind.block)
@@ -25,7 +25,7 @@ def test_any_text_in_any_field_gives_a_document(text):
 @pytest.mark.parametrize("text", HOSTILE)
 def test_a_template_inserts_texts_as_strings_only(text):
     inserted = typst_environment().from_string("#f(<< text >>)").render(text=text)
-    assert inserted == f"#f({quoted(text)})"
+    assert inserted == f"#f({quote_typst(text)})"
     body = inserted[len('#f("') : -len('")')]
     assert '"' not in body.replace("\\\\", "").replace('\\"', "")
     assert "\n" not in body

@@ -79,7 +79,7 @@ def test_the_engines_versions_count(monkeypatch):
     monkeypatch.setattr(identity, "simulated_part", lambda _: {"seed": 0})
     alone, other = (run_hash({"plant": {"kind": kind}}, "<robot/>") for kind in ("of a stranger", "of another"))
     assert alone == other != before
-    monkeypatch.setattr(identity, "installed", lambda names: dict.fromkeys(names, "9.9"))
+    monkeypatch.setattr(identity, "installed_versions", lambda names: dict.fromkeys(names, "9.9"))
     assert run_hash({"plant": {"kind": "of a third"}}, "<robot/>") != alone
 
 
@@ -97,7 +97,7 @@ def test_a_part_counts_in_the_runs_that_use_it(monkeypatch):
     point = EntryPoint("a", "runner.studies.xarm7.parts.three_joint", "runner.controller")
     other = {"controller": {"kind": "b"}}
     before = changed(), changed(**other)
-    monkeypatch.setattr(identity, "added", lambda group: (point,) if group == "controller" else ())
+    monkeypatch.setattr(identity, "added_parts", lambda group: (point,) if group == "controller" else ())
     assert changed() != before[0]
     assert changed(**other) == before[1]
 
@@ -113,7 +113,9 @@ def test_a_part_counts_in_the_runs_that_use_it(monkeypatch):
 )
 def test_of_a_part_the_content_counts(monkeypatch, tmp_path, old, new, same):
     text = '"""A part."""\nGAIN = 2.0\ndef build(): return GAIN\n'
-    monkeypatch.setattr(identity, "added", lambda group: (EntryPoint("a", "part", group),) if group == "plant" else ())
+    monkeypatch.setattr(
+        identity, "added_parts", lambda group: (EntryPoint("a", "part", group),) if group == "plant" else ()
+    )
     names = []
     for place, source in enumerate((text, text.replace(old, new))):
         path = tmp_path / str(place) / "part.py"

@@ -11,7 +11,7 @@ from runner.reporting.document import Notice
 from runner.reporting.outline import blocks
 from runner.reporting.spec_words import spec_rows
 from runner.reporting.sweep.report import sweep_document
-from runner.store import judged, open_run, open_sweep, write_sweep
+from runner.store import judge_run, open_run, open_sweep, write_sweep
 from runner.sweeps.execution import run
 
 SHORT = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.3", "repetitions=12")
@@ -56,7 +56,7 @@ def test_a_bound_that_is_set_after_the_result_is_kept_with_its_date_and_what_sto
     (row,) = spec_rows(made.spec)
     assert "set after" not in row[0]
     low, high = Bound(max=median), Bound(max=2.0 * median)
-    judged(judged(made, {METRIC: low}, "2026-02-03"), {METRIC: high, "peak_torque": Bound(min=0.0)}, "2026-03-04")
+    judge_run(judge_run(made, {METRIC: low}, "2026-02-03"), {METRIC: high, "peak_torque": Bound(min=0.0)}, "2026-03-04")
     kept = open_run(made.folder)
     dates = [date for date, _ in kept.record["spec"]["history"][METRIC]]
     assert dates == [made.provenance["date"], "2026-02-03", "2026-03-04"]
@@ -64,9 +64,9 @@ def test_a_bound_that_is_set_after_the_result_is_kept_with_its_date_and_what_sto
     assert re.search(r", set after the result was known \(2026-03-04; before: at least 0 m, then at most .*\)$", first)
     assert second.endswith("largest torque at least 0 N m, set after the result was known (2026-03-04; before: none)")
     # One that stood before keeps its date; that with which the run was made was never set late.
-    again = judged(kept, {METRIC: low}, "2026-05-06")
+    again = judge_run(kept, {METRIC: low}, "2026-05-06")
     assert "known (2026-02-03; before: at least 0 m)" in spec_rows(again.spec)[0][0]
-    assert spec_rows(judged(again, {METRIC: Bound(min=0.0, reason="none is less")}, "2026-07-08").spec) == [row]
+    assert spec_rows(judge_run(again, {METRIC: Bound(min=0.0, reason="none is less")}, "2026-07-08").spec) == [row]
 
 
 def test_a_sweep_remembers_its_bounds_and_tells_which_cells_were_made_before(tmp_path, median):

@@ -52,7 +52,7 @@ def test_a_chapter_has_its_sections_and_each_condition_can_fail(
     if file.endswith(".md"):
         text = (load_work(study).folder / file).read_text(encoding="utf-8")
         written = re.findall(r"^## (.*)$", text, re.MULTILINE)
-        assert set(written) <= {each.section.title for each in outline.numbered([section])}
+        assert set(written) <= {each.section.title for each in outline.number_sections([section])}
         assert never_failing(file, chapters.reading(file.removesuffix(".md"))) == []
 
 

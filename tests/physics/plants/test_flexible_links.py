@@ -13,7 +13,7 @@ from runner.plants.computation import EXACT
 from runner.plants.flexible_links import FlexibleLinks
 from runner.plants.rk4 import Rk4
 from runner.plants.rk4_flexible_links import BeamConfig, Rk4FlexibleLinksConfig
-from runner.robots.beams import Beam, stiffened
+from runner.robots.beams import Beam, stiffen_robot
 from runner.robots.cantilever import clamped_arm
 from runner.robots.chain import cut
 
@@ -128,7 +128,7 @@ def test_with_held_motors_it_rings_as_its_modes_say(mass, parts):
 
 def test_the_distance_to_the_rigid_arm_falls_as_one_over_the_stiffness():
     robot, torque = macro(), np.array([2.0, 25.0, 8.0])
-    rigid = stiffened(robot, {"link2": Beam(1.0, 0.3), "link3": Beam(1.0, 0.3)}).model.copy()
+    rigid = stiffen_robot(robot, {"link2": Beam(1.0, 0.3), "link3": Beam(1.0, 0.3)}).model.copy()
     rigid.pin_model.armature = 2.0 * np.ones(3)
     reference = _moved(rigid, torque)
     stiffness, distances = np.array([3e3, 6e3, 1.2e4]), []

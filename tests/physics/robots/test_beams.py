@@ -7,7 +7,7 @@ import pinocchio as pin
 import pytest
 from support.arms import checked
 
-from runner.robots.beams import Beam, moving_links, parts_of, span, stiffened
+from runner.robots.beams import Beam, moving_links, parts_of, span, stiffen_robot
 from runner.robots.cantilever import cantilever_roots
 
 
@@ -50,7 +50,7 @@ def test_links_that_move_are_named_and_measured():
 
 def test_a_stiffened_robot_has_the_rods_in_its_whole_and_in_its_stages():
     arm = checked("robot=combined").arm
-    heavy = stiffened(arm, {"link2": Beam(1.0, 0.3), "mini_link3": Beam(1.0, 0.02)})
+    heavy = stiffen_robot(arm, {"link2": Beam(1.0, 0.3), "mini_link3": Beam(1.0, 0.02)})
     assert heavy.model.mass - arm.model.mass == pytest.approx(0.32)
     assert [a.model.mass - b.model.mass for a, b in zip(heavy.stages, arm.stages, strict=True)] == [
         pytest.approx(0.3),

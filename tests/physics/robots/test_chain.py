@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 from support.arms import checked
 
-from runner.robots.beams import Beam, stiffened
+from runner.robots.beams import Beam, stiffen_robot
 from runner.robots.cantilever import cantilever, cantilever_roots, clamped_arm, frequency_errors
 from runner.robots.chain import cut
 from runner.robots.modes import find_modes
@@ -64,7 +64,7 @@ def test_a_link_without_mass_has_one_mode_at_its_end_mass():
 def test_with_straight_links_a_chain_is_the_rigid_arm():
     robot = checked("robot=combined").arm
     beams = {"link2": Beam(300.0, 0.3), "link3": Beam(100.0, 0.2)}
-    chain, rigid = cut(robot.model, robot.flange, beams, 3), stiffened(robot, beams).model
+    chain, rigid = cut(robot.model, robot.flange, beams, 3), stiffen_robot(robot, beams).model
     q = np.array([0.3, -0.4, 1.1, 0.2, 0.7, -0.5])
     M = chain.mass_matrix(q)
     assert M[np.ix_(chain.motors, chain.motors)] == pytest.approx(rigid.mass_matrix(q), abs=1e-12)

@@ -158,7 +158,7 @@ def test_what_is_not_compiled_as_a_whole_goes_its_own_way(overrides):
 
 
 def test_metrics_of_the_user_s_look_at_one_run_at_a_time(monkeypatch):
-    monkeypatch.setattr(batch, "added", lambda group: (SimpleNamespace(name="mine"),))
+    monkeypatch.setattr(batch, "added_parts", lambda group: (SimpleNamespace(name="mine"),))
     assert BatchSimulator().repetitions(configured()) is None
 
 

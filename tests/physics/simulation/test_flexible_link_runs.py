@@ -11,7 +11,7 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.plants import PLANTS
 from runner.robots.armature import with_armature
-from runner.robots.beams import stiffened
+from runner.robots.beams import stiffen_robot
 from runner.robots.cantilever import cantilever_roots
 from runner.robots.modes import Mode
 from runner.simulation.assembly import assemble
@@ -82,7 +82,7 @@ def test_laws_believe_a_rigid_arm_of_the_same_masses_and_motors():
     closed = assemble(config)
     closed.close()
     (law,) = (loop.controller for loop in closed.loops)
-    expected = with_armature(stiffened(config.arm, config.plant.beams(config.arm)), np.full(3, 2.0)).model
+    expected = with_armature(stiffen_robot(config.arm, config.plant.beams(config.arm)), np.full(3, 2.0)).model
     q = np.array([0.1, 0.2, 0.3])
     assert law.models[0].mass_matrix(q) == pytest.approx(expected.mass_matrix(q))
     assert law.models[0].mass == pytest.approx(2.2)

@@ -13,7 +13,7 @@ from runner.symbolic.expression import (
     less,
     negated,
     place,
-    rounded,
+    round_to_even,
     select,
     sqrt,
 )
@@ -34,8 +34,8 @@ def frame_of(name, ticks, between, rows, lanes, **chosen):
     [
         ("sum", A + B - 2.0 * A / B, lambda a, b: a + b - 2.0 * a / b),
         ("root", sqrt(absolute(A)), lambda a, b: np.sqrt(np.abs(a))),
-        ("whole", rounded(A) + floor(B), lambda a, b: np.round(a) + np.floor(b)),
-        ("half", rounded(expression(2.5)) + A * 0.0, lambda a, b: 2.0 + 0.0 * a),
+        ("whole", round_to_even(A) + floor(B), lambda a, b: np.round(a) + np.floor(b)),
+        ("half", round_to_even(expression(2.5)) + A * 0.0, lambda a, b: 2.0 + 0.0 * a),
         ("less", select(less(A, B), A, -B), lambda a, b: np.where(a < b, a, -b)),
         ("both", select(both(less(A, B), negated(equal(A, 1.0))), 1.0, 0.0), lambda a, b: 1.0 * ((a < b) & (a != 1.0))),
     ],
@@ -106,7 +106,7 @@ def test_a_table_has_a_row_for_each_turn():
 
 
 def test_what_stands_twice_is_computed_once():
-    from runner.symbolic.code import written
+    from runner.symbolic.code import write_program
 
-    text = written([Block([(ROWS, 0, (A + B) * (A + B)), (ROWS, 1, A + B)])], [], WIDTHS, 1)
+    text = write_program([Block([(ROWS, 0, (A + B) * (A + B)), (ROWS, 1, A + B)])], [], WIDTHS, 1)
     assert (text.count("fadd"), text.count("fmul")) == (1, 1)

@@ -7,7 +7,7 @@ import pytest
 
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants.motion import ArmMotion, Motion
-from runner.robots.mismatch import scaled
+from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
 from runner.sensing import EncoderNoise
 from runner.simulation.compiled.closed_loop import LoopProgram
@@ -37,7 +37,7 @@ class Held(TorqueLaw[HeldNumbers]):
 @pytest.fixture
 def wheel(one_stage):
     def make(torque=TORQUE, mass=1.0, length=1.0, limit=np.inf):
-        model = scaled(RobotModel(URDF, "tip", 0.0), np.array([mass]), np.ones(1), np.array([1.0, length]))
+        model = scale_model(RobotModel(URDF, "tip", 0.0), np.array([mass]), np.ones(1), np.array([1.0, length]))
         robot, none = one_stage(URDF, model), np.zeros(1)
         loop = LoopCode(Held([model], False, HeldNumbers(torque)), slice(0, 1), 1, TICK)
         noise = EncoderNoise(none, none, none, "none", "exact")

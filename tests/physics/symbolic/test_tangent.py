@@ -5,7 +5,7 @@ import pytest
 
 from runner.symbolic.code import ACTING, GIVEN, PARS, ROWS, STATE, Block, Repeat
 from runner.symbolic.elementary import sine_cosine
-from runner.symbolic.expression import absolute, expression, floor, less, place, rounded, select, sqrt
+from runner.symbolic.expression import absolute, expression, floor, less, place, round_to_even, select, sqrt
 from runner.symbolic.program import Expressed, program
 from runner.symbolic.tangent import with_tangents
 
@@ -37,7 +37,7 @@ SAMPLES = np.array([-2.5, -1.2, -0.7, -0.1, 0.3, 0.9, 1.7, 3.1])
         ("sine", sine_cosine(3.0 * A)[0], lambda a: 3.0 * np.cos(3.0 * a)),
         ("cosine", sine_cosine(3.0 * A)[1], lambda a: -3.0 * np.sin(3.0 * a)),
         ("branch", select(less(A, 0.0), A * A, 5.0 * A), lambda a: np.where(a < 0.0, 2.0 * a, 5.0)),
-        ("steps", rounded(A) + floor(A) + expression(1.0), lambda a: 0.0 * a),
+        ("steps", round_to_even(A) + floor(A) + expression(1.0), lambda a: 0.0 * a),
         ("one branch", select(less(A, 0.0), 1.0, A), lambda a: np.where(a < 0.0, 0.0, 1.0)),
     ],
     ids=["sum", "product", "quotient", "negative", "size", "root", "sine", "cosine", "branch", "steps", "one branch"],

@@ -173,16 +173,16 @@ def test_the_outputs_are_given_back_and_look_the_same_meanwhile(terminal, work):
 def test_what_shows_its_progress_within_what_does_is_shown_once(terminal, monkeypatch):
     monkeypatch.setattr(progress, "terminal", lambda: contextlib.nullcontext(terminal))
     before = threading.active_count()
-    with terminal, progress.shown():
+    with terminal, progress.show_progress():
         assert threading.active_count() == before + 1
-        with progress.shown():
+        with progress.show_progress():
             assert threading.active_count() == before + 1
         assert threading.active_count() == before + 1
 
 
 def test_off_a_terminal_nothing_is_shown():
     stream, before = io.StringIO(), threading.active_count()
-    with contextlib.redirect_stderr(stream), progress.shown():
+    with contextlib.redirect_stderr(stream), progress.show_progress():
         assert sys.stderr is stream
         assert threading.active_count() == before
         progress.begin("a")
@@ -196,7 +196,7 @@ def test_a_notebook_shows_it_though_it_is_no_terminal(monkeypatch):
     stream = io.StringIO()
     with contextlib.redirect_stderr(stream), display.terminal() as found:
         assert found is stream
-    with contextlib.redirect_stderr(stream), progress.shown():
+    with contextlib.redirect_stderr(stream), progress.show_progress():
         assert sys.stderr is not stream
     kernel.config = {}  # IPython in a shell
     with contextlib.redirect_stderr(stream), display.terminal() as found:

@@ -123,4 +123,4 @@ def test_a_default_run_carries_a_caveat_and_one_that_asked_for_mujoco_none(cli):
 
 
 def test_versions_are_those_of_what_is_installed():
-    assert set(engines.installed(["numpy", "no-such-library"])) == {"numpy"}
+    assert set(engines.installed_versions(["numpy", "no-such-library"])) == {"numpy"}

@@ -7,10 +7,10 @@ import pytest
 from runner.base.quantities import (
     above_rounding,
     digits_between,
-    labelled,
+    format_range,
+    label_with_unit,
     number,
     quantity,
-    ranged,
     spread,
     with_interval,
     with_powers,
@@ -128,7 +128,7 @@ def test_small_lengths_and_times_have_smaller_units(value, unit, text):
     [(0.0, 9e-3, "0 to 9 mm"), (0.007, 0.044, "7 to 44 mm"), (0.1, 0.15, "0.1 to 0.15 m"), (5e-3, 0.2, "5 to 200 mm")],
 )
 def test_both_ends_of_a_range_have_one_unit(low, high, text):
-    assert ranged(low, high, "m") == text
+    assert format_range(low, high, "m") == text
 
 
 @pytest.mark.parametrize(
@@ -160,7 +160,7 @@ def test_an_estimate_has_as_many_decimals_as_its_interval(value, half, texts):
 
 @pytest.mark.parametrize(("unit", "text"), [("1", "x"), ("m", "x (m)"), ("N^2 m^2 s", "x (N² m² s)")])
 def test_a_label_carries_the_unit(unit, text):
-    assert labelled("x", unit) == text
+    assert label_with_unit("x", unit) == text
 
 
 @pytest.mark.parametrize(("low", "high"), [(371.1, 372.3), (0.5, 0.5), (1e-4, 2.0), (-3.0, -2.999), (0.0, 5.0)])

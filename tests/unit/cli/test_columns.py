@@ -2,18 +2,21 @@
 
 import numpy as np
 
-from runner.cli.columns import COMPARED, aligned, answer_cells
+from runner.cli.columns import COMPARED, align_columns, answer_cells
 from runner.reporting.answers import Asked, judge
 from runner.reporting.comparison.side import letter
 from runner.statistics import compare_paired
 
 
 def test_columns_are_aligned():
-    assert aligned([["a", "long"], ["longer", "b"]]) == "  a       long\n  longer  b"
+    assert align_columns([["a", "long"], ["longer", "b"]]) == "  a       long\n  longer  b"
 
 
 def test_no_cell_speaks_to_the_terminal():
-    assert aligned([["robot.name", "\x1b]0;title\x07", "two\nlines"]]) == r"  robot.name  \x1b]0;title\x07  two\nlines"
+    assert (
+        align_columns([["robot.name", "\x1b]0;title\x07", "two\nlines"]])
+        == r"  robot.name  \x1b]0;title\x07  two\nlines"
+    )
 
 
 def test_an_answer_fills_its_columns():

@@ -3,7 +3,7 @@
 import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
 
-from runner.config.compose.malformed import explain_parser, malformed
+from runner.config.compose.malformed import explain_parser, find_syntax_error
 
 GOOD = (
     "robot=macro", "robot=macro,mini", "robot.home=[0,1,2]", "robot.name='a, b]'", 'robot.name="it\'s"', "robot.name=",
@@ -35,12 +35,12 @@ BAD = {
 @pytest.mark.parametrize("override", GOOD)
 def test_what_hydra_takes_has_no_fault(override):
     OverridesParser.create().parse_override(override)
-    assert malformed(override) is None
+    assert find_syntax_error(override) is None
 
 
 @pytest.mark.parametrize(("override", "fault"), BAD.items())
 def test_a_fault_is_told_in_words(override, fault):
-    assert malformed(override) == fault
+    assert find_syntax_error(override) == fault
 
 
 @pytest.mark.parametrize("override", [*BAD, "robot", "a=b^c", "a=#", "a=x;y", "a=1&2", "a=(1)", "a=x:[1", "a b=1"])

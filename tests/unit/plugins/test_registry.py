@@ -28,7 +28,7 @@ def parts(monkeypatch):
         module.CONFIG, module.build = Config, lambda config, *args, name=name: (name, config.size, *args)
         monkeypatch.setitem(sys.modules, f"some_{name}", module)
     points = [EntryPoint("foreign", "some_foreign", "runner.part")]
-    monkeypatch.setattr(registry, "added", lambda group: points if group == "part" else [])
+    monkeypatch.setattr(registry, "added_parts", lambda group: points if group == "part" else [])
     return Registry("part", {"own": "some_own"})
 
 

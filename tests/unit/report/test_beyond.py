@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from support.sample_sides import LAWS, side
 
-from runner.reporting.comparison.beyond import ABSENT, Value, beyond
+from runner.reporting.comparison.beyond import ABSENT, Value, find_differences
 from runner.reporting.comparison.cells import match
 
 
@@ -13,7 +13,7 @@ def nothing(*_):
 
 
 def found(a, b):
-    return beyond(a, b, match(a, b))
+    return find_differences(a, b, match(a, b))
 
 
 def test_one_value_differs_alone():

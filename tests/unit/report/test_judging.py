@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pytest
 
 from runner.reporting.claims import CONTRADICTION, PublishedClaim, load_claims
-from runner.reporting.claims.judging import Simulated, compared_with, expected, simulated_by, verdict_on
+from runner.reporting.claims.judging import Simulated, compared_with, expected_value, simulated_by, verdict_on
 
 CLAIMS = load_claims("thesis")
 TIME, ERROR, BOUNDED, ALIKE = (next(each for each in CLAIMS if each.number == number) for number in (1, 4, 5, 16))
@@ -37,12 +37,12 @@ def test_a_bound_is_the_larger_of_what_is_printed_and_simulated(
     macro: float | None, bound: float, verdict: str
 ) -> None:
     simulated = given({"figure_3_5": macro, "figure_4_2": 0.3})
-    assert expected(BOUNDED, CLAIMS, simulated) == pytest.approx(bound)
+    assert expected_value(BOUNDED, CLAIMS, simulated) == pytest.approx(bound)
     assert verdict_on(BOUNDED, CLAIMS, simulated) == verdict
 
 
 def test_most_claims_have_no_bound() -> None:
-    assert expected(TIME, CLAIMS, given({})) is None
+    assert expected_value(TIME, CLAIMS, given({})) is None
 
 
 def test_a_claim_names_its_experiment_or_its_run() -> None:

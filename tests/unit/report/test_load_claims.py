@@ -4,7 +4,7 @@ import pytest
 import yaml
 
 from runner.base.errors import RunnerError
-from runner.reporting.claims import claim, claimed, load_claims, load_statements
+from runner.reporting.claims import claim, load_claims, load_statements, works_with_claims
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def entries(tmp_path, monkeypatch):
 THESIS = load_claims("thesis")
 
 
-@pytest.mark.parametrize("work", claimed())
+@pytest.mark.parametrize("work", works_with_claims())
 def test_the_claims_of_a_work_are_numbered_in_order(work):
     assert [each.number for each in load_claims(work)] == list(range(1, len(load_claims(work)) + 1))
 

@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.expressions.parser import parse
 from runner.base.expressions.tree import Name
-from runner.reporting.audit.matrices import gathered
+from runner.reporting.audit.matrices import gather_elements
 from runner.reporting.equation import Matrix
 
 
@@ -15,7 +15,7 @@ def elements(*names):
 def shapes(*names):
     return [
         (left.name, (len(right.rows), len(right.rows[0])) if isinstance(right, Matrix) else None)
-        for left, right in gathered(elements(*names))
+        for left, right in gather_elements(elements(*names))
     ]
 
 
@@ -41,5 +41,7 @@ def test_elements_that_fill_rows_and_columns_are_a_matrix(names, expected):
 
 
 def test_elements_stand_in_their_rows_whatever_their_order():
-    ((_, matrix),) = gathered({"T_21": Name("c", 0), "T_12": Name("b", 0), "T_22": Name("d", 0), "T_11": Name("a", 0)})
+    ((_, matrix),) = gather_elements(
+        {"T_21": Name("c", 0), "T_12": Name("b", 0), "T_22": Name("d", 0), "T_11": Name("a", 0)}
+    )
     assert [[node.name for node in row] for row in matrix.rows] == [["a", "b"], ["c", "d"]]

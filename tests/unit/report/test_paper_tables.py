@@ -9,9 +9,9 @@ from support.paper_sweep import by_hand
 
 from runner.base.errors import RunnerError
 from runner.reporting.export.columns import Unit
-from runner.reporting.export.latex import escaped as latex_escaped
+from runner.reporting.export.latex import escape_latex as latex_escaped
 from runner.reporting.export.latex import latex, unit_macro
-from runner.reporting.export.markdown import escaped as markdown_escaped
+from runner.reporting.export.markdown import escape_markdown as markdown_escaped
 from runner.reporting.export.markdown import markdown
 from runner.reporting.export.paper_table import of_sweep
 from runner.statistics import median_interval

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from support.sample_sweep import measurements
 
-from runner.reporting.sweep.question import ask, in_short, sentences, too_few
+from runner.reporting.sweep.question import find_question, in_short, sentences, too_few
 from runner.reporting.sweep.subject import choose
 from runner.sweeps.differing import Difference
 
@@ -28,7 +28,7 @@ def sweep(repetitions=8, axes=AXES, **metrics):
 def test_asked_is_about_choices_overall_and_at_each_value_of_the_axis_that_spreads_most():
     axes = {**AXES, "torque_limits.max": [20.0, 40.0]}
     given = {"max_tracking_error": lambda noise, law, limit: 1.0 + limit + 0.1 * noise + drawn(8, law) / 100.0}
-    question = ask(choose(measurements(axes, given)))
+    question = find_question(choose(measurements(axes, given)))
     assert (question.axis, question.within) == ("controller", "torque_limits.max")
     assert [pair.at for pair, _ in question.overall] == [{}]
     assert [pair.at for pair, _ in question.at] == [{"torque_limits.max": "20"}, {"torque_limits.max": "40"}]
@@ -37,7 +37,7 @@ def test_asked_is_about_choices_overall_and_at_each_value_of_the_axis_that_sprea
 
 def test_no_winner_is_named_where_pairs_show_none_and_what_turns_over_is_told():
     subject = sweep()
-    error, torque = sentences(ask(subject), subject)
+    error, torque = sentences(find_question(subject), subject)
     assert "no difference between computed_torque and operational_space is shown" in error
     assert "smaller" not in error
     assert "operational_space is smaller by" in torque
@@ -53,7 +53,7 @@ def test_a_shown_difference_names_what_goes_with_the_axis():
     keys = ["a", "b", "c", "d"]
     found = [Difference(key, ("controller",), [("computed_torque", "1"), ("operational_space", "2")]) for key in keys]
     subject = replace(plain, measurements=replace(plain.measurements, differences=found))
-    told = sentences(ask(subject), subject)[-1]
+    told = sentences(find_question(subject), subject)[-1]
     assert told == "With controller go a, b, c and 1 more, which may be the cause: see Also differs."
 
 
@@ -70,11 +70,14 @@ def test_of_several_values_the_first_three_are_told():
     laws = ["a", "b", "c", "d", "e", "f"]
     given = {"max_tracking_error": lambda law: 1.0 + law + drawn(20, law) / 100.0}
     subject = choose(measurements({"controller": laws}, given))
-    told = sentences(ask(subject), subject)
+    told = sentences(find_question(subject), subject)
     assert [text.split(" ")[3] for text in told[:3]] == ["b", "c", "d"]
     assert told[3] == "2 more values of controller are in the tables of pairs."
     assert in_short(subject).startswith("largest tracking error: medians from ")
 
 
 def test_without_two_cells_that_share_their_seeds_nothing_is_asked():
-    assert ask(choose(measurements({"seed": [0.0, 1.0]}, {"max_tracking_error": lambda seed: drawn(8, seed)}))) is None
+    assert (
+        find_question(choose(measurements({"seed": [0.0, 1.0]}, {"max_tracking_error": lambda seed: drawn(8, seed)})))
+        is None
+    )

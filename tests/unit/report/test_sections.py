@@ -85,7 +85,7 @@ def test_what_seeds_share_is_no_scatter_between_cells():
     (first, *_) = subject.effects["rms"].effects
     assert first.p_value == 0.001
     assert "permutes within a repetition only" in text
-    (told,) = effects.shared(subject)
+    (told,) = effects.describe_shared_variation(subject)
     assert told.startswith("96 % of the variation of the rms lies between the repetitions")
     own = replace(subject.measurements, seeds=range(12))
     alone = choose(own)

@@ -4,7 +4,7 @@ from support.sample_document import equations
 
 from runner.reporting.claim import Claim, ClaimResult
 from runner.reporting.document import Document, Section, Verdicts
-from runner.reporting.tally import hanging, tallies
+from runner.reporting.tally import find_conditional_claims, tallies
 
 
 def claim(number, *verdicts):
@@ -35,8 +35,8 @@ def test_a_verdict_that_hangs_on_something_has_a_star_and_a_line():
     (tally,) = tallies(Document("", "", "", [Section("A", [verdicts])], ""))
     assert [square[0] for square in tally.squares] == ["7*", "8"]
     assert tally.squares[0].words == "Claim 7: matches; hangs on the engine"
-    assert hanging([verdicts]) == "* Verdicts that hang on the engine: claim 7."
-    assert hanging([Verdicts("All.", [claim("8", "matches")])]) == ""
+    assert find_conditional_claims([verdicts]) == "* Verdicts that hang on the engine: claim 7."
+    assert find_conditional_claims([Verdicts("All.", [claim("8", "matches")])]) == ""
 
 
 def test_equations_are_counted_alone():

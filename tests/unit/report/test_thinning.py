@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.reporting.charts.figure import Series
-from runner.reporting.charts.thinning import band, envelope, runs, spaced, thin
+from runner.reporting.charts.thinning import band, envelope, runs, spaced_indices, thin
 
 
 @given(st.integers(2001, 9000), st.data())
@@ -62,7 +62,7 @@ def test_hints_and_runs_stay_with_their_points():
 
 @pytest.mark.parametrize(("count", "most"), [(0, 5), (1, 5), (5, 5), (6, 5), (1000, 24), (7, 1)])
 def test_evenly_spaced_places_are_different_and_reach_both_ends(count, most):
-    places = spaced(count, most)
+    places = spaced_indices(count, most)
     assert len(places) == len(set(places)) == min(count, most)
     assert places[:1] == ([0] if count else [])
     assert most == 1 or places[-1:] == ([count - 1] if count else [])

@@ -7,7 +7,7 @@ from support.sample_sweep import measurements
 from runner.reporting.charts.thinning import POINTS
 from runner.reporting.document import Curves, Table, Text
 from runner.reporting.sweep import distributions, effects, failures, maps, tradeoff
-from runner.reporting.sweep.subject import MOST_GROUPS, choose, grouped
+from runner.reporting.sweep.subject import MOST_GROUPS, choose, group_levels
 
 SEEDS = 3000
 
@@ -30,12 +30,12 @@ def of_kind(section, kind):
 
 def test_an_axis_of_very_many_values_is_taken_in_groups_of_neighbours(subject):
     seed, gain = subject.axes
-    levels = grouped(seed)
+    levels = group_levels(seed)
     assert len(np.unique(levels)) == MOST_GROUPS
     assert (np.diff(levels) >= 0).all()
     counts = np.bincount(levels)
     assert counts.max() - counts.min() <= 2  # one value of the axis is two cells
-    assert grouped(gain) is gain.level
+    assert group_levels(gain) is gain.level
 
 
 def test_effects_say_that_they_are_of_groups_and_draw_some_values(subject):

@@ -2,12 +2,12 @@
 
 import pytest
 
-from runner.reporting.comparison.words import counted, noise_alone
+from runner.reporting.comparison.words import format_count, noise_alone
 
 
 @pytest.mark.parametrize(("count", "text"), [(0, "0 cells are"), (1, "1 cell is"), (2, "2 cells are")])
 def test_a_number_goes_with_what_is_counted(count, text):
-    assert counted(count, "cell is", "cells are") == text
+    assert format_count(count, "cell is", "cells are") == text
 
 
 def test_nothing_but_noise_is_drawn_where_no_config_has_a_spread():

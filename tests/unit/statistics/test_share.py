@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import binom
 from support.share_coverage import coverage
 
-from runner.statistics.share import count_share, needed, share_ends
+from runner.statistics.share import count_share, needed_repetitions, share_ends
 
 ALPHA = 0.05
 
@@ -68,18 +68,18 @@ def test_what_is_rare_it_covers_nearly_always():
 
 
 def test_repetitions_needed_where_none_failed():
-    wanted = needed(count_share(0, 100), 1e-4)
+    wanted = needed_repetitions(count_share(0, 100), 1e-4)
     assert wanted == math.ceil(math.log(ALPHA / 2) / math.log1p(-1e-4)) == 36_887
     assert count_share(0, wanted).high < 1e-4 <= count_share(0, wanted - 1).high
 
 
 @pytest.mark.parametrize(("kept", "n", "probability"), [(3, 100, 0.1), (3, 100, 0.01), (1, 100, 0.02), (5, 10, 0.4)])
 def test_repetitions_needed_where_some_did(kept, n, probability):
-    wanted = needed(count_share(kept, n), probability)
+    wanted = needed_repetitions(count_share(kept, n), probability)
     assert wanted >= n
     found = count_share(round(kept / n * wanted), wanted)
     assert found.high < probability or found.low > probability
 
 
 def test_no_number_tells_a_share_from_itself():
-    assert needed(count_share(1, 100), 0.01) is None
+    assert needed_repetitions(count_share(1, 100), 0.01) is None

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.reporting.document import Items, Table, Text
-from runner.reporting.markup import linked, marked
+from runner.reporting.markup import link_text, mark_text
 from runner.study.measured import Measured
 from runner.study.prose import ProseError, read_chapter
 
@@ -28,7 +28,7 @@ def test_paragraphs_lists_and_sections_become_blocks():
         "One *word*.\n\n- a {{ x }}\n- b\n\n{{ table() }}\n\n## Below\n\nTwo.\n\n### Deeper\n\n{{ tables() }}"
     )
     assert chapter.title == "Title"
-    assert chapter.blocks == (Text(f"One {marked('word', 'emphasis')}."), Items(("a 3.5", "b")), TABLE)
+    assert chapter.blocks == (Text(f"One {mark_text('word', 'emphasis')}."), Items(("a 3.5", "b")), TABLE)
     (below,) = chapter.sections
     assert (below.title, below.blocks) == ("Below", (Text("Two."),))
     assert (below.sections[0].title, below.sections[0].blocks) == ("Deeper", (TABLE, TABLE))
@@ -36,8 +36,10 @@ def test_paragraphs_lists_and_sections_become_blocks():
 
 def test_marks_and_mathematics_of_a_sentence():
     (text,) = read("`a_b` costs $5, $tau_1 = {{ x }}$ is *so*, see [a page](https://example.org/a_b).").blocks
-    page = linked("a page", "https://example.org/a_b")
-    assert text == Text(f"{marked('a_b', 'code')} costs $$5, $tau_1 = 3.5$ is {marked('so', 'emphasis')}, see {page}.")
+    page = link_text("a page", "https://example.org/a_b")
+    assert text == Text(
+        f"{mark_text('a_b', 'code')} costs $$5, $tau_1 = 3.5$ is {mark_text('so', 'emphasis')}, see {page}."
+    )
 
 
 def test_values_have_their_unit():

@@ -7,7 +7,7 @@ import pytest
 
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective
-from runner.sweeps.tuning.sampler import ended, importances, propose, read_ended
+from runner.sweeps.tuning.sampler import importances, make_optuna_trial, propose, read_ended
 from runner.sweeps.tuning.trial import Trial
 
 KEYS = [
@@ -23,7 +23,7 @@ def search(function, objectives=GOAL, trials=60, seed=0, keys=KEYS):
     """Tune a closed form; it returns the values of the objectives, or None where it fails."""
     found = []
     for _ in range(trials):
-        history = [ended(keys, trial) for trial in found]
+        history = [make_optuna_trial(keys, trial) for trial in found]
         params = propose(keys, objectives, history, [], seed)
         values = function(params)
         worst = tuple(objective.worst for objective in objectives)
@@ -37,7 +37,7 @@ def bowl(params):
 
 
 def test_a_proposal_follows_from_its_arguments_alone():
-    history = [ended(KEYS, trial) for trial in search(bowl, trials=15)]
+    history = [make_optuna_trial(KEYS, trial) for trial in search(bowl, trials=15)]
     under_way = [{"x": 1.0, "y": 0.0, "n": 3}]
     proposal = propose(KEYS, GOAL, history, under_way, 0)
     assert propose(KEYS, GOAL, history, under_way, 0) == proposal
@@ -98,7 +98,7 @@ def test_several_objectives_are_traded_off():
 
 def test_a_trial_is_read_as_it_was_written():
     trial = Trial({"x": 0.1 + 0.2, "y": 0.0, "n": 3}, (-math.inf,), "abc", "diverged")
-    assert read_ended(ended(KEYS, trial)) == trial
+    assert read_ended(make_optuna_trial(KEYS, trial)) == trial
 
 
 @pytest.mark.parametrize(("direction", "sign"), [("minimize", 1.0), ("maximize", -1.0)])
