@@ -1,5 +1,5 @@
-"""What `import runner` gives: the commands as functions, and handles on what is stored.
+"""Implementation of the public Python API: commands as functions, and handles on stored results.
 
-A handle (`Run`, `Sweep`, `Tuning`) holds what another room reads from the disk, as `stored`, and adds what a person
-wants who looks at it: a short text, a page for a notebook, tables, figures. No other room knows this one.
+A handle (`Run`, `Sweep`, `Tuning`) contains the data that another package reads from the disk, as `stored`. It adds a
+short text, a page for a notebook, tables and figures. No other package imports this one.
 """

@@ -1,4 +1,4 @@
-"""A repetition of a stored run, simulated again: a run keeps the trace of its first one alone."""
+"""Signals of any repetition of a stored run; all but the first are simulated again."""
 
 import math
 from collections.abc import Mapping

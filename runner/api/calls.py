@@ -1,4 +1,4 @@
-"""The commands that make something, as functions."""
+"""Public functions run, sweep, tune and calibrate."""
 
 import shlex
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""What the functions for users have in common: a line that says how far they are, and short errors."""
+"""Progress line and short errors of the public functions."""
 
 import functools
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The metrics of a run, by name."""
+"""Metrics of a run, by name."""
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Opening what is stored."""
+"""Public functions that open a stored run or sweep."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING

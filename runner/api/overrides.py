@@ -1,4 +1,4 @@
-"""Values of Python as overrides, the texts that Hydra composes a config from."""
+"""Python values as Hydra overrides."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What a notebook shows of a handle: HTML in which every text from outside is escaped."""
+"""HTML for notebooks, with every external string escaped."""
 
 import base64
 import html

@@ -1,4 +1,4 @@
-"""Figures of a run's signals over time, as matplotlib's."""
+"""Matplotlib figures of a run's signals over time."""
 
 import re
 from collections.abc import Mapping, Sequence

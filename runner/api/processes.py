@@ -1,4 +1,4 @@
-"""Worker processes that leave the program of the user alone."""
+"""Worker processes that do not run the user's main program."""
 
 import sys
 from collections.abc import Iterator

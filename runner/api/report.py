@@ -1,4 +1,4 @@
-"""Reports, and one as a user holds it."""
+"""Public function for reports, and the handle on a written report."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A run as a user holds it."""
+"""Handle on a stored run."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A sweep as a user holds it."""
+"""Handle on a stored sweep."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property

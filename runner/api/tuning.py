@@ -1,4 +1,4 @@
-"""A tuning as a user holds it."""
+"""Handle on a stored tuning."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING

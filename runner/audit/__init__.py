@@ -1,1 +1,1 @@
-"""The audit of printed equations: transcribed as data, tried against the arms' true kinematics and dynamics."""
+"""Audit of printed equations: entries, truths, verdicts and rollouts."""

@@ -1,4 +1,4 @@
-"""The whole audit: every equation of the sources judged, and what the audit says of them as a CSV."""
+"""Verdicts on every equation of a source, and their table as CSV."""
 
 import csv
 import io

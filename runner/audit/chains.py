@@ -1,4 +1,4 @@
-"""Chains of elementary transforms at many configurations at once, and derivatives by differences."""
+"""Homogeneous transforms for many configurations at once, and Jacobians by finite differences."""
 
 from collections.abc import Callable, Sequence
 from functools import lru_cache, reduce

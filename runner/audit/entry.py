@@ -1,6 +1,6 @@
-"""One printed equation as data: where it stands, how it is printed, what it claims to equal.
+"""Printed equations as data: their YAML format and validation.
 
-Entries live in YAML files, one for each part of a source (`equations/*.yaml` of a work's folder):
+Entries are in YAML files, one for each part of a source (`equations/*.yaml` in a study's folder):
 
     robot: macro                   # of conf/robot, or of the folder, or a URDF: what truths `model.*` are about
     tip: q2                        # its frame that is meant, where that is not the config's
@@ -23,12 +23,12 @@ Entries live in YAML files, one for each part of a source (`equations/*.yaml` of
         tip: q3                    # frame of this one, where that is not the file's
         finding: ...               # what is wrong, in words
 
-Where a model is not enough, `truth: xarm7.transform` names a Truth of the folder's `equations/truths/xarm7.py`, and
-`symbols: xarm7.symbols` a function there that draws the sample; then there is no robot to name.
+If a model is not enough, `truth: xarm7.transform` names a Truth in `equations/truths/xarm7.py` of the folder.
+`symbols: xarm7.symbols` names a function of that module that draws the sample; `robot` is then omitted.
 
-Elements are expressions as `runner/base/expressions/parser.py` has them. An equation that is no arithmetic, such as a
-relation between matrices, stands as `math` (in Typst) with the name of the function that evaluates it (`code:
-xarm7.left_inverse`). The verdict is never stored: `verdict.py` works it out.
+Elements are expressions in the syntax of `runner/base/expressions/parser.py`. If an equation is not arithmetic, such
+as a relation between matrices, `math` contains it in Typst. `code: xarm7.left_inverse` then names the function that
+evaluates it. The verdict is never stored: `verdict.py` computes it.
 """
 
 from collections.abc import Iterator

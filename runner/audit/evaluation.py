@@ -1,4 +1,4 @@
-"""Expressions evaluated over many samples at once."""
+"""Vectorized evaluation of expressions over many samples."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

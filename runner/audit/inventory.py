@@ -1,7 +1,7 @@
-"""What each source prints, place by place: the list that the audit is counted against.
+"""Inventory of the equations in a source by section or page, as the reference for the audit's coverage.
 
-It is made from the source's text alone, in reading order, and not from the entries. It stands in
-`equations/inventory.yaml` of the work:
+The inventory is written from the source's text in reading order, independently of the entries. The file is
+`equations/inventory.yaml` in the study's folder:
 
     counted: one line for each equation with a sign of equality; ...
     places:

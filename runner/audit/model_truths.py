@@ -1,7 +1,8 @@
-"""Truths that any robot's model gives: an equations file names the robot, and needs no Python.
+"""Truths from a robot model: position, Jacobians, mass matrix, gravity and Coriolis torques.
 
-An entry's truth is then one of `TRUTHS`, such as `model.jacobian`. Units are SI, frames the base; elements are counted
-from 1, and the whole has the letter alone:
+An equations file names the robot and needs no Python. The truth of an entry is then one of `TRUTHS`, such as
+`model.jacobian`. Units are SI, vectors are in the base frame. Indices of elements start at 1; the letter without
+indices names the whole vector or matrix:
 
     model.position          P_x, P_y, P_z        the tip
     model.transform         T_11 to T_44         the tip's frame
@@ -14,7 +15,7 @@ from 1, and the whole has the letter alone:
                                                  k counting the pairs (1, 2), (1, 3), ... (thesis eq. 3.19)
     model.dynamics          tau_1 to tau_n       M ddq + V + G, with all elements of its terms
 
-The first way is Pinocchio, the second the URDF read and worked out without it (`urdf_chain.py`).
+The first way is Pinocchio; the second evaluates the URDF without Pinocchio (`urdf_chain.py`).
 """
 
 import xml.etree.ElementTree as ET

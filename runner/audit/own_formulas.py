@@ -1,4 +1,4 @@
-"""A reader's own formulas against a robot: read from a file, evaluated at random configurations, compared."""
+"""User-supplied formulas from a file, compared with a robot model at random configurations."""
 
 from dataclasses import dataclass
 from pathlib import Path

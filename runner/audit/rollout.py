@@ -1,6 +1,7 @@
-"""A wrong formula run beside the right one: a function of `equations/rollouts`, and what is told of it.
+"""Simulated effects of a wrong formula: functions of `equations/rollouts`, with title and text.
 
-The words stand beside the function's module, in a YAML file of the same name, under the function's:
+Title, text and labels are in a YAML file next to the function's module and with the same name, under the function's
+name:
 
     line:
       title: The line by the printed inverse
@@ -8,7 +9,7 @@ The words stand beside the function's module, in a YAML file of the same name, u
       x_label: time (s)
       y_label: distance (cm)
 
-Numbers are `max`, `min` and `last` of each curve by its name, and those that the run gives besides.
+Numbers are `max`, `min` and `last` of each curve by its name, and the additional numbers of the run.
 """
 
 from collections.abc import Callable, Mapping

@@ -1,8 +1,8 @@
-"""Where printed equations are: the folder of a work, with its entries and the Python that they may name.
+"""Sources of printed equations: study folders with their entries and Python modules.
 
-A folder has `equations/*.yaml` and, where truths of its own are needed, `equations/truths/*.py` and
-`equations/rollouts/*.py`. Our works are folders of `runner/study/`, known by their names; any other folder is named by
-its path.
+A folder has `equations/*.yaml`. If it needs its own truths, it also has `equations/truths/*.py` and
+`equations/rollouts/*.py`. Built-in studies are folders of `runner/studies/`, known by name; any other folder is named
+by its path.
 """
 
 from dataclasses import dataclass

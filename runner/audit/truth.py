@@ -1,4 +1,4 @@
-"""What an equation claims to equal, in two independent ways; and how its elements are named."""
+"""Truths of printed equations: two independent evaluations, and the names of elements."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

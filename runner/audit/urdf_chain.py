@@ -1,4 +1,4 @@
-"""A URDF as products of its joints' transforms and as bodies: what Pinocchio finds, found again without it."""
+"""Kinematics and dynamics from a URDF without Pinocchio: frames, mass matrix, gravity, Christoffel symbols."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Sequence

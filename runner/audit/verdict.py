@@ -1,4 +1,4 @@
-"""The verdict on an entry, worked out: its forms against the truth at every sample."""
+"""Verdicts on audit entries: printed, repaired and corrected forms compared with the truth."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

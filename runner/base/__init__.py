@@ -1,1 +1,1 @@
-"""Errors, text for people, paths, bounded YAML, progress, traces and the expression evaluator."""
+"""Errors, text and number formatting, paths, bounded YAML, progress, traces and the expression evaluator."""

@@ -1,7 +1,7 @@
-"""YAML from outside, checked before anything is made of it: its size, its nesting, its aliases, its keys.
+"""Safe YAML reader: limits on size, nesting, aliases, keys and tags.
 
-A few lines of YAML can stand for more values than fit in memory (aliases of aliases), for endless ones (an anchor
-that holds itself), or for a nesting that no loader survives.
+A few lines of YAML can expand to more values than fit in memory (aliases of aliases). They can also describe endless
+data (an anchor that contains itself), or nesting too deep for any loader. All checks run before any object is built.
 """
 
 from collections.abc import Callable, Iterator

@@ -1,4 +1,4 @@
-"""Data files in YAML, each checked against its model; one may be a stranger's."""
+"""Validated YAML data files, including untrusted ones."""
 
 from pathlib import Path
 from typing import Any, TypeVar

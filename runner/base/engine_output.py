@@ -1,4 +1,4 @@
-"""What C libraries write to the process's outputs themselves: sent to nowhere, or caught so that it can be told."""
+"""Suppression and capture of output that C libraries write to stdout and stderr."""
 
 import ctypes
 import os

@@ -1,4 +1,7 @@
-"""Whether PyBullet is there, which may be missing: it has wheels for Python 3.11 alone."""
+"""PyBullet availability, installed library versions and the default plant.
+
+PyBullet is optional: Python 3.11 is the newest version with PyBullet wheels.
+"""
 
 import contextlib
 import platform

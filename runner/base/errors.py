@@ -1,6 +1,8 @@
-"""Errors in the language of robots. Everything a user can mend derives from RunnerError and ends with exit code 2.
+"""Exceptions and error messages.
 
-Every command imports this; what only a message needs is imported with it.
+Every error that a user can fix derives from RunnerError and ends with exit code 2.
+
+Every command imports this module. It therefore imports code for messages only when a message needs it.
 """
 
 import errno

@@ -1,4 +1,4 @@
-"""References between the values of a config, as ${robot.period}: which there may be, and how much they stand for."""
+"""References between config values, such as ${robot.period}: syntax checks and size limits."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Limits of what comes from outside: what is found is compared with one before memory is taken for it."""
+"""Size limits of external input, checked before memory is allocated."""
 
 import contextlib
 import os

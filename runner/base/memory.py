@@ -1,4 +1,4 @@
-"""What was worked out for the same arguments before: cells of a sweep share most of their config."""
+"""Cache of function results by argument, for sweep cells with a mostly common config."""
 
 from collections.abc import Callable
 from types import FunctionType, MethodType

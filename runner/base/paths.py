@@ -1,4 +1,4 @@
-"""Where the configs, robots and templates are: in the checkout beside the package, or inside an installed wheel."""
+"""Paths of configs, robots, studies, examples and report templates, in a checkout or an installed wheel."""
 
 import os
 from collections.abc import Sequence

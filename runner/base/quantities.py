@@ -1,4 +1,7 @@
-"""Numbers as a reader expects them: three digits, the unit that spares a power of ten, "0 (rounding)" for rounding."""
+"""Number and unit formatting for reports: three significant digits and a fitting unit.
+
+A value of the size of rounding errors is formatted as `0 (rounding)`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Settings of the numerical libraries, Hydra and Matplotlib, made before they are imported."""
+"""Settings of numerical libraries, Hydra and Matplotlib, applied before their import."""
 
 import logging
 import os

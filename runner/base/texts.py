@@ -1,4 +1,4 @@
-"""Text from outside (values, names, file contents) made safe to show: one line, no control characters, not too long."""
+"""Sanitized external text for display: one line, no control characters, limited length."""
 
 import re
 import unicodedata

@@ -1,4 +1,4 @@
-"""What closed-loop runs leave behind: every signal at every control tick."""
+"""Traces of closed-loop runs: every signal at each control tick."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property

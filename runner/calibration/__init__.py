@@ -1,4 +1,4 @@
-"""Calibration of tool and force/torque sensor, with what it does not know: a covariance for every estimate."""
+"""Calibration of tool and force/torque sensor, with a covariance for every estimate."""
 
 from runner.calibration.compensation import WrenchCompensation
 from runner.calibration.consistency import Consistency, consistency

@@ -1,4 +1,4 @@
-"""What the world puts on a tool: the sensor's reading without bias, weight and inertia (Meca500 report, section 4)."""
+"""External wrench on a tool: sensor reading without bias, weight, inertia (Meca500 report, section 4)."""
 
 import numpy as np
 

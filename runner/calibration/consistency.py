@@ -1,4 +1,4 @@
-"""Whether the errors of a calibration are as large as it says."""
+"""Consistency test of calibration errors and their covariances."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What a tool weighs, where, and what the sensor shows without it (Meca500 report, section 4)."""
+"""Gravity calibration: tool mass, centre of mass and sensor biases (Meca500 report, section 4)."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""At which orientations a tool is weighed best."""
+"""Optimal tool orientations for gravity calibration."""
 
 import numpy as np
 

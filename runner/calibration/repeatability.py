@@ -1,4 +1,4 @@
-"""What an arm's repeatability does to the poses that it reports."""
+"""Pose errors from the limited repeatability of an arm."""
 
 import numpy as np
 

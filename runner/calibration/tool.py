@@ -1,4 +1,4 @@
-"""A tool as a rigid body on a force/torque sensor."""
+"""Tool as a rigid body on a force/torque sensor."""
 
 from dataclasses import dataclass
 

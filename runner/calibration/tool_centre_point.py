@@ -1,4 +1,4 @@
-"""Where the tip of a tool is, from poses in which it touches one fixed point (Meca500 report, section 2)."""
+"""Tool centre point from poses with the tip on one fixed point (Meca500 report, section 2)."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""In which direction a tool points, from two of different length (Meca500 report, section 3)."""
+"""Tool direction from two tools of different lengths (Meca500 report, section 3)."""
 
 from dataclasses import dataclass
 

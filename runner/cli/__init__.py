@@ -1,1 +1,1 @@
-"""The commands of the command line, one module each with `main(arguments) -> exit code`."""
+"""Command-line commands: one module each with `main(arguments) -> exit code`."""

@@ -1,4 +1,4 @@
-"""Command-line arguments of the commands: argparse, with our own way out."""
+"""Argument parser and argument types shared by the commands."""
 
 import argparse
 from pathlib import Path

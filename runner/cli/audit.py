@@ -1,8 +1,8 @@
-"""`runner audit URDF --tip FRAME --jacobian FILE`: your own formulas against a robot's true kinematics and dynamics.
+"""`runner audit URDF --tip FRAME --jacobian FILE`: compare your formulas with a robot's kinematics and dynamics.
 
 FILE is YAML: `elements` names each element with its expression (J_11 to J_6n, linear rows first; P_x, P_y, P_z; M_11
-to M_nn; G_1 to G_n), in SI units and the base frame. An expression knows q1, s1 = sin(q1), c1 = cos(q1) and so on, and
-what `symbols` gives a name.
+to M_nn; G_1 to G_n), in SI units and the base frame. Expressions may use q1, s1 = sin(q1), c1 = cos(q1) and so on,
+and the names in `symbols`.
 """
 
 import math

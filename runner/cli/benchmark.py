@@ -1,8 +1,8 @@
-"""`runner benchmark check LAW.py`: tell in seconds if a law of yours fits in the benchmark, before hours of runs.
+"""`runner benchmark check LAW.py`: check in seconds if your controller fits the benchmark.
 
-LAW.py is what `--plugin controller=LAW.py` takes; its config controller/LAW.yaml and its ranges LAW.ranges.yaml stand
-next to it. Every run of it is composed and held against one of a law of ours, a few control ticks are made on each arm,
-and the time of all is estimated. Nothing is stored. Exit code 2 where it does not fit.
+LAW.py is the file for `--plugin controller=LAW.py`; its config controller/LAW.yaml and its ranges LAW.ranges.yaml are
+next to it. Every run of it is composed and compared with a run of a built-in controller. The first control steps are
+computed on each arm, and the total time is estimated. Nothing is stored. Exit code 2 if the controller does not fit.
 """
 
 import shlex

@@ -1,4 +1,4 @@
-"""`runner calibrate [OVERRIDES]`: calibrate a tool or a sensor in simulation, judge it by the truth, and store it."""
+"""`runner calibrate [OVERRIDES]`: simulate a tool or sensor calibration, compare it with the truth, store it."""
 
 import sys
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""`runner check DIR` of runs with a spec: are its bounds kept, and as often as they have to be?"""
+"""Spec check for `runner check DIR`: bounds, failed repetitions and failure probability."""
 
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING

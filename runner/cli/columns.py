@@ -1,4 +1,4 @@
-"""Plain text tables for a terminal."""
+"""Plain-text tables for a terminal."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

@@ -1,8 +1,8 @@
-"""`runner compare A B ...`: runs, or sweeps, side by side, the first with each of the others.
+"""`runner compare A B ...`: compare runs or sweeps, the first with each of the others.
 
-Sweeps are compared cell by cell and repetition by repetition. `runner compare SWEEP --by controller --within robot`
-compares the levels of an axis of one sweep. `runner compare RUN recording.csv --columns map.yaml` holds the recording
-of a real arm against a run, and writes a report; its folder is the last line.
+Sweeps are compared by cell and repetition. `runner compare SWEEP --by controller --within robot` compares the levels
+of an axis of one sweep. `runner compare RUN recording.csv --columns map.yaml` compares the recording of a real arm
+with a run, and writes a report; its folder is the last line.
 """
 
 from argparse import ArgumentTypeError, Namespace

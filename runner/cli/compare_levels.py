@@ -1,4 +1,4 @@
-"""The levels of an axis of one sweep side by side, for `runner compare SWEEP --by AXIS`."""
+"""Comparison of the levels of one sweep axis, for `runner compare SWEEP --by AXIS`."""
 
 import sys
 from collections.abc import Iterator, Sequence

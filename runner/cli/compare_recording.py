@@ -1,4 +1,4 @@
-"""A recording beside a run for `runner compare`: printed, and written as a report."""
+"""Comparison of a recording with a run for `runner compare`: printed, and written as a report."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Runs side by side for `runner compare`: config, provenance, caveats and metrics."""
+"""Comparison of runs for `runner compare`: config, provenance, caveats and metrics."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence

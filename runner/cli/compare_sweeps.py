@@ -1,4 +1,4 @@
-"""Sweeps side by side for `runner compare`: what differs, which cells match, every metric."""
+"""Comparison of sweeps for `runner compare`: config differences, matched cells and metrics."""
 
 import sys
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""What is told of a run or a sweep when it has ended: on standard error all but its folder."""
+"""Summary of a finished run or sweep: folder on standard output, everything else on standard error."""
 
 import sys
 from collections.abc import Sequence

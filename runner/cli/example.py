@@ -1,4 +1,4 @@
-"""`runner example DIR`: copy the examples into a folder: an arm, a controller, a trajectory, a paper, a notebook."""
+"""`runner example DIR`: copy the examples to a folder: arm, controller, trajectory, paper and notebook."""
 
 import shutil
 import sys

@@ -1,6 +1,6 @@
-"""`runner figures DIR`: each figure of a report as SVG, PDF and CSV, in the width of a journal's column.
+"""`runner figures DIR`: write each figure of a report as SVG, PDF and CSV, in the width of a journal column.
 
-DIR is a run, a sweep, a tuning, or a work that `runner reproduce` made: its name, or its report's folder.
+DIR is a run, a sweep, a tuning, or a study from `runner reproduce`: its name, or its report's folder.
 """
 
 import math

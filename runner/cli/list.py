@@ -1,4 +1,4 @@
-"""`runner list [TOPIC]`: what there is to choose from, and what it is judged by."""
+"""`runner list [TOPIC]`: list the available robots, controllers, metrics and other options."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence

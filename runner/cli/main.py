@@ -1,7 +1,7 @@
-"""The door: which command is meant, and how every ending leaves it.
+"""Command-line entry point: dispatch to a command, and exit codes.
 
-Exit codes: 0 good, 1 a run failed or a check fell short, 2 bad input, 130 interrupted, 143 terminated. This module
-imports little, so that help and completion answer at once.
+Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 130 interrupted, 143 terminated. This module
+imports little, so that help and completion start fast.
 """
 
 import importlib

@@ -1,4 +1,4 @@
-"""`runner report DIR... [--html] [--pdf] [--metrics A,B]`: a report from stored runs, a sweep, or several compared."""
+"""`runner report DIR... [--html] [--pdf] [--metrics A,B]`: write a report on runs, a sweep or a comparison."""
 
 from collections.abc import Sequence
 

@@ -1,9 +1,9 @@
-"""`runner reproduce [NAME|FOLDER] [OVERRIDES]`: run what is missing for a published work, and write its report.
+"""`runner reproduce [NAME|FOLDER] [OVERRIDES]`: simulate the missing runs of a study and write its report.
 
-FOLDER is a work of your own: `runner work new FOLDER` writes a first one. OVERRIDES say how the runs are made:
+FOLDER is your own study: `runner work new FOLDER` writes a template. OVERRIDES configure the execution:
 hydra.sweeper.workers and .address, sweep.time_limit, .attempts, .retry and .on_failure, limits.cpu_hours and .memory;
-caveats.RULE.KEY, what is told of them. What is simulated is the work's own, and what
---plugin names for an axis of the work that takes it.
+caveats.RULE.KEY configures the caveats. The study defines its simulations; --plugin adds levels to an axis of the
+study that takes them.
 """
 
 import json

@@ -1,7 +1,7 @@
-"""`runner OVERRIDES` and `runner -m OVERRIDES`: Hydra composes, we check, run and store.
+"""`runner OVERRIDES` and `runner -m OVERRIDES`: compose the config with Hydra, check it, run and store.
 
-Lines of overrides alone are composed here, once; Hydra's own command, which composes twice, takes those with its flags
-or keys.
+Lines that contain only overrides are composed here, once. Hydra's own command, which composes twice, takes lines with
+Hydra flags or keys.
 """
 
 import itertools

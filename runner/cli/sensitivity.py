@@ -1,8 +1,8 @@
-"""`runner sensitivity RUN`: how the metrics of a run change with its parameters, the one that matters most first.
+"""`runner sensitivity RUN`: compute the sensitivity of a run's metrics to its parameters, largest first.
 
-The derivatives are exact, by forward differentiation of the compiled run: by each number of the config, with the keys
-that take its value, and by masses, armature and lengths of links. The start, the desired motion and the ticks are held.
-A run on bullet or mujoco has the derivatives of the same run on rk4.
+The derivatives are exact, by forward differentiation of the compiled run. Parameters are each number of the config,
+with the keys that take its value, and masses, armature and lengths of links. The start, the desired motion and the
+control steps are fixed. A run on bullet or mujoco has the derivatives of the same run on rk4.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

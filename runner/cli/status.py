@@ -1,4 +1,4 @@
-"""`runner status DIR`: how far a sweep is, from what is stored."""
+"""`runner status DIR`: show the progress of a sweep from its stored runs."""
 
 import sys
 from collections.abc import Sequence

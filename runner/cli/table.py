@@ -1,6 +1,6 @@
-"""`runner table DIR`: a sweep or run as a table: to work with (Parquet, CSV), or for a paper (Markdown, LaTeX).
+"""`runner table DIR`: export a sweep or run as a table: Parquet or CSV for data, Markdown or LaTeX for papers.
 
-Without options, all cells of a sweep go into table.parquet and table.csv in its folder.
+Without options, all cells of a sweep are written to table.parquet and table.csv in its folder.
 """
 
 import sys

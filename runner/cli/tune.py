@@ -1,8 +1,8 @@
-"""`runner tune OVERRIDES --minimize METRIC`: choose numeric keys so that metrics get better, and report on it.
+"""`runner tune OVERRIDES --minimize METRIC`: tune numeric config keys to improve metrics, and write a report.
 
-A key is tuned by its range in place of a value: controller.natural_frequency="interval(5,50)", on a logarithmic scale
-"tag(log, interval(5,50))", whole numbers "int(interval(1,9))", a grid "range(0.01,0.05,0.01)". An interrupted
-command continues when it is given again; with more --trials it adds to them.
+A key is tuned if it has a range instead of a value: controller.natural_frequency="interval(5,50)", on a logarithmic
+scale "tag(log, interval(5,50))", whole numbers "int(interval(1,9))", a grid "range(0.01,0.05,0.01)". Repeat an
+interrupted command to continue it; with more --trials it adds to the stored ones.
 """
 
 import argparse

@@ -1,7 +1,7 @@
-"""`runner verify [DIR]`: is everything in an outputs folder as it was written?
+"""`runner verify [DIR]`: check the files of an outputs folder against their checksums.
 
-A digest finds accidents, as a flipped bit or half a file; it does not find forgery. Reports are made from what is
-stored and have none; baselines and claims are edited by people.
+A checksum detects corruption, such as a flipped bit or half a file; it does not detect forgery. Reports are derived
+from stored data and have no checksums; baselines and claims are edited by people.
 """
 
 from collections import Counter

@@ -1,9 +1,9 @@
-"""`runner work new DIR`, `check DIR`, `diff OLD NEW`: write, check and compare published works.
+"""`runner work new DIR`, `check DIR`, `diff OLD NEW`: write, check and compare studies.
 
-new writes a first work into a folder: it runs at once, and you change it. check makes what is missing and looks through
-the work: every expression, every condition tried both ways, numbers typed in findings, caveats that nobody expects.
-diff tells what changed between two makings; OLD and NEW are files that `runner reproduce --json` wrote, or folders of
-the works' reports.
+new writes a template of a study into a folder: it runs at once, and you change it. check simulates the missing runs
+and checks the study: every expression, every condition tested both ways, literal numbers in findings, unexpected
+caveats. diff prints the changes between two versions; OLD and NEW are files that `runner reproduce --json` wrote, or
+folders of reports on studies.
 """
 
 import json

@@ -1,1 +1,1 @@
-"""The vocabulary of a run: composing configs, checking them, and what a checked config is."""
+"""Config of a run: models of its groups, checks, and composition."""

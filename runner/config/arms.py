@@ -1,4 +1,4 @@
-"""From a robot's config to its rigid-body model: reading URDFs and mounting arms on each other."""
+"""Rigid-body model from a robot's config: URDF and MJCF files, and arms mounted on each other."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager

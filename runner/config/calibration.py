@@ -1,4 +1,4 @@
-"""Config of a calibration: what is checked, and what is read of the composed whole."""
+"""Config of a calibration, and its validation."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

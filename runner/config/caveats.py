@@ -1,4 +1,4 @@
-"""Config of the caveats: what a run must exceed for a rule to say that its result may mislead."""
+"""Config of the caveats: the threshold of each rule."""
 
 from typing import Annotated
 

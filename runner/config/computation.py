@@ -1,4 +1,4 @@
-"""How late commands of control loops act, and whether a run can have that."""
+"""Computation delay of control loops, and its checks."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Whether a run can have the disturbance observer that its config asks for."""
+"""Checks of the disturbance observer."""
 
 from runner.base.errors import ConfigError
 from runner.config.run import RunConfig

@@ -1,4 +1,4 @@
-"""Whether control loops can read a sensor of the tip's position, and at which of their ticks."""
+"""Position sensor of the tip: checks and sampling ticks."""
 
 from collections.abc import Mapping
 

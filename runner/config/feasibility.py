@@ -1,4 +1,4 @@
-"""Whether joints that are told where to go can follow a path: asked of a perfect arm before anything runs."""
+"""Feasibility of a path for joint-position controllers, checked on an ideal arm before a run."""
 
 import copy
 import math

@@ -1,4 +1,4 @@
-"""What flexible joints change in a run: whether it can have them, what laws believe, and what encoders see."""
+"""Flexible joints: checks, motors in the nominal model, and motor-side drives and encoders."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What links that bend change in a run: whether it can have them, and what laws believe."""
+"""Flexible links: checks and the rigid nominal model."""
 
 import numpy as np
 

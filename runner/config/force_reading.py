@@ -1,4 +1,4 @@
-"""Whether a law that feels by torque sensors in the joints has them."""
+"""Check of the joint torque sensors that a force controller reads."""
 
 from runner.base.errors import ConfigError
 from runner.config.run import RunConfig

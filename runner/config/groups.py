@@ -1,4 +1,4 @@
-"""The groups of a run's config: which model each has, and all of them read."""
+"""Config groups of a run, and the model of each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

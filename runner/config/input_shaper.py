@@ -1,4 +1,4 @@
-"""Config of the input shaper, and the desired motion that it shapes."""
+"""Config of the input shaper, and the shaped desired motion."""
 
 import re
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Checking that a desired motion of the joints keeps within their limits."""
+"""Joint-limit check of a desired joint motion: positions and speeds."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Config of what a command may cost, and the estimate that it is compared with before anything is allocated."""
+"""Limits of CPU time and memory, and estimates that are checked before memory is allocated."""
 
 import math
 

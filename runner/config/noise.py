@@ -1,4 +1,4 @@
-"""Config of the joint measurement."""
+"""Config of the joint encoders: noise, bias and resolution."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Whether a run can have the notch that its config asks for."""
+"""Checks of the notch filter."""
 
 import numpy as np
 

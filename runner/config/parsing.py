@@ -1,4 +1,4 @@
-"""Checking one group of a composed config against its model."""
+"""Validation of one config group against its model."""
 
 from collections.abc import Mapping
 from typing import TypeVar

@@ -1,4 +1,4 @@
-"""Whether controllers can believe in a payload, and a run can have one that changes on the way."""
+"""Checks of the payload: its mass in the nominal model, and changes during a run."""
 
 from runner.base.errors import ConfigError
 from runner.config.robot import RobotConfig

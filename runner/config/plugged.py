@@ -1,4 +1,4 @@
-"""Reading groups of one model of ours, in whose place a plug-in's may stand: encoders, sensors, mismatch."""
+"""Config groups that a plug-in may replace: encoders, sensors and mismatch."""
 
 from collections.abc import Mapping
 from typing import TypeVar, cast

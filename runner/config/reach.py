@@ -1,4 +1,4 @@
-"""Checking that the desired motion lies within the arm's reach."""
+"""Reach check of the desired motion."""
 
 import numpy as np
 

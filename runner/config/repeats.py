@@ -1,4 +1,4 @@
-"""Checking that the desired motion repeats, where a control law learns from period to period."""
+"""Periodicity check of the desired motion, for controllers that learn from period to period."""
 
 from typing import Protocol, runtime_checkable
 

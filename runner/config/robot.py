@@ -1,4 +1,4 @@
-"""Config of the robot: one arm, or arms riding on each other."""
+"""Config of the robot: one arm, or several arms mounted on each other."""
 
 import math
 from collections.abc import Mapping

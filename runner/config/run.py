@@ -1,4 +1,4 @@
-"""A checked config, with what the checks already had to work out."""
+"""Checked config of a run, with the objects that the checks built."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

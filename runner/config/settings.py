@@ -1,4 +1,4 @@
-"""Config at the root of a run."""
+"""Config keys at the root of a run."""
 
 from typing import Annotated
 

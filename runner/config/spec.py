@@ -1,4 +1,4 @@
-"""Config of the spec: bounds on metrics, of which a run tells how often its repetitions keep them."""
+"""Config of the spec: bounds on metrics."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Where the arm starts."""
+"""Start configuration of the arm."""
 
 import numpy as np
 

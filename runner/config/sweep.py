@@ -1,4 +1,4 @@
-"""Config of how a sweep is run: nothing here changes what a run gives."""
+"""Config of a sweep: storage of its runs and handling of failures, without effect on results."""
 
 from typing import Literal
 

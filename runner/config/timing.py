@@ -1,4 +1,4 @@
-"""Checking the times of a run: plant step, control periods, duration."""
+"""Times of a run, with their checks: plant step, control periods and duration."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Checking a composed config: every problem is found before one message lists them all."""
+"""Validation of a composed config, with one message that lists all problems."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Control laws: from time, measurement and reference to joint torques or positions."""
+"""Controllers: joint torques or positions from time, measurement and reference."""
 
 from runner.controllers.controller import Controller, Loop, PositionController
 from runner.controllers.kinds import ControllerConfig, Controllers

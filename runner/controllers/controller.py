@@ -1,4 +1,4 @@
-"""What every controller offers."""
+"""Controller protocols and the control loop."""
 
 from dataclasses import dataclass
 from typing import Protocol, cast

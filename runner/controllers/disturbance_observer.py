@@ -1,4 +1,4 @@
-"""A momentum disturbance observer that any torque law can carry."""
+"""Momentum-based disturbance observer for any torque controller."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

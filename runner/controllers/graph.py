@@ -1,4 +1,4 @@
-"""A control structure as a directed graph: what a block diagram shows, without any drawing."""
+"""Control structure as a directed graph, for block diagrams."""
 
 from dataclasses import dataclass
 from typing import Literal

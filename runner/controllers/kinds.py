@@ -1,4 +1,4 @@
-"""What a controller's module and config may offer beside `CONFIG` and `build`, and the registry that asks for it."""
+"""Optional features of controller modules and configs, beyond `CONFIG` and `build`; registry of controllers."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace

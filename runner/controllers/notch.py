@@ -1,4 +1,4 @@
-"""A notch in the torques of any torque law, so that it does not push at a frequency at which its arm rings."""
+"""Notch filter of controller torques, against excitation of a resonance."""
 
 import math
 from collections.abc import Sequence

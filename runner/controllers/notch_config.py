@@ -1,4 +1,4 @@
-"""Config of the notch in the torques."""
+"""Config of the torque notch filter."""
 
 import numpy as np
 from pydantic import PositiveFloat

@@ -1,4 +1,4 @@
-"""Whether the velocity loops of control laws are stable at their periods, by a closed form."""
+"""Stability limit of sampled velocity loops, in closed form."""
 
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol, runtime_checkable

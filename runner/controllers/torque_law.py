@@ -1,4 +1,4 @@
-"""A torque law as mathematics, written once: evaluated through Pinocchio here, and compiled where that is possible."""
+"""Torque law interface: equations written once, evaluated by Pinocchio or compiled."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence

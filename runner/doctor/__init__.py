@@ -1,1 +1,1 @@
-"""What is wrong with a stranger's URDF, what can be fixed, and a config folder to start from."""
+"""Inspection of third-party robot files: problems, repairs, and a config folder to start from."""

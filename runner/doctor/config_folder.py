@@ -1,4 +1,4 @@
-"""A config folder to start from: a robot's YAML file and its fixed URDF, or its MJCF."""
+"""Config folder to start from: a robot's YAML file and its repaired URDF, or its MJCF."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""PyBullet and MuJoCo against Pinocchio on the same arm."""
+"""Comparison of PyBullet and MuJoCo with Pinocchio on the same arm."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""The whole examination of a stranger's URDF or MJCF."""
+"""Examination of a third-party URDF or MJCF."""
 
 import copy
 import xml.etree.ElementTree as ET

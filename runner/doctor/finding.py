@@ -1,4 +1,4 @@
-"""One thing that the doctor has to say."""
+"""Finding of an examination: grade, location, message and remedy."""
 
 import re
 from collections.abc import Iterable

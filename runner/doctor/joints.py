@@ -1,4 +1,4 @@
-"""The joints of an arm: their kinds and their limits."""
+"""Checks of an arm's joints: types and limits."""
 
 import math
 import xml.etree.ElementTree as ET

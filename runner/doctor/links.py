@@ -1,4 +1,4 @@
-"""The links of an arm: what they weigh, as every engine takes it."""
+"""Checks of an arm's links: masses and moments of inertia."""
 
 import math
 import xml.etree.ElementTree as ET

@@ -1,4 +1,4 @@
-"""The mesh files that a URDF names."""
+"""Checks of the mesh files that a URDF names."""
 
 import contextlib
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""The name under which a robot is chosen."""
+"""Name of a robot, chosen from its file."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The places and axes that a URDF gives as texts of numbers."""
+"""Checks of the vectors and axes in a URDF."""
 
 from runner.doctor.finding import Finding
 from runner.robots.tree import UrdfTree

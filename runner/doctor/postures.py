@@ -1,4 +1,4 @@
-"""What an arm's postures are good for: what gravity asks there, where they are singular, where the tip comes."""
+"""Checks of an arm's configurations: gravity, mass matrix, tasks, singularities and workspace."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Values to start with: a home posture, a goal, and gains that the joints can bear."""
+"""Start values for a robot: home configuration, goal, and natural frequency of the controller."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Which frame of an arm is its tip, and which others could be."""
+"""Tip (end effector) of an arm: the chosen frame, and the alternatives."""
 
 import re
 

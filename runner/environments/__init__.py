@@ -1,4 +1,4 @@
-"""What the world does to the arm: pushes, walls and hands at its tip, and what plug-ins put on links and joints."""
+"""Environments: external forces, walls and human guidance at the tip, and plug-in loads on links and joints."""
 
 from runner.environments.environment import Environment, LoadsJoints, PushesLinks
 from runner.plugins.guard import watch_environment

@@ -1,4 +1,4 @@
-"""What every environment offers, and what some offer beside."""
+"""Environment protocols: wrench on the tip, forces on links and torques on joints."""
 
 from collections.abc import Mapping, Sequence
 from typing import Protocol, runtime_checkable

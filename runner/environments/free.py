@@ -1,4 +1,4 @@
-"""Nothing around the tip."""
+"""Free space without an external wrench."""
 
 from typing import Literal
 

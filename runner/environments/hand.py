@@ -1,4 +1,4 @@
-"""A hand that leads the tip: a spring and a damper from it to the tip."""
+"""Human guidance of the tip through a spring and a damper."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""What the world puts on the arm, the joint torques that it makes, and the load on the wrist's sensor."""
+"""External wrenches on the arm, the equivalent joint torques, and the load on the wrist sensor."""
 
 import numpy as np
 import pinocchio as pin

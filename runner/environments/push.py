@@ -1,4 +1,4 @@
-"""A wrench on the tip, or a force on a link, that comes and goes, steady or as a sine."""
+"""Temporary wrench on the tip or force on a link, constant or sinusoidal."""
 
 import math
 from typing import Annotated, Literal

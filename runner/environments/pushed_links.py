@@ -1,4 +1,4 @@
-"""Forces at points of links, and the joint torques that they make."""
+"""External forces at points of links, and the equivalent joint torques."""
 
 import numpy as np
 import pinocchio as pin

@@ -1,4 +1,4 @@
-"""A flat wall that gives way as a spring and a damper do, with dry friction along its face."""
+"""Flat compliant wall: spring, damper and dry friction along the surface."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""How strongly the tip and the world pushed each other."""
+"""Contact metrics: peak force, steady force and force error."""
 
 import numpy as np
 

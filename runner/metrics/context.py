@@ -1,4 +1,4 @@
-"""What metrics need to know beside the trace."""
+"""Context of the metrics: desired motion, settling band, period and reach."""
 
 from dataclasses import dataclass
 

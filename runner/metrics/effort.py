@@ -1,4 +1,4 @@
-"""What a motion asks of the joints."""
+"""Effort metrics: torque, speed, saturation, energy and control effort."""
 
 import numpy as np
 from numpy.typing import NDArray

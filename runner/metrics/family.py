@@ -1,4 +1,4 @@
-"""What the module of a family of metrics offers."""
+"""Interface of a metric family, built-in or from a plug-in."""
 
 from collections.abc import Mapping
 from typing import Protocol, runtime_checkable

@@ -1,7 +1,7 @@
-"""What the integration step of a plant is worth: a run beside the same run on the Runge-Kutta plant.
+"""Integration error of a plant: comparison of a run with the same run on the Runge-Kutta plant.
 
-PyBullet, and MuJoCo by Euler's scheme, integrate to first order in their step; Runge-Kutta to fourth, so that in
-comparison it makes no error. Repetition 0 is compared, with the same noise.
+PyBullet, and MuJoCo with Euler's scheme, integrate to first order in their step. Runge-Kutta integrates to fourth
+order, so that its error is negligible in comparison. Repetition 0 is compared, with the same noise.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""How soon and how closely the tip comes to rest at its goal."""
+"""Positioning metrics: settling time, steady-state error and overshoot."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Whether a riding arm could follow."""
+"""Reach metric: fraction of control steps with the target out of reach of the last stage."""
 
 import numpy as np
 

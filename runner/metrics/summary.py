@@ -1,4 +1,4 @@
-"""Metrics of runs, and over the repetitions of one."""
+"""Metrics of runs, and their summary over the repetitions of a run."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""How closely the tip follows a moving target."""
+"""Tracking metrics: errors of the tip and the joints, and distance to the path."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Simulated arms: from torques, or joint positions commanded, to true motion."""
+"""Plants (simulated arms): true motion from joint torques or commanded joint positions."""
 
 from runner.plants.end_points import TellsEndPoints
 from runner.plants.kinds import PlantConfig, Plants

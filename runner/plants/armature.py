@@ -1,4 +1,4 @@
-"""The share of a joint's torque that its motor's own inertia takes, for engines that know no armature."""
+"""Torque correction for joint armature, for engines without armature."""
 
 import pinocchio as pin
 

@@ -1,4 +1,4 @@
-"""PyBullet as the plant: Featherstone's articulated bodies, semi-implicit Euler."""
+"""PyBullet plant: Featherstone's articulated-body algorithm with semi-implicit Euler integration."""
 
 import struct
 from typing import Literal

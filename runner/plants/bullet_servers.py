@@ -1,4 +1,4 @@
-"""PyBullet's physics servers: who has one, and those that wait for the next plant of the same arm."""
+"""PyBullet physics servers: ownership, and reuse by the next plant of the same arm."""
 
 import re
 import tempfile

@@ -1,4 +1,4 @@
-"""The steps of an arm with flexible joints as compiled code: the classical Runge-Kutta scheme on links and motors."""
+"""Compiled steps of a flexible-joint arm: the classical Runge-Kutta scheme on links and motors."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple

@@ -1,4 +1,4 @@
-"""How arms move between two ticks, as code: the classical Runge-Kutta scheme under held torques, less friction."""
+"""Compiled arm motion between two ticks: the classical Runge-Kutta scheme, with joint friction."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""What a computer does to a loop: torques that act late, unevenly late, or not at all."""
+"""Computation delay, jitter and missed commands in a control loop."""
 
 from collections.abc import Mapping, Sequence
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""Stages simulated each with its own dynamics, as the thesis did it."""
+"""Decoupled stages, each simulated with its own dynamics as in the thesis."""
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack

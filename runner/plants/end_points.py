@@ -1,4 +1,4 @@
-"""Where an arm ends whose joints do not tell it."""
+"""Protocol of plants with end points that joint positions do not determine."""
 
 from typing import Protocol, runtime_checkable
 

@@ -1,4 +1,4 @@
-"""Springs and motors of flexible joints around an engine that moves the links."""
+"""Springs and motors of flexible joints around an engine for the links."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Config of the springs between motors and links."""
+"""Config of flexible joints: springs between motors and links."""
 
 from typing import Literal
 

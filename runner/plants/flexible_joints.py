@@ -1,4 +1,4 @@
-"""Joints with springs between motors and links, integrated by the Runge-Kutta scheme."""
+"""Flexible-joint plant: springs between motors and links, integrated by the Runge-Kutta scheme."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Arms whose links bend, integrated by the Runge-Kutta scheme."""
+"""Flexible-link plant, integrated by the Runge-Kutta scheme."""
 
 from collections.abc import Sequence
 

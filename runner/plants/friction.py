@@ -1,4 +1,4 @@
-"""Dry and viscous friction in the joints of an arm that is driven by torques."""
+"""Dry and viscous joint friction of a torque-driven arm."""
 
 from typing import Protocol, runtime_checkable
 

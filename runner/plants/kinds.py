@@ -1,4 +1,4 @@
-"""What a plant's module and config may offer beside `CONFIG` and `build`, and the registry that asks for it."""
+"""Optional features of plant modules and configs, beyond `CONFIG` and `build`; registry of plants."""
 
 from collections.abc import Mapping
 from types import ModuleType

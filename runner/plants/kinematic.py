@@ -1,4 +1,4 @@
-"""An arm whose joints go where they are told: a perfect position servo with speed limits."""
+"""Kinematic plant: ideal joint position servos with speed limits."""
 
 from typing import Literal
 

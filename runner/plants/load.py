@@ -1,4 +1,4 @@
-"""What the world puts on a plant's joints beside its motors."""
+"""External joint torques on a plant, separate from the motor torques."""
 
 from typing import Protocol, runtime_checkable
 

@@ -1,4 +1,4 @@
-"""What moves when torques act: arms with friction in their joints, each on the ground or on the one before."""
+"""Moving arms of a robot with joint friction, on a fixed base or on the previous arm."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Dry and viscous friction in the motors of flexible joints."""
+"""Dry and viscous motor friction in flexible joints."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What drives and encoders know of flexible joints: encoders that turn with the motors, and those on both sides."""
+"""Encoders and drives of flexible joints: motor-side encoders, or encoders on both sides."""
 
 from runner.base.arrays import FloatArray
 from runner.plants.flexible_joints import FlexibleJoints

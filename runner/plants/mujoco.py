@@ -1,4 +1,4 @@
-"""MuJoCo as the plant: the composite-rigid-body algorithm, with a choice of integrators."""
+"""MuJoCo plant: composite-rigid-body algorithm with a choice of integrators."""
 
 from typing import Literal
 

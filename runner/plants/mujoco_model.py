@@ -1,4 +1,4 @@
-"""An arm as MuJoCo's model, from the URDF text that the other engines read."""
+"""MuJoCo model of an arm, from the same URDF text as for other engines."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""An arm whose payload changes on the way."""
+"""Payload changes of an arm during the motion."""
 
 from collections.abc import Sequence
 

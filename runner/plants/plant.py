@@ -1,4 +1,4 @@
-"""What every plant offers."""
+"""Plant protocols: torque and position inputs, contact and tool reaction."""
 
 from typing import Protocol, runtime_checkable
 

@@ -1,4 +1,4 @@
-"""Runge-Kutta integration of the equations of motion as the plant."""
+"""Runge-Kutta plant: integrated equations of motion."""
 
 from typing import Literal
 

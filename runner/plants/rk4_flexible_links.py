@@ -1,4 +1,4 @@
-"""The plant of an arm whose links bend: its config, its modes, and how it is made."""
+"""Flexible-link plant by the Runge-Kutta scheme: config, modes and construction."""
 
 from typing import Annotated, Literal
 

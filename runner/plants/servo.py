@@ -1,4 +1,4 @@
-"""Position servos at the joints of an arm that is driven by torques."""
+"""Joint position servos of a torque-driven arm."""
 
 import numpy as np
 import pinocchio as pin

@@ -1,10 +1,9 @@
-"""Whether an admittance behind joint servos is stable in contact with a wall, from the whole loop's linear map.
+"""Contact stability of an admittance with joint servos, from the linear map of the whole loop.
 
-An ideal joint goes where it is told, and filter and wall alone decide (`controllers/admittance_stability.py`). Behind
-servos the arm's masses and the servos' springs stand between them, so that one controller period is followed here as
-the loop does it, tick by tick, for small motions about the posture at the start: reading, filter, inverse kinematics,
-set-points, servos, arm and wall. The wall is taken to be touched throughout, limits are not met, joints have no
-friction, and what the controller believes is true.
+With ideal joints, only filter and wall determine stability (`runner/controllers/force/admittance_stability.py`). With
+servos, the arm's masses and the servo stiffness act between them. The map therefore covers one controller period tick
+by tick, for small motions about the initial configuration. It includes reading, filter, inverse kinematics, set-points,
+servos, arm and wall. It assumes permanent contact, no active limits, no joint friction, and an exact nominal model.
 """
 
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""From joint positions commanded now and then to a set-point for every tick."""
+"""Servo set-points for every tick from less frequent joint position commands."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A plant whose tip touches something within its integration steps."""
+"""Tip contact with a surface, evaluated at every integration step."""
 
 from typing import Protocol
 

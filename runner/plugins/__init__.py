@@ -1,1 +1,1 @@
-"""Registry of kinds, discovery of plug-ins, and the guard around user-supplied parts."""
+"""Registry of kinds, plug-in discovery, and runtime checks of plug-ins."""

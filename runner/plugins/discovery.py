@@ -1,8 +1,8 @@
-"""Parts of the user's: of installed packages by entry point, and of modules named on the command line.
+"""Plug-in discovery: entry points of installed packages, and modules named on the command line.
 
-A part is a module, such as one with a controller's `CONFIG` and `build`. An installed package declares its parts in
-entry points, group `runner.<group>`. Any other module is named by the one who starts the command, as in
-`runner --plugin controller=mine/spring.py`, and never by a config: what a YAML file says cannot run code.
+A plug-in is a module, such as one with a controller's `CONFIG` and `build`. An installed package declares its plug-ins
+as entry points in group `runner.<group>`. Any other module must be named on the command line, as in
+`runner --plugin controller=mine/spring.py`. A config cannot name one, so a YAML file cannot run code.
 """
 
 import hashlib

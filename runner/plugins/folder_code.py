@@ -1,4 +1,7 @@
-"""Python of a folder that may be no installed package: its modules, imported under a name that its path makes."""
+"""Imports of Python modules from a folder, with or without an installed package.
+
+The path of the folder determines the package name of its modules.
+"""
 
 import hashlib
 import importlib

@@ -1,8 +1,8 @@
-"""Names to parts: what a `kind:` in a config stands for.
+"""Registry of kinds: modules by the `kind:` of a config.
 
-A registry holds one line per kind, the module that defines it. The module is imported when the kind is first
-used, and offers `CONFIG`, the pydantic model of its config group, and `build`, which makes the object. Users add
-kinds of their own: see runner/plugins/discovery.py.
+A registry has one line for each kind, with the module that defines it. The module is imported when the kind is first
+used. It provides `CONFIG`, the pydantic model of its config group, and `build`, which creates the object. Users can add
+their own kinds: see runner/plugins/discovery.py.
 """
 
 import copy

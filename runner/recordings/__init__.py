@@ -1,4 +1,4 @@
-"""Recordings of real arms, held against stored runs: read, aligned in time, compared, and their friction identified."""
+"""Recordings of real arms: reading, time alignment, comparison with stored runs, and friction identification."""
 
 from pathlib import Path
 

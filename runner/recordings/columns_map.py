@@ -1,4 +1,4 @@
-"""What the columns of a recording are: which signal of the arm each holds, and in which unit."""
+"""Column map of a recording: the signal and unit of each column."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A recording held against a run: aligned in time, signal by signal, metric by metric, and its friction."""
+"""Comparison of a recording with a run: time alignment, signals, metrics and friction."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

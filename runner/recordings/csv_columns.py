@@ -1,4 +1,4 @@
-"""Columns of numbers from a CSV file, checked cell by cell, with the line of what is wrong."""
+"""Numeric columns of a CSV file, checked cell by cell, with line numbers in errors."""
 
 import csv
 import math

@@ -2,16 +2,23 @@ r"""Friction of an arm's joints, identified from recorded positions and torques.
 
 .. math:: \tau - (M \ddot q + V + G) = Y(q, \dot q, \ddot q)\, \Delta\theta + b\, \dot q + c\, \mathrm{sgn}\, \dot q + o
 
-M, V and G are those of the run's model, b viscous friction, c Coulomb friction and o a constant of each joint. The
-recorded arm may have other masses than the model, Delta theta, which the linear model of rigid bodies Y takes up
-(Atkeson, An and Hollerbach, International Journal of Robotics Research 5(3), 1986), so that they are not mistaken for
-friction. Positions are differentiated behind a low-pass that leaves the motion as it is. Both sides of the equation
-then run through a lower one, all without delay, and are thinned to what that leaves independent (Gautier, Dynamic
-identification of robots with power model, IEEE ICRA 1997). Rows near standstill are left out, as sgn tells nothing
-there. Joints are weighted by what is left over in each, and the columns of Y are taken out first, so that friction
-which cannot be told from other masses is not given. The intervals allow for what is left over to be correlated within
-half a second and between joints (Liang and Zeger, Biometrika 73(1), 1986), and for what the fit takes up of it (Bell
-and McCaffrey, Survey Methodology 28(2), 2002).
+M, V and G are from the run's model, b is viscous friction, c Coulomb friction and o a constant of each joint.
+
+Delta theta are the differences in masses and inertias between the recorded arm and the model. With this term they do
+not affect the friction. Y is the linear model of rigid bodies (Atkeson, An and Hollerbach, International Journal of
+Robotics Research 5(3), 1986).
+
+Positions are differentiated after a low-pass filter that leaves the motion unchanged. Both sides of the equation then
+pass a lower low-pass filter, all without delay. They are decimated to independent samples (Gautier, Dynamic
+identification of robots with power model, IEEE ICRA 1997). Rows near standstill are left out, because sgn is not
+informative there.
+
+Each joint has a weight from its residuals. The columns of Y are projected out first. Friction that cannot be
+distinguished from other masses is not reported.
+
+The intervals allow for residuals that are correlated within half a second and between joints (Liang and Zeger,
+Biometrika 73(1), 1986). They also allow for the part of the residuals that the fit absorbs (Bell and McCaffrey, Survey
+Methodology 28(2), 2002).
 """
 
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Metrics of a recording beside those of the run, by the same code, over the same times."""
+"""Metrics of a recording and of a run, by the same code over the same times."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,11 +1,13 @@
-r"""When a run began on the clock of a recording: found where the speeds of both correlate best.
+r"""Start time of a run on the clock of a recording, from the best correlation of their speeds.
 
 .. math:: c(d) = \frac{1}{n} \sum_{j=1}^{n} \frac{\sum_k v_j(t_k)\, w_j(t_k - d)}{|v_j|_d\, |w_j|_d}
 
-v is the speed of a signal in the recording, w in the run, both behind the same low-pass. The sums and norms go over the
-times that both cover; a norm counts at least half of the largest that any lag has, so that no lag is taken at which
-little moves. The largest value is refined by least squares over the positions themselves, each less its mean
-difference, so that encoders with another zero do no harm.
+v is the speed of a signal in the recording and w in the run, both after the same low-pass filter. The sums and norms
+are over the times that both cover. A norm counts at least half of its maximum over all lags, so that no lag with little
+motion is chosen.
+
+The maximum is refined by least squares over the positions, each less its mean difference, so that other zeros of the
+encoders have no effect.
 """
 
 from collections.abc import Sequence

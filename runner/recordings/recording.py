@@ -1,4 +1,4 @@
-"""A recording: signals of an arm over time, read from a file and checked."""
+"""Recording: signals of an arm over time, read from a file and checked."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,12 +1,12 @@
-r"""How far a recording is from a run, signal by signal.
+r"""Residuals between a recording and a run, signal by signal.
 
-The fit is that of system identification (Ljung, System Identification, 2nd edition, 1999): one less the
-normalised root mean square error,
+The fit is from system identification (Ljung, System Identification, 2nd edition, 1999): one minus the normalised root
+mean square error,
 
 .. math:: 1 - \frac{|y - \hat y|}{|y - \bar y|},
 
-with y what is recorded and \hat y what was simulated. It is 1 where both are the same and 0 where the mean of the
-recording would be as good a guess.
+with y the recorded and \hat y the simulated signal. It is 1 if both are equal, and 0 if the mean of the recording would
+be as good an estimate.
 """
 
 from dataclasses import dataclass

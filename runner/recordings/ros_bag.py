@@ -1,8 +1,8 @@
 """Joint states from a ROS bag: ROS 1, or MCAP or SQLite of ROS 2, one file or a folder.
 
-A bag becomes columns as a CSV file has them: `stamp`, in s, and JOINT.position, JOINT.velocity and JOINT.effort.
-Messages are read by the definition of sensor_msgs/JointState that ROS publishes; the bag's own definitions, of which
-rosbags would make code, are not looked at.
+The columns have the same form as in a CSV file: `stamp`, in s, and JOINT.position, JOINT.velocity and JOINT.effort.
+Messages are read by ROS's published definition of sensor_msgs/JointState. The definitions in the bag are not used,
+because rosbags would make code from them.
 """
 
 from array import array

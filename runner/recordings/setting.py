@@ -1,4 +1,4 @@
-"""What a recording is held against: the trace of a run, and what its metrics need to know."""
+"""Run for a comparison with recordings: its trace, and the context of its metrics."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Signals without their noise and without delay, and their derivatives."""
+"""Smoothing of signals without delay, and their derivatives."""
 
 import numpy as np
 from scipy.interpolate import CubicSpline

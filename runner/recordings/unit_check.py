@@ -1,4 +1,4 @@
-"""Whether a column may be in another unit than is said: its signal is so many times the run's."""
+"""Unit check of recorded columns, by the ratio of their signals to the run's."""
 
 from collections.abc import Iterator, Mapping
 

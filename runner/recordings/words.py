@@ -1,4 +1,4 @@
-"""What is told of a recording beside a run, on a terminal and in a report."""
+"""Messages and table rows for the comparison of a recording with a run, on a terminal and in a report."""
 
 from collections.abc import Callable, Iterator
 

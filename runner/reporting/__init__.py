@@ -1,1 +1,1 @@
-"""Reports: documents of typed blocks made from stored runs, rendered to HTML and PDF."""
+"""Reports: documents of typed blocks from stored runs, rendered to HTML and PDF."""

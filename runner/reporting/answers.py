@@ -1,8 +1,8 @@
-"""The one rule for what may be said of a comparison: "smaller", "larger", or why neither.
+"""Verdict on a comparison: "smaller", "larger", or the reason for neither.
 
-Said is a difference whose p-value, corrected by Holm's procedure for all comparisons of its family, is below 5 %, and
-which is larger than the plant's own error in it and than 2 % of the larger of the two medians (0.02 of a fraction).
-Word, interval and p follow from one test: the interval has the level at which Holm's procedure decided, so that it
+A difference is reported if its p-value, corrected by Holm's procedure for all comparisons of its family, is below
+5 %. It must also exceed the integration error in it, and 2 % of the larger of the two medians (0.02 of a fraction).
+Verdict, interval and p follow from one test. The interval has the level at which Holm's procedure decided, so that it
 excludes zero exactly if the corrected p is below 5 %.
 """
 

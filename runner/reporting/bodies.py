@@ -1,4 +1,4 @@
-"""The bodies of a playback, from the shapes of a URDF and the arm's motion."""
+"""Bodies of a playback, from the shapes of a URDF and the motion of the arm."""
 
 import xml.etree.ElementTree as ET
 

@@ -1,4 +1,4 @@
-"""Which keys of a config are not as its groups have them: what the command line or an experiment set."""
+"""Config keys that differ from the defaults of their groups."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""What a report shows of a claim: what the source says, what the runs give, and the verdict."""
+"""Claims in a report: published number, simulated values and verdicts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Columns of lengths and times in the unit in which a reader reads them: mm where that spares the powers of ten."""
+"""Table columns of lengths and times in readable units, such as mm instead of powers of ten."""
 
 from collections.abc import Sequence
 from dataclasses import replace

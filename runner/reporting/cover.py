@@ -1,4 +1,4 @@
-"""What the first screen of a work's report shows of a run: the arm in motion."""
+"""Picture on the first screen of a study's report: the arm in motion."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A figure of curves as data for Plotly: one plot per panel, arrays as base64, texts without markup."""
+"""Figures of curves as Plotly data: one plot per panel, arrays as base64, labels without markup."""
 
 import base64
 import html

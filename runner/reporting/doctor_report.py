@@ -1,4 +1,4 @@
-"""The doctor's examination of a robot as a report, with the robot drawn."""
+"""Report on the inspection of a robot file, with a drawing of the robot."""
 
 import numpy as np
 

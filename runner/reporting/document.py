@@ -1,9 +1,9 @@
-"""A report as plain data: sections of typed blocks, made once and rendered by two templates (HTML and Typst).
+"""Report as plain data: sections of typed blocks, rendered by two templates (HTML and Typst).
 
-Blocks hold values, never markup. Text may carry inline mathematics between dollar signs, written as Typst
-mathematics (`"the sag is $g / omega_n^2$"`); everything else is shown literally, so that a name from a config
-or a file can never become markup. A dollar sign is written as two. `§2.1` is a link to that section, and
-"claim 3", "figure 3.5" and "table 2.1" lead to these where the report has them.
+Blocks contain values, never markup. A string may contain inline mathematics between dollar signs, in Typst notation
+(`"the sag is $g / omega_n^2$"`). Everything else is shown literally, so that a name from a config or a file can never
+become markup. A literal dollar sign is written twice. `§2.1` is a link to that section. "claim 3", "figure 3.5" and
+"table 2.1" are links if the report contains them.
 """
 
 from collections.abc import Sequence

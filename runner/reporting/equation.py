@@ -1,4 +1,4 @@
-"""What a report shows of a printed equation: its forms, its verdict, and the order in which equations are read."""
+"""Printed equations in a report: forms, verdict and reading order."""
 
 from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, replace

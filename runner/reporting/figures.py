@@ -1,4 +1,4 @@
-"""Figures of a stored run, laid out as the thesis does."""
+"""Figures of a stored run in the layout of the thesis."""
 
 import numpy as np
 import pandas as pd

@@ -1,4 +1,4 @@
-"""Figures of a stored run of arms riding on each other, laid out as the thesis does (figure 5.3)."""
+"""Figures of a stored Macro/Mini run in the layout of the thesis (figure 5.3)."""
 
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.figures import origin, until_time

@@ -1,4 +1,4 @@
-"""Drawn formulas of one page: every letter and every formula stands in it once, and is used wherever it is shown."""
+"""Shared SVG definitions of letters and formulas on one page."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Typst mathematics as SVG images: one Typst compilation for all formulas of a document, each kept by its text."""
+"""Typst mathematics as SVG images, with one Typst compilation for each document and a cache."""
 
 import json
 import re

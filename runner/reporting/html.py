@@ -1,4 +1,4 @@
-"""A report as one HTML file that needs no other file and no network."""
+"""Report as a self-contained HTML file that needs no network."""
 
 import base64
 import gzip

@@ -1,4 +1,4 @@
-"""The metrics that say most of a run's task, as its report's first screen and the command line show them."""
+"""Key metrics of a run's task, for the first screen of a report and the command line."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

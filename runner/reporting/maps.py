@@ -1,4 +1,4 @@
-"""Heat maps as data for Plotly: one plot per map, all with one scale of colours."""
+"""Heat maps as Plotly data: one plot per map, one colour scale for all."""
 
 from typing import Any
 

@@ -1,7 +1,7 @@
-"""Text of a report taken apart: what is shown literally, mathematics between dollar signs, links, emphasis, code.
+"""Inline markup of report text: literal text, mathematics between dollar signs, links, emphasis and code.
 
-Emphasis, code and addresses stand between characters for private use, which no keyboard types: `marked` puts them
-there, and a reader of files refuses them in what it is given.
+Emphasis, code and addresses are enclosed in private-use characters, which no keyboard types. `marked` inserts these
+characters; readers of files reject them in their input.
 """
 
 import re

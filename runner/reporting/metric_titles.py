@@ -1,4 +1,4 @@
-"""Names of metrics as an engineer says them: "largest tracking error, x" for max_tracking_error_x."""
+"""Titles of metrics, such as "largest tracking error, x" for max_tracking_error_x."""
 
 import re
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""The order of a report: numbered sections, and every block and text in reading order."""
+"""Reading order of a report: numbered sections, blocks, strings and formulas."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

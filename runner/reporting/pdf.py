@@ -1,4 +1,4 @@
-"""A report as PDF, set by Typst from a folder that holds the report's own files and nothing else."""
+"""Report as PDF, compiled by Typst in a folder with only the files of the report."""
 
 import tempfile
 from datetime import UTC, datetime

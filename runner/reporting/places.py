@@ -1,4 +1,4 @@
-"""Names of the places of a report that a link leads to: sections, figures and tables of the source, claims."""
+"""Link targets of a report: sections, claims, and figures and tables of the source."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""What the integration step of a run's plant is worth, in words; reports read what was stored with the run."""
+"""Integration error of a run in sentences, from the values stored with the run."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

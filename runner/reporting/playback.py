@@ -1,4 +1,4 @@
-"""A motion as an offline viser recording: the player's page, which all playbacks share, and the scene it plays."""
+"""Playback of a motion as an offline viser recording: a shared player page and the scene."""
 
 import base64
 import re

@@ -1,4 +1,4 @@
-"""A viser scene that records and never listens: no socket, no thread, nothing printed."""
+"""Recording of a viser scene without a server: no socket, no thread, no output."""
 
 import asyncio
 import contextlib

@@ -1,4 +1,4 @@
-"""A report written to its folder: one offline HTML file and one PDF."""
+"""Output files of a report: one offline HTML file and one PDF."""
 
 from collections.abc import Callable, Collection
 from pathlib import Path

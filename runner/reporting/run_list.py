@@ -1,4 +1,4 @@
-"""The list of runs of a sweep: as data for the page's script, and as a short table for paper."""
+"""List of the runs of a sweep: data for the page's script, and a short table for print."""
 
 import base64
 from typing import Any

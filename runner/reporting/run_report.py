@@ -1,4 +1,4 @@
-"""A report on any stored runs: what was run, what came out, and where it comes from."""
+"""Report on one or more stored runs: config, results and provenance."""
 
 import json
 import re

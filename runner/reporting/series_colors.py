@@ -1,4 +1,4 @@
-"""One colour for a name through a whole report."""
+"""Consistent curve colours by name throughout a report."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What reports on runs show of their spec: its bounds, how often they are kept, and how sure that is."""
+"""Report blocks of a spec: bounds, pass rates and confidence."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

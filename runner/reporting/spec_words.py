@@ -1,4 +1,4 @@
-"""A spec in words: what each bound demands, how often it is kept, and how probable it is that it is not."""
+"""Text of a spec: bounds, pass rates and failure probabilities."""
 
 from collections.abc import Collection
 from typing import TYPE_CHECKING

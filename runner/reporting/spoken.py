@@ -1,4 +1,4 @@
-"""Mathematics in Typst's notation as words, for readers who hear a page."""
+"""Spoken form of Typst mathematics for screen readers."""
 
 import re
 from collections.abc import Sequence

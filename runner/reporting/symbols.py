@@ -1,4 +1,4 @@
-"""Names of equations, such as 0T_1 or J_g6,20, with what they have above and below the line."""
+"""Equation names such as 0T_1 or J_g6,20, split into letters, subscripts and superscripts."""
 
 import re
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How many claims of a report hold: the verdicts counted, and where each stands."""
+"""Counts of the verdicts in a report, with links to the claims and equations."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator

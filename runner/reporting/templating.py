@@ -1,4 +1,4 @@
-"""The two Jinja2 environments: HTML with autoescape, and Typst where every text becomes a quoted string by itself."""
+"""Jinja2 environments: HTML with autoescape, and Typst with every string quoted."""
 
 import re
 from functools import cache

@@ -1,4 +1,4 @@
-"""The reports' words for names of the code: a reader should not have to know these."""
+"""Readable names for presets, plants, controllers and variants."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""Robot arms: their URDFs and rigid-body models."""
+"""Robot arms: URDF and MJCF files, rigid-body models, kinematics and model mismatch."""
 
 from runner.robots.description import find_urdf, read_urdf
 from runner.robots.inverse_kinematics import solve_tip_pose, solve_tip_position

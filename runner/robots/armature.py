@@ -1,4 +1,4 @@
-"""Armature of joints, the reflected inertia of motors and gears: a value, one for each joint, or a named set."""
+"""Joint armature (reflected inertia of motors and gears): one value, one for each joint, or a named set."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Links that bend, and the rigid parts into which they are cut."""
+"""Flexible links as beams, divided into rigid segments."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Values of a robot's joints, by stage where it has several, of which some joints have none."""
+"""Joint values of a robot from config values per stage, with infinity for null."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A clamped beam with a mass at its tip, as Euler and Bernoulli have it and as a chain of rigid parts."""
+"""Clamped beam with a tip mass: Euler-Bernoulli theory and a chain of rigid segments."""
 
 from collections.abc import Iterator
 from itertools import islice

@@ -1,4 +1,4 @@
-"""Arms whose links bend, as chains of rigid parts with springs between them."""
+"""Arms with flexible links, as chains of rigid segments and springs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,7 @@
-"""Denavit-Hartenberg parameters of a serial arm, in both conventions.
+"""Denavit-Hartenberg parameters of a serial arm, standard and modified.
 
-The standard (distal) one is the thesis' (section 3.1, eq. 3.2) and is found from an arm's joint axes. The modified
-(proximal) one is Craig's, which the Meca500 report uses.
+The standard (distal) convention is from the thesis (section 3.1, eq. 3.2). Its parameters follow from the joint axes of
+an arm. The modified (proximal) convention is Craig's, which the Meca500 report uses.
 """
 
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""The URDF of a robot as text: found, checked, and changed as a config asks."""
+"""URDF text of a robot: file lookup, checks, and changes from the config."""
 
 import contextlib
 import math

@@ -1,4 +1,4 @@
-"""The mass that a tip has in each direction, of a whole arm and of the stages that ride on it."""
+"""Effective mass of the tip in each direction, for a whole arm and for its mounted stages."""
 
 import numpy as np
 

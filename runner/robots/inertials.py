@@ -1,4 +1,4 @@
-"""What the links of a URDF weigh, changed as a config asks: other sets of inertials, masses, a payload."""
+"""Link inertials of a URDF: named sets, scaled masses, payloads and validity checks."""
 
 import itertools
 import math

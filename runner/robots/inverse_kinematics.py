@@ -1,4 +1,4 @@
-"""Joint positions for a tip position or a tip pose, on the branch that holds the home posture."""
+"""Inverse kinematics of the tip position or pose, on the branch of the home configuration."""
 
 import math
 from collections.abc import Callable, Iterable, Sequence

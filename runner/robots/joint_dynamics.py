@@ -1,4 +1,4 @@
-"""Damping, friction and armature that a robot's file gives its joints, and joints that are held fixed."""
+"""Joint damping, friction and armature from a robot file, and fixed joints."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence

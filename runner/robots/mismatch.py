@@ -1,4 +1,4 @@
-"""Nominal model of a robot, which its controllers use, apart from the true one."""
+"""Model mismatch between the controllers' nominal model and the simulated robot."""
 
 import copy
 from typing import Annotated

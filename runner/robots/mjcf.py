@@ -1,4 +1,4 @@
-"""An arm's MJCF, MuJoCo's own format, as the URDF of the same arm."""
+"""MJCF import: an arm in MuJoCo's format, converted to a URDF."""
 
 import threading
 import warnings

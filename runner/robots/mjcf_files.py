@@ -1,4 +1,4 @@
-"""The files that an MJCF consists of: followed before MuJoCo reads them, and refused where they lead out."""
+"""Included files and meshes of an MJCF, with path and size checks before MuJoCo reads them."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Collection, Iterable, Iterator

@@ -1,4 +1,4 @@
-"""What an MJCF says of its joints: largest torques, damping, friction, armature, and where they are at home."""
+"""Joint properties of an MJCF: effort limits, damping, friction, armature and home positions."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""What an MJCF holds that no arm of ours has: refused by name, or named as left out."""
+"""Unsupported elements of an MJCF: rejected ones, and omitted ones with a note."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

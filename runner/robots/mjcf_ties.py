@@ -1,4 +1,4 @@
-"""What keeps joints of an MJCF from moving freely: equality constraints, tendons, muscles, springs."""
+"""Joint constraints of an MJCF: equality constraints, tendons, muscles and springs."""
 
 from collections.abc import Iterator, Sequence
 from itertools import chain

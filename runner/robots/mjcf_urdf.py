@@ -1,4 +1,4 @@
-"""A compiled MuJoCo model written as the URDF of the same arm."""
+"""URDF export of a compiled MuJoCo model."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Collection, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""A robot arm as its rigid-body model: kinematics and dynamics in joint space and at the tip, by Pinocchio."""
+"""Rigid-body model of a robot arm: kinematics and dynamics of joints and tip, by Pinocchio."""
 
 import copy
 import xml.etree.ElementTree as ET

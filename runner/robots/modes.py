@@ -1,4 +1,4 @@
-"""Natural vibrations of an arm about a posture."""
+"""Natural vibration modes of an arm: frequencies, damping ratios and amplitudes."""
 
 from typing import NamedTuple
 

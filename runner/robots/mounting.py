@@ -1,4 +1,4 @@
-"""One arm mounted on another: two URDFs become one."""
+"""Mounting of one arm on another: two URDFs merged into one."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""A robot as a chain of stages: one arm, or arms riding on each other."""
+"""Robot as a chain of stages: one arm, or several arms mounted on each other."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

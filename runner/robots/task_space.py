@@ -1,4 +1,4 @@
-"""In which directions an arm can move its tip, and about which it can turn it: what a task may ask of it."""
+"""Task-space directions of an arm: possible translations and rotations of the tip."""
 
 from functools import lru_cache
 

@@ -1,4 +1,4 @@
-"""A tool on the flange, as links of the URDF."""
+"""Tool on the flange: URDF links, inertia and reaction wrench."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""The tree of links and joints that a URDF file describes: read safely, and refused where it is none."""
+"""URDF tree of links and joints: safe XML parsing and structure checks."""
 
 import xml.etree.ElementTree as ET
 from collections import Counter

@@ -1,4 +1,4 @@
-"""The numbers of a URDF: read, and checked for what no arm has."""
+"""Numeric values of a URDF, with plausibility checks."""
 
 import math
 import xml.etree.ElementTree as ET

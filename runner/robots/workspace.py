@@ -1,4 +1,4 @@
-"""The workspace of an arm: where its tip can be, and how freely it moves there (thesis section 2.3)."""
+"""Workspace of an arm: reachable tip positions and manipulability (thesis section 2.3)."""
 
 from dataclasses import dataclass
 

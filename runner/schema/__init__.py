@@ -1,1 +1,1 @@
-"""Vocabulary of configs: values per joint and per stage, units, plausible magnitudes."""
+"""Config building blocks: base model, values per joint and per stage, units, plausible magnitudes."""

@@ -1,4 +1,4 @@
-"""Numbers and texts that no experiment needs: beyond them arithmetic overflows, and programs that take names fail."""
+"""Plausibility limits of numbers and strings in configs."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Base of every config model."""
+"""Base class of every config model."""
 
 from pydantic import BaseModel, ConfigDict
 

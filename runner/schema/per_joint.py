@@ -1,4 +1,4 @@
-"""A value for every joint of a stage, or one for each."""
+"""Config values per joint: one value for all joints of a stage, or a list with one for each."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""A value for the one stage of a robot, or a mapping with one for each of several."""
+"""Config values per stage: one value for a single stage, or a mapping with one for each of several."""
 
 import math
 from collections.abc import Mapping, Sequence

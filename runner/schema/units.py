@@ -1,4 +1,4 @@
-"""Quantities as people write them, such as 45deg, 5mm, 20ms or 1e-3 rad: a number, and its unit behind it."""
+"""Quantities with units in configs, such as 45deg, 5mm, 20ms or 1e-3 rad."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""What the controllers are told of the true motion."""
+"""Sensors: encoders, joint torques, wrist force/torque and tip position."""
 
 from runner.sensing.encoders import EncoderNoise, JointEncoders, encoder_errors
 from runner.sensing.endpoint import EndpointSensorConfig

@@ -1,4 +1,4 @@
-"""Joint encoders: joint positions noisy, biased and in steps, and velocities exact or from these positions."""
+"""Joint encoders: noise, bias and resolution of positions, with exact or estimated velocities."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

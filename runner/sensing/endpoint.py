@@ -1,4 +1,4 @@
-"""A sensor of the tip's true position, such as a camera or a tracker, and what it corrects in the joints' encoders."""
+"""Tip position sensor, such as a camera or a tracker, and its correction of the encoder kinematics."""
 
 from dataclasses import dataclass
 

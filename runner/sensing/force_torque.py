@@ -1,4 +1,4 @@
-"""A six-axis force/torque sensor between flange and tool."""
+"""Six-axis force/torque sensor between flange and tool."""
 
 from typing import Annotated
 

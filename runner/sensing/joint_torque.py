@@ -1,4 +1,4 @@
-"""Torque sensors in the joints, behind their friction."""
+"""Joint torque sensors on the link side of the joint friction."""
 
 import numpy as np
 from pydantic import FiniteFloat, NonNegativeFloat

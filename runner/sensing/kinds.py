@@ -1,4 +1,4 @@
-"""What sensors offer to the closed loop, and the registries of those that plug-ins bring in place of ours."""
+"""Sensor protocols and the registries of sensor plug-ins."""
 
 from typing import Protocol
 

@@ -1,8 +1,9 @@
-"""The random streams of many runs at once, to the last bit those of `np.random.default_rng([seed, repetition, place])`.
+"""Random streams of many runs, identical to `np.random.default_rng([seed, repetition, place])`.
 
-NumPy hashes such numbers to the state of its generator (O'Neill's seed_seq without bias, and PCG64), by an algorithm
-that NEP 19 and its documentation keep as it is. Here that is done for all runs in one go, and one generator is
-set to each state in turn, which takes a fifth of the time of making a generator for each run.
+The streams agree to the last bit. NumPy hashes such numbers to the state of its generator (O'Neill's seed_seq without
+bias, and PCG64). NEP 19 and the NumPy documentation keep this algorithm fixed. This module hashes the numbers of all
+runs at once and sets one generator to each state in turn. This takes a fifth of the time of a new generator for each
+run.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,19 +1,19 @@
-r"""Joint velocities from measured positions, tick by tick; over floats, or whatever scalar their arguments hold.
+r"""Joint velocity estimates from measured positions, for floats or any other scalar type.
 
-`finite_difference` is d_k = (q_k - q_{k-1}) / h. `low_pass` lets it through a first-order filter of bandwidth w:
+`finite_difference` is d_k = (q_k - q_{k-1}) / h. `low_pass` passes d_k through a first-order filter of bandwidth w:
 
 .. math:: v_k = v_{k-1} + a (d_k - v_{k-1}), \quad a = 1 - e^{-w h}, \qquad
     \frac{V}{Q} = \frac{a}{h} \frac{1 - z^{-1}}{1 - (1 - a) z^{-1}}
 
-`luenberger` is the observer of a joint that keeps its velocity (Luenberger, IEEE Transactions on Military Electronics
-8(2), 1964), with both poles at p = e^{-w h}, and so no gain but its bandwidth w:
+`luenberger` is the observer of a joint with constant velocity (Luenberger, IEEE Transactions on Military Electronics
+8(2), 1964). Both poles are at p = e^{-w h}, so the bandwidth w is the only gain:
 
 .. math:: e_k = q_k - \hat q_{k-1} - h \hat v_{k-1}, \quad \hat q_k = q_k - p^2 e_k, \quad
     \hat v_k = \hat v_{k-1} + \frac{(1 - p)^2}{h} e_k, \qquad \frac{V}{Q} = \frac{(1 - p)^2}{h}
     \frac{1 - z^{-1}}{(1 - p z^{-1})^2}
 
-All three give a constant velocity exactly in the end. Under a constant acceleration A they are late by h/2, by
-h/2 + h (1 - a)/a, and by h/2 + 2 h p/(1 - p), times A. Noise of the positions falls with the bandwidth.
+All three converge to the exact value of a constant velocity. Under a constant acceleration A they lag by A times h/2,
+h/2 + h (1 - a)/a, and h/2 + 2 h p/(1 - p), respectively. A lower bandwidth reduces the noise from the positions.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Wrenches seen from another frame (Meca500 report, section 6)."""
+"""Wrench transformation between frames (Meca500 report, section 6)."""
 
 from typing import Any
 

@@ -1,1 +1,1 @@
-"""The parts of a closed loop: what is told to the plant at each tick, and what is kept of it."""
+"""Closed-loop simulation: assembly, control loops, compiled code, batches and recording."""

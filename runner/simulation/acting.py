@@ -1,4 +1,4 @@
-"""Which of the commands that loops gave act in each tick."""
+"""Active command of each control loop in each tick, with computation delay."""
 
 from collections.abc import Sequence
 

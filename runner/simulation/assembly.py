@@ -1,4 +1,4 @@
-"""From a checked config to the objects of a closed loop: the only place where a `kind:` becomes an object."""
+"""Assembly of a closed loop from a checked config."""
 
 import math
 from contextlib import ExitStack

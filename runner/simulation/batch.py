@@ -1,6 +1,6 @@
-"""Runs that are compiled as a whole, simulated together: repetitions of one, or runs that differ in numbers alone.
+"""Batch simulation of compiled runs: repetitions of one run, or runs that differ only in numbers.
 
-Each has the results that it has alone, to the last bit.
+Each run has the same result as in a separate simulation, to the last bit.
 """
 
 import math

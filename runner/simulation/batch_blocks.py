@@ -1,7 +1,8 @@
-"""The repetitions of one run that is compiled as a whole, block after block, on several threads.
+"""Batch simulation of the repetitions of one compiled run, in blocks on several threads.
 
-A block takes bounded memory, whatever the number of repetitions. Compiled ticks, random draws and arrays leave Python's
-lock alone for most of the time, so that threads use the cores. What is stored is the same whatever blocks and threads.
+A block takes bounded memory, whatever the number of repetitions. Compiled ticks, random draws and array operations
+release Python's lock for most of the time, so that threads use the cores. Stored results do not depend on the blocks
+or the number of threads.
 """
 
 import os

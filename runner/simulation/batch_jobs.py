@@ -1,4 +1,4 @@
-"""Runs that are simulated together, from their checked configs to what is stored of each."""
+"""Batch simulation of several runs, from their checked configs to the results to store."""
 
 import time
 from collections.abc import Callable, Iterator, Sequence

@@ -1,4 +1,4 @@
-"""All that acts together in one run."""
+"""Closed loop of one run: plant, control loops, desired motion and limits."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What one control loop asks of its joints, at its own ticks."""
+"""Command of one control loop, updated at its own ticks."""
 
 from collections.abc import Callable
 from typing import cast

@@ -1,4 +1,4 @@
-"""Runs by compiled code: all that the loops of a tick ask, or a whole run at once."""
+"""Runs with compiled code: the control loops of each tick, or a whole run at once."""
 
 import time
 from collections.abc import Sequence

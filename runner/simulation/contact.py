@@ -1,4 +1,4 @@
-"""Contact of the tip in one run: the environment's wrench, the wrist sensor's reading of it, and the record of both."""
+"""Contact of the tip in one run: external wrench, reading of the wrist sensor, and the record of both."""
 
 from dataclasses import fields
 

@@ -1,4 +1,4 @@
-"""What moves the plant for one tick: torques, or joint positions that it follows."""
+"""Drives of the plant for one tick: torques, or joint positions to follow."""
 
 from typing import Protocol, cast
 

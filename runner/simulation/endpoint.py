@@ -1,4 +1,4 @@
-"""Control loops that know the tip from a sensor of its position."""
+"""Correction of the desired motion by a position sensor of the tip."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Why a run ended early: divergence, or a law that had no answer."""
+"""Reasons for the early end of a run: divergence, or a control law without a result."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What controllers are told of the torques in the joints."""
+"""Joint torque sensors and their readings for the controllers."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The closed loop: plant, encoders, controllers and desired motion, tick by tick, to a trace."""
+"""Closed-loop simulation of one run, tick by tick: plant, encoders, controllers and desired motion."""
 
 from collections.abc import Mapping, Sequence
 

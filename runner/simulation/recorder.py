@@ -1,4 +1,4 @@
-"""The record of one run: every signal at every tick, and why it ended early."""
+"""Recorder of one run: every signal at every tick, and the reason for an early end."""
 
 import time
 

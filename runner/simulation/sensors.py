@@ -1,4 +1,4 @@
-"""What measures in one repetition: ours, and plug-ins in their place."""
+"""Sensors of one repetition, built-in or from plug-ins."""
 
 from collections.abc import Mapping, Sequence
 

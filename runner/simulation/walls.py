@@ -1,4 +1,4 @@
-"""Putting up a wall: who makes its contact, and what is left of it for the loop to do."""
+"""Wall contact: setup in the plant, or in the simulation loop."""
 
 import math
 

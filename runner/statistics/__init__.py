@@ -1,4 +1,4 @@
-"""What repeated runs allow to be said: intervals, paired comparisons, and which axis of a sweep matters."""
+"""Statistics of repeated runs: confidence intervals, paired comparisons, and effects of sweep axes."""
 
 from runner.statistics.effects import PERMUTATIONS, Effect, EffectAnalysis, axis_effects
 from runner.statistics.holm import holm, holm_levels

@@ -1,4 +1,4 @@
-"""Which axis of a sweep matters: shares of the variation, and permutation tests of main effects and interactions."""
+"""Effects of sweep axes: explained variation, and permutation tests of main effects and interactions."""
 
 import itertools
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Confidence interval of a median by the bootstrap."""
+"""Bootstrap confidence interval of a median."""
 
 from dataclasses import dataclass
 from functools import lru_cache

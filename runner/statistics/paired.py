@@ -1,4 +1,4 @@
-"""Two configs compared repetition by repetition: equal seeds give both the same draws."""
+"""Paired comparison of two configs on the same seeds."""
 
 import math
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Permutation tests of linear models, within blocks of values that have something in common."""
+"""Permutation tests of linear models, within blocks of related values."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

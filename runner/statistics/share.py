@@ -1,4 +1,4 @@
-"""Confidence interval of a share: how often something happens, from how often it did."""
+"""Exact confidence interval of a proportion (Clopper and Pearson)."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The Wilcoxon signed-rank test, with the Hodges-Lehmann interval that belongs to it."""
+"""Wilcoxon signed-rank test with the Hodges-Lehmann interval."""
 
 import math
 from functools import cached_property, lru_cache

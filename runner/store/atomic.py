@@ -1,4 +1,7 @@
-"""Writing files so that a reader sees them whole or not at all."""
+"""Atomic file writes.
+
+A reader sees the whole file, or no file.
+"""
 
 import contextlib
 import os

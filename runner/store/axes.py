@@ -1,4 +1,4 @@
-"""The axes of a grid as they are stored: overrides of each, and a rule that tells those of a cell."""
+"""Stored axes of a grid, and the overrides of each cell."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence

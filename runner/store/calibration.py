@@ -1,4 +1,4 @@
-"""Calibrations as they are stored: `outputs/calibrations/<hash>/` with config.yaml, robot.urdf and result.json."""
+"""Stored calibrations: `outputs/calibrations/<hash>/` with config.yaml, robot.urdf and result.json."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Metrics of stored runs on a finer step of their plant: a file for each run, beside runs and sweeps."""
+"""Metrics of stored runs on a finer step of their plant: `outputs/finer/<hash>.json`, one file for each run."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

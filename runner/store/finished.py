@@ -1,4 +1,4 @@
-"""The finished runs of an outputs folder, in folders of their own and in shards."""
+"""Finished runs of an outputs folder, in run folders and in shards."""
 
 import os
 from collections.abc import Sequence

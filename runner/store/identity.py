@@ -1,4 +1,4 @@
-"""What makes two runs the same run."""
+"""Run hash: the digest that identifies a run."""
 
 import hashlib
 import json

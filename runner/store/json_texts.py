@@ -1,4 +1,4 @@
-"""JSON texts of many mappings that have most parts in common, such as the configs of a sweep's runs."""
+"""JSON encoder for many mappings with common parts, such as the configs of a sweep's runs."""
 
 import json
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""A stored run that is found again with another spec: how often it keeps the bounds is worked out anew."""
+"""Evaluation of a stored run with another spec."""
 
 import sys
 from collections.abc import Mapping

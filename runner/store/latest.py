@@ -1,4 +1,4 @@
-"""The word `latest` in place of a folder: what was made, or found stored, last of each kind in an outputs folder."""
+"""The name `latest`: the most recent folder of each kind in an outputs folder."""
 
 import json
 import sys

@@ -1,4 +1,4 @@
-"""Names of very many runs, in little memory."""
+"""Compact arrays of run names: 24 bytes each in memory, 12 in a file."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any, overload

@@ -1,4 +1,7 @@
-"""What a run's record must hold, beside digests: these find accidents, and not what somebody made up."""
+"""Schema of a run's record.
+
+Digests detect only accidental damage. `find_faults` also detects an invalid record with a valid digest.
+"""
 
 from typing import Annotated, Any, Literal
 

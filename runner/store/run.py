@@ -1,4 +1,4 @@
-"""Reading a stored run."""
+"""Stored run, and its reader."""
 
 import itertools
 import shlex

@@ -1,6 +1,7 @@
-"""Digests of stored files: damage is found when a file is read, and never used.
+"""Digests of stored files.
 
-A digest finds accidents: a flipped bit, half a file, an edit. It does not find forgery, as anyone can make one anew.
+A damaged file is detected when it is read, and never used. A digest detects accidents: a flipped bit, half a file, an
+edit. It does not detect forgery, because anyone can compute a new digest.
 """
 
 import hashlib

@@ -1,9 +1,10 @@
-"""Shards: finished runs of large sweeps that kept no trace, some hundred to a file.
+"""Shards: files with many finished runs of a large sweep that have no trace.
 
-`outputs/shards/NUMBER-PLACE.DIGEST.parquet` has a row for each run: its hash, what went wrong, the number of its
-caveats, config, URDF and record as a run's folder holds them, and the values of each metric. A shard is written once
-and whole, and its name holds its content's digest. The numbers count the commands that wrote shards, so that the later
-of two is known without a clock.
+`outputs/shards/NUMBER-PLACE.DIGEST.parquet` has a row for each run: its hash, its failure, the number of its caveats,
+and the values of each metric. The row also has the config, URDF and record in the format of a run's folder.
+
+A shard is written once, as a whole, and its name contains the digest of its content. NUMBER counts the commands that
+wrote shards, so that the later of two shards is known without a clock.
 """
 
 import io

@@ -1,4 +1,4 @@
-"""What a run and a calibration have in common as they are stored."""
+"""Common base of stored runs and calibrations."""
 
 import re
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Stored sweeps: which overrides led to which run."""
+"""Stored sweeps: the overrides and the hash of each run."""
 
 import hashlib
 import json

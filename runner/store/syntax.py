@@ -1,8 +1,9 @@
-"""The content of Python source as text that edits of its prose leave as it is: listed fields of the syntax tree.
+"""Source content of a Python module, independent of its prose: listed fields of the syntax tree.
 
-Comments, formatting, docstrings, `pass`, `__all__`, what only a type checker reads, the arguments of `raise` and the
-message of `assert` are left out. So are imports: a name that one binds is written as what it stands for. A field
-that a version of Python lacks is written as an empty one, so that the text is the same on all that read the source.
+The content leaves out comments, formatting, docstrings, `pass`, `__all__`, code for type checkers, the arguments of
+`raise` and the message of `assert`. It also leaves out imports, and replaces an imported name by the object that it
+refers to. A field that a version of Python lacks is written as an empty field. All versions that read the source
+therefore give the same content.
 """
 
 import ast

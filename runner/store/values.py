@@ -1,4 +1,4 @@
-"""The values of many repetitions, which stand in a Parquet file beside a run's record: a column for each metric."""
+"""Values of many repetitions, in a Parquet file next to a run's record, with a column for each metric."""
 
 import io
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,7 @@
-"""Writing a run: its config, its first trace, and last of all the metrics, whose presence means done."""
+"""Writer of a run: its config, its first trace and, last, its metrics.
+
+A run with metrics is complete.
+"""
 
 import io
 import os

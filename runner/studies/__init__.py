@@ -1,1 +1,1 @@
-"""Studies: reproductions of published papers, and comparisons of our own."""
+"""Studies: reproductions of published papers, and built-in comparisons."""

@@ -1,1 +1,1 @@
-"""Published works: a folder each. Nothing below this package knows a work, and no work knows another."""
+"""Studies: runs, claims, findings, chapters, checks and reports, read from a study's folder."""

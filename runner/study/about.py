@@ -1,4 +1,4 @@
-"""What `work.yaml` says of a work: its titles, chapters, presets and profiles."""
+"""Manifest of a study, `work.yaml`: titles, chapters, presets and profiles."""
 
 from collections.abc import Iterator
 from pathlib import Path

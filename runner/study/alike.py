@@ -1,4 +1,4 @@
-"""The setting of a run, in which laws are compared: all that decides about it but the law, which every law shares."""
+"""Settings of a run apart from its controller, and their comparison between controllers."""
 
 from collections.abc import Mapping
 from typing import Any

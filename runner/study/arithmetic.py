@@ -1,4 +1,4 @@
-"""Expressions in the runs of a work, as `{{ mass / 2 }}`: of numbers that have a name, and of the levels of axes."""
+"""Arithmetic in the runs of a study, such as `{{ mass / 2 }}`, with named numbers and axis levels."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""The caveats that a work expects of its runs, as `caveats.yaml` of its folder lists them."""
+"""Expected caveats of a study, read from `caveats.yaml`."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,4 +1,4 @@
-"""What changed between two makings of a work: verdicts, findings, equations, caveats and numbers that moved."""
+"""Changes between two versions of a study: verdicts, findings, equations, caveats and numbers."""
 
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence

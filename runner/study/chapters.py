@@ -1,4 +1,4 @@
-"""The chapters of a work from its files: Markdown with the work's own functions, or Python where much is computed."""
+"""Chapters of a study, from Markdown or Python files."""
 
 import shlex
 from collections import ChainMap

@@ -1,4 +1,4 @@
-"""Looks through a work for what its report would not show: conditions that cannot fail, numbers that go stale."""
+"""Checks of a study: conditions that cannot fail, typed numbers, faulty formulas, unexpected caveats."""
 
 from collections.abc import Iterator, Mapping
 from fnmatch import fnmatchcase

@@ -1,4 +1,4 @@
-"""What of a published work stands where in its report: a list in `checklist.yaml` of the work's folder."""
+"""Checklist of a source's figures, tables and formulas (`checklist.yaml`), with their report sections."""
 
 from collections.abc import Sequence
 from pathlib import Path

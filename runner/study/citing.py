@@ -1,4 +1,4 @@
-"""How a report and its source are cited, in BibTeX."""
+"""BibTeX citation of a report and of its source."""
 
 import re
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""A work's published numbers and statements beside the stored runs, with verdicts."""
+"""Claims and statements of a study compared with stored runs, with verdicts."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence

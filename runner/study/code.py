@@ -1,4 +1,4 @@
-"""The Python of a work: run where it is installed, and in a folder only when the command says so."""
+"""Python modules of a study: run if the study is installed or the command allows it."""
 
 import ast
 import hashlib

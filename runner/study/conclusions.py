@@ -1,4 +1,4 @@
-"""What a report concludes, for programs: verdicts, findings with their conditions, caveats, numbers."""
+"""Conclusions of a report as data: verdicts, findings with conditions, caveats and numbers."""
 
 from collections.abc import Mapping, Sequence
 

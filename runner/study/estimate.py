@@ -1,4 +1,4 @@
-"""What tunings and the runs of their laws take, estimated before anything is started."""
+"""Estimated computing time of tunings and of the runs of the tuned controllers."""
 
 import os
 import shlex

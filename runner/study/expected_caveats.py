@@ -1,4 +1,4 @@
-"""Which caveats of its runs a work expects, and why; any other is a finding that nobody has looked at."""
+"""Expected caveats of a study with reasons, and unexpected caveats of its runs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a report concludes: sentences, and the conditions under which they are true."""
+"""Findings of a report: sentences with the conditions under which they are true."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

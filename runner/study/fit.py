@@ -1,4 +1,4 @@
-"""A law of the user's against a work that takes such: whether it fits, told before hours of runs."""
+"""Compatibility check of a user-supplied controller with a study."""
 
 import shlex
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Gains that tunings of a work found: `gains.yaml` in its folder, and how they get into its runs."""
+"""Tuned gains of a study: the file `gains.yaml`, and their insertion into overrides of runs."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

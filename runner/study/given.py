@@ -1,4 +1,4 @@
-"""Parts that a command gives a work, as in `runner reproduce benchmark --plugin controller=mine.py`."""
+"""Plug-ins for a study from the command line, as in `runner reproduce benchmark --plugin controller=mine.py`."""
 
 import os
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""One grid of a work: from its overrides and axes to its runs; runner/study/grids.py tells the format."""
+"""Grid of a study: runs from overrides and axes; format in runner/study/grids.py."""
 
 import itertools
 import math

@@ -1,4 +1,4 @@
-"""The runs of a work as data: grids of overrides in `runs.yaml` of its folder.
+"""Runs of a study as data: grids of overrides in `runs.yaml` of its folder.
 
     grids:
       turns:
@@ -9,16 +9,18 @@
           schedule: {both: controller.schedule=both, turns: [controller.schedule=turns, plant=rk4]}
         values: {cycles: 5}
 
-A grid is one run for each combination of levels of the axes in `over`. The run's name is that of the grid, `name` or
-else its key, and the levels of the axes that `name` does not hold, divided by slashes. Its overrides are those of
-`with` and then those of each axis: `axis=level` of a list, what a label stands for of a group of labels. An override
-that is `{{ axis }}` alone puts the axis there instead. A listed axis that an expression holds makes no override of its
-own. Levels are put in as they are written (3.0), expressions with nine digits at most (3). `values` are further numbers
-for expressions, of a grid or, beside `grids`, of all. A list within a list of overrides, as an alias puts in, stands
-for what it holds. Calibrations are grids under `calibrations`.
+A grid is one run for each combination of levels of the axes in `over`. A run is named by `name` of the grid, or else
+by the grid's key. The levels of the axes that `name` does not contain follow, separated by slashes. The overrides of
+a run are those in `with`, then those of each axis: `axis=level` for a list, the overrides of the label for a group of
+labels.
 
-`plugins: {law: controller}` of a grid says that its axis `law` takes controllers of the user's: each that
-`runner reproduce` is given by --plugin is one more level, by its name.
+An override that consists only of `{{ axis }}` inserts that axis at this position. A listed axis that an expression
+contains adds no override. Levels are inserted as written (3.0), expressions with nine digits at most (3). `values`
+are further numbers for expressions, of a grid or, on the level of `grids`, of all grids. A list within a list of
+overrides, as an alias inserts it, is replaced by its items. Calibrations are grids under `calibrations`.
+
+`plugins: {law: controller}` of a grid states that its axis `law` takes user-supplied controllers. Each controller
+that `runner reproduce` receives by --plugin is one more level, by its name.
 """
 
 from collections.abc import Iterator, Mapping, Sequence

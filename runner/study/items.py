@@ -1,4 +1,4 @@
-"""Runs and calibrations of a work, made by the engine of sweeps where they are not stored yet."""
+"""Execution of the missing runs and calibrations of a study by the sweep engine."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

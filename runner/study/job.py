@@ -1,4 +1,4 @@
-"""What the plans of all works are made of: the runs that a report needs, and what became of them."""
+"""Runs that a report needs, and stored results by name; missing and omitted results raise errors."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

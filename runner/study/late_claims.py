@@ -1,4 +1,4 @@
-"""Claims of a work that were changed after the result was known: the outputs keep what each was first judged by."""
+"""Claims changed after the result was known, with the previous values."""
 
 from collections.abc import Mapping
 from pathlib import Path

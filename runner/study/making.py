@@ -1,4 +1,4 @@
-"""The runs and calibrations of a work, and its tunings before them, made where they are not stored yet."""
+"""Execution of a study: tunings, then the missing runs and calibrations."""
 
 import shlex
 import sys

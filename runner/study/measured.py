@@ -1,4 +1,4 @@
-"""Measured values that know what they are called, so that a comparison of them can say itself in words."""
+"""Measured values with names, and conditions on them with text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which works there are, told without importing one, and where each of them is."""
+"""Names and folders of the installed studies, found without importing them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Writes a first work into a folder, for its author to change: that of examples/own_paper."""
+"""New study from the template in examples/own_paper."""
 
 from pathlib import Path
 

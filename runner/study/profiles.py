@@ -1,4 +1,4 @@
-"""Profiles of a work: a smaller or larger making of it, with other levels of axes or another number of repetitions."""
+"""Profiles of a study: other axis levels or numbers of repetitions for a smaller or larger version."""
 
 from collections.abc import Iterator, Mapping
 from typing import Annotated, TypeVar

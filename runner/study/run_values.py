@@ -1,4 +1,4 @@
-"""What the sections of all works read from stored runs, of which some may have failed."""
+"""Medians, table cells and signals of stored runs, including failed runs."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any

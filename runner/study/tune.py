@@ -1,4 +1,4 @@
-"""The tunings of a work: their trials are runs as others are, and what they find are the gains of its runs."""
+"""Tunings of a study: trials as runs, and the resulting gains."""
 
 import sys
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""The tunings of a work as data: grids under `tunings` in `runs.yaml` of its folder.
+"""Tunings of a study as data: grids under `tunings` in `runs.yaml` of its folder.
 
     tunings:
       macro:
@@ -11,14 +11,18 @@
         minimize: rms_tracking_error
         bounds: {torque_chatter: 50}
 
-Each combination of levels is tuned, under the name that its runs would have: `macro/computed_torque`. A range is one of
-factors on the value that the key has otherwise, looked at on a logarithmic scale. All have the same budget: the value
-that the keys have otherwise, and others up to `trials` in all. `longer` lists further runs, as `with` does, in which a
-trial that would become the best one must be stable: where a repetition fails there, a metric is beyond its bound or the
-error grows from period to period, it is not taken. They are tuned three times, or `times` times, by different seeds of
-search and runs. A run with the gains of one of these has the override `gains=macro/computed_torque/1`;
-runner/study/gains.py tells where they stand. A controller of the user's has its ranges next to its module,
-`mine/spring.ranges.yaml` next to `mine/spring.py`; without these it keeps the values of its config.
+Each combination of levels is tuned. Its name is the name that its run would have: `macro/computed_torque`. A range
+contains factors on the value that the key otherwise has, searched on a logarithmic scale. All tunings have the same
+budget: the value that the keys otherwise have, and others up to `trials` in all.
+
+`longer` lists the overrides of further runs, in the format of `with`. A trial that would become the best one must be
+stable in them. It is rejected if a repetition fails, a metric exceeds its bound, or the error grows from period to
+period.
+
+Each tuning is done three times, or `times` times, with different seeds of search and runs. A run with the gains of
+one of these has the override `gains=macro/computed_torque/1`; runner/study/gains.py describes the file. A
+user-supplied controller has its ranges next to its module, `mine/spring.ranges.yaml` next to `mine/spring.py`.
+Without these it keeps the values of its config.
 """
 
 import itertools

@@ -1,4 +1,4 @@
-"""A published work: which runs it needs, what is expected of them, and the report that is made of them."""
+"""Study: the runs that it needs, its expected results, and its report."""
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What the reports of all works end with: where they come from, and what of the work they hold."""
+"""Report on a study: chapters, provenance, caveats, checklist and citation."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 

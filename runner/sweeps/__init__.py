@@ -1,1 +1,1 @@
-"""Sweeps: many runs from one command, and what they give together."""
+"""Sweeps: many runs from one command, with their execution, results and tunings."""

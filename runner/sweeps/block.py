@@ -1,4 +1,4 @@
-"""Cells of a plan that are checked together, and configs that differ in nothing but the seed."""
+"""Blocks of cells whose configs differ only in the seed."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

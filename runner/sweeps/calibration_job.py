@@ -1,4 +1,4 @@
-"""One calibration job: check a composed config, repeat the calibration, store what it found; or find it stored."""
+"""Calibration job: check of a composed config, repeated calibration, and storage or reuse of the result."""
 
 import sys
 import time

@@ -1,4 +1,4 @@
-"""Dask's scheduler and worker without the HTTP server that each of them opens, whatever the settings say."""
+"""Dask scheduler and worker without an HTTP server, whatever the settings."""
 
 from typing import Any
 

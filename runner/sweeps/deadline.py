@@ -1,4 +1,4 @@
-"""The end of patience: a run that takes longer than its time limit is interrupted, wherever it is."""
+"""Time limit of a run, enforced by an interruption."""
 
 import contextlib
 import ctypes

@@ -1,7 +1,7 @@
-"""Resolved config values that are not the same in all cells of a sweep, beyond what was swept.
+"""Resolved config values that differ between the cells of a sweep, except the swept keys.
 
-Where `robot` is swept, the gains, the path and the encoders' noise may go with it, as a robot's file proposes them;
-what the arms seem to do may be done by these.
+If `robot` is swept, the gains, the path and the encoder noise may change with it, because a robot's file proposes
+them. These values may cause differences that seem to come from the arms.
 """
 
 import itertools

@@ -1,4 +1,4 @@
-"""How the jobs of a sweep ended, a few bytes for each."""
+"""Outcomes of the jobs of a sweep, in a few bytes each."""
 
 from collections.abc import Iterable, Iterator, Mapping
 

@@ -1,4 +1,4 @@
-"""The one engine of sweeps: Dask distributed on this machine or on a running cluster, or the process itself."""
+"""Execution engine of sweeps: Dask distributed on this machine or on a running cluster, or the process itself."""
 
 import contextlib
 import logging

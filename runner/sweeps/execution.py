@@ -1,4 +1,4 @@
-"""One run: check a composed config, simulate its repetitions, store the result; or find it stored already."""
+"""Execution of one run: check of a composed config, simulation and storage, or reuse of a stored run."""
 
 import sys
 from collections.abc import Sequence

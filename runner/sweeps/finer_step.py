@@ -1,7 +1,8 @@
-"""The plant's own error in a difference: the runs that are compared, made again on a finer step with the same seeds.
+"""Integration error of a difference: the compared runs on a finer step, with the same seeds.
 
-Runs of PyBullet and MuJoCo are made again on Runge-Kutta, those of Runge-Kutta with half of their step. Both sides of
-a comparison err alike where they move alike, so that the error of a difference is not that of a run.
+PyBullet and MuJoCo runs are repeated with Runge-Kutta, and Runge-Kutta runs with half of their step. Both sides of a
+comparison have similar errors if their motions are similar. The error of a difference is therefore not the error of
+a run.
 """
 
 from collections.abc import Iterable, Mapping

@@ -1,4 +1,4 @@
-"""What stored runs measured, gathered into arrays: run by run, or a shard at once."""
+"""Measurements of stored runs in arrays, read run by run or a shard at once."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence

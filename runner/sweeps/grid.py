@@ -1,4 +1,4 @@
-"""Every combination of the values of some keys: the plan of `runner -m`."""
+"""Grid of a sweep: every combination of the values of some keys, the plan of `runner -m`."""
 
 import math
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""One job: the repetitions of a checked config, simulated and measured."""
+"""Simulation and measurement of the repetitions of one checked config."""
 
 import time
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""Runs and calibrations given one by one, as the plan of a published work."""
+"""Explicit list of runs and calibrations, as the plan of a study."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace

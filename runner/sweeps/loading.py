@@ -1,4 +1,4 @@
-"""Where the configs of a plan come from."""
+"""Loader of the configs of a plan."""
 
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""One sweep at a time in an outputs folder."""
+"""Lock of an outputs folder, for one sweep at a time."""
 
 import contextlib
 import fcntl

@@ -1,4 +1,4 @@
-"""All that a sweep measured, cell by cell: swept axes, status, and every metric in every repetition."""
+"""Measurements of a sweep by cell: swept axes, status, and every metric in every repetition."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace

@@ -1,4 +1,4 @@
-"""Names of metrics: which are asked for, and which are parts of others."""
+"""Metric names: check of requested names, and names of single joints and axes."""
 
 import re
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""How long jobs will take: estimated before they start, and noted while they run."""
+"""Run times of jobs: estimates before the start, and measurements during a sweep."""
 
 import time
 from collections.abc import Callable

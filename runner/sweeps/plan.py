@@ -1,4 +1,4 @@
-"""What is to be made: cells, each with its config; composed, checked and named before anything starts."""
+"""Plan of a sweep: its cells with their configs, composed and checked before the first run."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The runs and calibrations that are still to do, handed out in chunks."""
+"""Queue of runs and calibrations, handed out in chunks."""
 
 from collections import deque
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""What the config of a run comes to, with what its keys leave open."""
+"""Resolved config of a run: the step of its plant, and the distance from start to goal."""
 
 import json
 import math

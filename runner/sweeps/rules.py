@@ -1,4 +1,4 @@
-"""How the runs of a sweep are made and kept."""
+"""Rules for the runs of a sweep: plug-ins, traces, failures, attempts and time limit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A whole sweep: from its plan to its stored runs."""
+"""Execution of a whole sweep, from its plan to its stored runs."""
 
 import contextlib
 import os

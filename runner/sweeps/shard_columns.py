@@ -1,4 +1,4 @@
-"""The runs of a shard by columns: their records are read as JSON by pyarrow, all at once."""
+"""Runs of a shard in columns, with their records parsed as JSON by pyarrow all at once."""
 
 import io
 from collections.abc import Iterator, Mapping, Sequence

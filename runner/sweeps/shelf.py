@@ -1,4 +1,4 @@
-"""What a chunk made, on its way to the disk: runs with traces one by one, others together in a shard."""
+"""Writer of a chunk's results: a folder for each run with a trace, and one shard for the others."""
 
 from collections.abc import Sequence
 from concurrent.futures import Executor, Future

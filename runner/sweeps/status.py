@@ -1,4 +1,4 @@
-"""How far a sweep is: told from what is stored, and the times noted while it runs."""
+"""Progress of a sweep, from its stored runs and the times noted during execution."""
 
 import contextlib
 import math

@@ -1,4 +1,4 @@
-"""The overrides of a sweep: which keys are swept, over which values."""
+"""Overrides of a sweep: the swept keys and their values."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""A sweep as one tidy table, a row for each cell: Parquet and CSV, readable with pandas alone."""
+"""Tidy table of a sweep with a row for each cell: Parquet and CSV, readable with pandas only."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

@@ -1,8 +1,8 @@
-"""One composed config to which the values of many cells are applied, as Hydra would apply them.
+"""Composed config as a template for the values of many cells, with the same result as Hydra.
 
-Hydra takes some 50 ms to compose a config. Once it has done so for a combination of group options, its own function
-applies overrides of values, in some 5 ms. Where that shows that a key does no more than put its value in certain
-places (its own, and those that interpolate it), a cell is made by putting it there, in some 3 us.
+Hydra takes about 50 ms to compose a config. After it has composed one for a combination of group options, its own
+function applies value overrides in about 5 ms. Some keys only put their value in certain places: their own,
+and those that interpolate it. For such a key the template puts the value of a cell there in about 3 us.
 """
 
 import copy

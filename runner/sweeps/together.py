@@ -1,4 +1,4 @@
-"""Runs of a chunk that are simulated together."""
+"""Batch simulation of the runs of a chunk."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple

@@ -1,4 +1,4 @@
-"""What a worker does with a chunk of runs and calibrations: make those that are not stored yet, and store them."""
+"""Worker of a sweep: simulation and storage of a chunk of runs and calibrations."""
 
 import contextlib
 import signal

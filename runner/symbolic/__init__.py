@@ -1,5 +1,5 @@
-"""Arms and torque laws as machine code: the same mathematics as elsewhere, compiled once.
+"""Compiled arms and torque laws: symbolic dynamics and machine code.
 
-This room alone knows the library that makes machine code. Where that is missing, or a law has no compiled form, all
-runs as it does without. The config alone decides, and the library's version stands in a run's hash.
+Only this package imports llvmlite. Without llvmlite, or for a control law without a compiled form, runs use the
+uncompiled code. Otherwise only the config decides which parts are compiled. The run hash includes the llvmlite version.
 """

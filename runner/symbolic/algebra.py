@@ -1,4 +1,4 @@
-"""Kinematics and dynamics of an arm by recursion over its bodies, over any kind of scalar."""
+"""Recursive kinematics and dynamics of an arm, for any scalar type."""
 
 from collections.abc import Callable
 

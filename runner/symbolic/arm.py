@@ -1,4 +1,4 @@
-"""The constants of an arm's rigid bodies, every joint's axis turned to z."""
+"""Constants of the rigid bodies of an arm, with every joint axis rotated to z."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

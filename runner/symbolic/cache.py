@@ -1,4 +1,7 @@
-"""Compiled code kept in the user's cache folder, where it can be trusted: machine code is loaded as it is."""
+"""Disk cache of compiled code in the user's cache folder, with permission checks.
+
+Other users must not be able to write to the folder, because the machine code in it is loaded as it is.
+"""
 
 import functools
 import hashlib

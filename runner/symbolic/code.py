@@ -1,4 +1,4 @@
-"""Programs as the text of LLVM's intermediate representation: straight-line code within loops."""
+"""LLVM intermediate representation of programs: straight-line code inside loops."""
 
 import struct
 from collections.abc import Mapping, Sequence

@@ -1,8 +1,8 @@
-r"""Sine, cosine and arctangent by sums and products alone: the same bits on every processor.
+"""Sine, cosine and arctangent from sums and products, bit-identical on every processor.
 
-The polynomials are those of fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, s_atan.c), below two units in the last
-place in all; reduction to |r| <= pi/4 takes pi/2 in three parts (Cody and Waite, Software Manual for the Elementary
-Functions, 1980), good for |x| up to some 10^6 rad. A joint beyond that has diverged.
+The polynomials are from fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, s_atan.c). The total error is below two units
+in the last place. Reduction to |r| <= pi/4 uses pi/2 in three parts (Cody and Waite, Software Manual for the Elementary
+Functions, 1980). It is valid for |x| up to about 10^6 rad. A joint beyond this value has diverged.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""End points of a robot's stages as code; see end_points of runner/robots/robot.py."""
+"""Symbolic end points of a robot's stages; see end_points of runner/robots/robot.py."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

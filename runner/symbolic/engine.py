@@ -1,4 +1,4 @@
-"""The library that turns a program's text into machine code, llvmlite: whether it is there, and what it makes."""
+"""Interface to llvmlite: availability, object code and loading."""
 
 import ctypes
 import importlib.util

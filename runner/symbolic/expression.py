@@ -1,4 +1,4 @@
-"""Scalars that stand for numbers to come: sums, products and choices of them, of which code is made."""
+"""Symbolic scalars for code generation: sums, products, functions and choices."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Union

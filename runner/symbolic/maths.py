@@ -1,4 +1,4 @@
-"""The functions of which control laws are made, beside what NumPy's operators do: for floats, and what others offer."""
+"""Scalar functions for control laws, in addition to NumPy's operators: protocol and float version."""
 
 from collections.abc import Callable
 from math import floor

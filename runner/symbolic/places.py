@@ -1,4 +1,4 @@
-"""Where the numbers of a program stand: side by side, in the order in which they were asked for."""
+"""Memory layout of a program: consecutive indices in the order of allocation."""
 
 from runner.symbolic.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE
 from runner.symbolic.expression import Expression, place

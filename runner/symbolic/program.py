@@ -1,4 +1,4 @@
-"""Programs as compiled functions: once in a process, and once for all processes of a user."""
+"""Compiled programs, cached for each process and for each user."""
 
 import ctypes
 import hashlib

@@ -1,4 +1,4 @@
-"""How joint torques depend on the inertial parameters of the bodies, over any kind of scalar."""
+"""Joint torque regressor of the inertial parameters, for any scalar type."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""What of a law and an arm is compiled into code, and what is a parameter of that code."""
+"""Fixed structure and variable parameters of compiled control laws and arms."""
 
 from collections.abc import Callable, Mapping
 from typing import Any

@@ -1,8 +1,9 @@
-r"""Programs whose numbers carry a tangent: how each changes with a parameter, beside its value.
+"""Forward-mode differentiation of programs with respect to a parameter.
 
-Forward mode: each operation is followed by its rule, as in Griewank and Walther, Evaluating Derivatives (2008), table
-3.3. A choice has the tangent of the branch that is taken, and what is rounded to whole numbers has none: so a clipped
-torque does not change with what asked for it, and sines are those of their own quadrant.
+The tangent of a number is its derivative with respect to the parameter. Each operation has a rule, as in Griewank and
+Walther, Evaluating Derivatives (2008), table 3.3. A choice has the tangent of the selected branch. Rounding to whole
+numbers has tangent zero. A clipped torque therefore does not depend on the unclipped one. A sine has the tangent for
+the quadrant of its argument.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,7 +1,7 @@
-"""Vectors and matrices over any kind of scalar, as lists: a factor that is the number 0 or 1 costs nothing.
+"""Vectors and matrices of any scalar type, as lists; factors 0 and 1 need no operation.
 
-A scalar is a float, an array over runs, or an expression. What is known to be zero is the Python float 0.0, so that
-massless links and right angles leave no operation behind.
+A scalar is a float, an array over runs, or an expression. A known zero is the Python float 0.0, so massless links and
+right angles generate no operations.
 """
 
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Desired motions of the tip."""
+"""Trajectories: desired motions of the tip or of the joints."""
 
 from runner.trajectories.kinds import Trajectories
 from runner.trajectories.trajectory import Trajectory

@@ -1,4 +1,4 @@
-"""From 0 to 1, rest to rest, by a polynomial of fifth order in time."""
+"""Quintic blend from 0 to 1, from rest to rest."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A circle about any axis."""
+"""Circle about an arbitrary axis."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -1,4 +1,4 @@
-"""A closed curve, traced once from rest to rest or over and over at a steady pace."""
+"""Closed curves, traced once from rest to rest or periodically at a constant parameter rate."""
 
 from dataclasses import dataclass
 from typing import Literal, Protocol

@@ -1,4 +1,4 @@
-"""A motion from a data file, of the tip or of the joints."""
+"""Tip or joint motion from a data file."""
 
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal

@@ -1,4 +1,4 @@
-"""A goal position: the desired tip stands at the goal from the first tick on."""
+"""Goal position: constant desired tip position from the first tick."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -1,4 +1,4 @@
-"""Sequences of impulses that leave a mode at rest, and the vibration that they leave in another."""
+"""Input shapers (ZV and ZVD impulse sequences) and their residual vibration."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

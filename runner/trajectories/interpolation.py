@@ -1,4 +1,4 @@
-"""Motions between rows of a table, twice differentiable."""
+"""Interpolated motions between table rows, twice differentiable."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Desired motions of the joints, and the motion of the tip that follows from them."""
+"""Desired joint motions and the resulting tip motion."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,4 +1,4 @@
-"""Rest to rest between two configurations, each joint by a polynomial of fifth order in time."""
+"""Quintic joint motion between two configurations, from rest to rest."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -1,4 +1,4 @@
-"""Sums of sinusoids of every joint, which excite the parameters of an arm, from rest to rest."""
+"""Excitation trajectories: sums of sinusoids for every joint, from rest to rest."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal

@@ -1,4 +1,4 @@
-"""Through configurations, from rest to rest, with the least jerk of the joints."""
+"""Minimum-jerk joint motion through configurations, from rest to rest."""
 
 from dataclasses import dataclass
 from typing import Literal

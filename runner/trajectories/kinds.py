@@ -1,4 +1,4 @@
-"""What the config of a trajectory may offer, and the registry of trajectories."""
+"""Optional features of trajectory configs and modules, and the registry of trajectories."""
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Protocol, runtime_checkable

@@ -1,4 +1,4 @@
-"""From A to B and back along a straight line, over and over, by a cosine of time."""
+"""Periodic straight line from A to B and back, by a cosine of time."""
 
 from dataclasses import dataclass
 from typing import Literal

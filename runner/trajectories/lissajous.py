@@ -1,4 +1,4 @@
-"""A Lissajous figure: a sine along each axis, in whole-numbered ratios."""
+"""Lissajous figure: a sinusoid along each axis, with integer frequency ratios."""
 
 from dataclasses import dataclass
 from typing import Annotated, Literal

@@ -1,4 +1,4 @@
-"""The nearest point of a curve that has no closed form for it."""
+"""Nearest point on a curve by numerical search."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Configurations as they stand in the configs of joint trajectories: one value for all joints, or one for each."""
+"""Joint configurations in trajectory configs: one value for all joints, or one for each."""
 
 import math
 from typing import Annotated, Any

@@ -1,4 +1,4 @@
-"""Rest to rest along a straight line, by a polynomial of fifth order in time."""
+"""Quintic straight-line motion from rest to rest."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -1,4 +1,4 @@
-"""Curve through samples of a motion, between two of them a polynomial of fifth order."""
+"""Quintic curve through samples of position and two derivatives."""
 
 from math import comb
 

@@ -1,4 +1,4 @@
-"""Geometry of a straight segment."""
+"""Distance to a straight segment."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Desired motions convolved with impulses, by which flexible arms come to rest without ringing."""
+"""Input-shaped motions, convolved with impulses against residual vibration of flexible arms."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

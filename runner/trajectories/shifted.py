@@ -1,4 +1,4 @@
-"""A desired motion seen from elsewhere."""
+"""Desired motion with a constant position offset."""
 
 from dataclasses import dataclass
 

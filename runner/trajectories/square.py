@@ -1,4 +1,4 @@
-"""A square, with a rest at each corner."""
+"""Square with a rest at each corner."""
 
 from dataclasses import dataclass
 from typing import Literal

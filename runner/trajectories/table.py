@@ -1,4 +1,4 @@
-"""Motions in data files, CSV or Parquet: read, and checked with the line of what is wrong."""
+"""Motion tables in CSV or Parquet files, with the line of every error."""
 
 import csv
 import math

@@ -1,4 +1,4 @@
-"""What every trajectory offers."""
+"""Trajectory protocol."""
 
 from typing import Protocol, runtime_checkable
 

@@ -1,4 +1,4 @@
-"""Points and directions as they stand in the configs of trajectories."""
+"""Points and directions in trajectory configs."""
 
 from typing import Annotated
 

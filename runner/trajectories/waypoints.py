@@ -1,4 +1,4 @@
-"""Through way-points, from rest to rest, with the least jerk."""
+"""Minimum-jerk motion through way-points, from rest to rest."""
 
 from dataclasses import dataclass
 from itertools import pairwise

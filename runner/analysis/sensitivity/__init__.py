@@ -1,4 +1,4 @@
-"""How a run's metrics change with its parameters: exact derivatives, through the compiled closed loop."""
+"""Sensitivity of a run's metrics to its parameters: exact derivatives through the compiled closed loop."""
 
 from runner.analysis.sensitivity.analysis import Sensitivity, analyse
 from runner.analysis.sensitivity.differences import differences

@@ -1,4 +1,4 @@
-"""The derivatives of a run's metrics by its parameters."""
+"""Derivatives of a run's metrics by its parameters."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Derivatives of metrics by central differences of whole runs, to check exact ones against."""
+"""Central differences of metrics over whole runs, to check exact derivatives."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

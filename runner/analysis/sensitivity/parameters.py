@@ -1,4 +1,4 @@
-"""Parameters of a run: keys of its config, and masses and lengths of its links."""
+"""Parameters of a run: keys of its config, and masses, armature and lengths of its links."""
 
 import copy
 import json

@@ -1,6 +1,7 @@
 """Derivatives of metrics that are smooth functionals of a run's signals; see the families of runner/metrics.
 
-A largest value changes as the sample does in which it is reached, which is exact where that is one alone.
+The derivative of a maximum is the derivative of the sample at which it is reached. It is exact if there is only one
+such sample.
 """
 
 from collections.abc import Callable, Mapping

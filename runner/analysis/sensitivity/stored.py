@@ -1,4 +1,4 @@
-"""The derivatives of stored runs."""
+"""Derivatives of the metrics of stored runs."""
 
 from collections.abc import Sequence
 

@@ -1,1 +1,4 @@
-"""Arithmetic as text: parsed into a tree, never run as code, and set in Typst."""
+"""Arithmetic expressions in text: grammar, evaluator, parser, comparison and Typst typesetting.
+
+The parser returns a tree; expressions never run as Python code.
+"""

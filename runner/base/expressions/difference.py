@@ -1,4 +1,4 @@
-"""Where two expressions differ, symbol by symbol."""
+"""Differences between two expressions, symbol by symbol."""
 
 from collections import Counter
 from collections.abc import Sequence

@@ -1,10 +1,10 @@
-"""What a text of a file may compute: an expression in Python's grammar over plain values, each step with a limit.
+"""Sandboxed evaluator of expressions in files, with a limit on every step.
 
-An expression reaches the names that it is given and nothing else. It works with numbers, texts, truth values and None,
-with lists, tuples and mappings of these, and with values of listed classes, of which it reads the listed fields and
-calls the listed methods; of a mapping `x.key` is `x["key"]`. The functions that it is given it calls, or hands on to
-another function as a measure. No attribute is read by Python's own rule, so that what lies behind a value stays out of
-reach.
+An expression has Python's grammar and can use only the names in its scope. Values can be numbers, strings, booleans,
+None, and lists, tuples and mappings of these. Values can also be instances of listed classes. The expression can read
+the listed fields and call the listed methods of these classes. For a mapping, `x.key` means `x["key"]`. An expression
+can call the functions in its scope, or pass them to another function as a measure. The evaluator checks every
+attribute against the list, so other attributes of an object are not accessible.
 """
 
 import ast

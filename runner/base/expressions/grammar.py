@@ -1,4 +1,4 @@
-"""The grammar of expressions in files: Python's, of which loops, functions and the like are refused, with limits."""
+"""Expression grammar: Python without loops, functions, assignments and slices, with size limits."""
 
 import ast
 import re

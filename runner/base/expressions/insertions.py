@@ -1,4 +1,4 @@
-"""Expressions in double braces within a text, as `{{ mass / 2 }}`."""
+"""Expressions in double braces inside a string, such as `{{ mass / 2 }}`."""
 
 import re
 from collections.abc import Callable, Iterator

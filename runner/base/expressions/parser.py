@@ -1,7 +1,10 @@
-"""Arithmetic as people print it, read by the evaluator's grammar into a tree for those who draw and compare it.
+"""Parser of printed arithmetic into an expression tree.
 
-A power is written `^` or `**`, and a name may end in primes (`s2'`); what it stands for is up to the evaluation. A
-product always has its sign: `2 s1` and `c1(q2)` are refused, since a lost sign and a lost bracket look alike.
+The evaluator's grammar reads the arithmetic. The tree is for drawing and comparison.
+
+A power is written `^` or `**`, and a name may end in primes (`s2'`). The evaluation defines the meaning of a primed
+name. Every product needs its sign: the parser rejects `2 s1` and `c1(q2)`, because a lost sign and a lost bracket look
+alike.
 """
 
 import ast

@@ -1,4 +1,4 @@
-"""An expression shortened to its marked parts; dots stand for the rest."""
+"""Shortened expressions: the marked parts, with dots for the rest."""
 
 from collections.abc import Iterator, Sequence, Set
 

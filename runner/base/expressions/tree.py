@@ -1,4 +1,4 @@
-"""Arithmetic as a tree: what the audit parses and evaluates, and what reports draw."""
+"""Expression tree: numbers, names, calls, powers, products and sums."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass

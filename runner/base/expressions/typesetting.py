@@ -1,4 +1,4 @@
-"""Expressions as formulas in Typst mathematics: products without signs, short quotients as fractions."""
+"""Typst formulas of expressions: products without signs, short quotients as fractions."""
 
 import re
 from collections.abc import Sequence, Set

@@ -1,8 +1,8 @@
-"""What a command is at, and for how long still: told by whoever does the work, shown on a terminal.
+"""Progress and remaining time of a command, displayed on a terminal or in a notebook.
 
-There is one work in a process. Who does it says `begin(NAME)` of each stage, and `step()` of what is made, or gives a
-count that can be asked; `plan` says what is to come and what it costs. Whether any of it is seen is the matter of
-`shown`.
+A process has one `Work` object. A command calls `begin(NAME)` for each stage. It then calls `step()` as items finish,
+or passes a function that returns the count. `plan` lists the coming stages with their expected
+durations. `shown` displays the progress.
 """
 
 import contextlib

@@ -1,4 +1,4 @@
-"""A line at the foot of a terminal that says how far the work is."""
+"""Progress line at the bottom of a terminal."""
 
 import contextlib
 import os

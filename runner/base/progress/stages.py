@@ -1,4 +1,4 @@
-"""The stages that several rooms know by name, and what each is expected to take."""
+"""Progress stages common to several packages, with their expected durations."""
 
 from collections.abc import Collection
 

@@ -1,4 +1,4 @@
-"""How many ticks this process has simulated: counted beside the simulation, at no cost to a tick."""
+"""Counter of simulated ticks in this process, without overhead for each tick."""
 
 import threading
 from collections.abc import Callable, Iterator

@@ -1,4 +1,4 @@
-"""How far some work is and how long it will still take, from stages, what each costs, and a clock."""
+"""Progress estimate: remaining time from stages, expected durations and elapsed time."""
 
 import time
 from collections.abc import Callable, Mapping

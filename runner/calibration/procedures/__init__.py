@@ -1,4 +1,4 @@
-"""Calibrations as they are carried out on an arm, judged by the truth that simulation has."""
+"""Calibration procedures on a simulated arm, with known true values."""
 
 from runner.calibration.procedures.bench import Bench
 from runner.calibration.procedures.procedure import Outcome, Procedure

@@ -1,4 +1,4 @@
-"""An arm with tool and sensor, and the truth about them."""
+"""Calibration bench: an arm with tool and sensor, and their true values."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Tool and sensor by weighing the tool in several orientations (Meca500 report, section 4)."""
+"""Gravity calibration procedure: tool weighing in several orientations (Meca500 report, section 4)."""
 
 import itertools
 from collections.abc import Mapping

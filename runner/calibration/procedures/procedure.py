@@ -1,4 +1,4 @@
-"""What every kind of calibration offers: to be repeated, and to be judged by the truth."""
+"""Calibration procedure protocol: repetitions, estimates and errors."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

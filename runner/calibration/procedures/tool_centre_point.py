@@ -1,4 +1,4 @@
-"""The tool centre point by touching one point in several poses (Meca500 report, section 2)."""
+"""Tool centre point procedure: one point touched in several poses (Meca500 report, section 2)."""
 
 from collections.abc import Mapping
 from typing import ClassVar, Literal

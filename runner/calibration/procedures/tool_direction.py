@@ -1,4 +1,4 @@
-"""The direction of a tool by the tips of a long and a short one (Meca500 report, section 3)."""
+"""Tool direction procedure with a long and a short tool (Meca500 report, section 3)."""
 
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal

@@ -1,4 +1,4 @@
-"""Postures in which a tool's tip touches one point."""
+"""Arm configurations with the tool tip on one point."""
 
 from typing import Annotated
 

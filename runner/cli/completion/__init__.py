@@ -1,7 +1,7 @@
-"""What TAB completes: the words that may stand at the end of a half typed command line.
+"""Shell completion: candidates for the last word of a partly typed command line.
 
-The shell functions of Hydra's `-sc install=bash` ask by `runner -sc query=bash`, with the line in COMP_LINE. Whatever
-is typed, nothing is printed but words; what needs no config is answered without importing Hydra.
+The shell functions of Hydra's `-sc install=bash` call `runner -sc query=bash`, with the line in COMP_LINE. For any
+input, only candidate words are printed. Words that need no config are completed without importing Hydra.
 """
 
 from runner.cli.completion.answer import answer, is_asked

@@ -1,4 +1,4 @@
-"""The door of completion: the shell's question, and the words that answer it."""
+"""Entry point of completion: the query of the shell, and the printed words."""
 
 import contextlib
 import io

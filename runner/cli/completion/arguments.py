@@ -1,4 +1,4 @@
-"""What stands after a command: its options, their values and its positional arguments, as its own parser has them."""
+"""Completion of a command's options, option values and positional arguments, from its own parser."""
 
 import argparse
 import importlib

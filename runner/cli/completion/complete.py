@@ -1,4 +1,4 @@
-"""From a half typed line to the words that may stand in its last place."""
+"""Completion of the last word of a partly typed command line."""
 
 import re
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The keys of the config that a line composes so far; Hydra composes it, once for each line."""
+"""Completion of config keys; Hydra composes the config once for each line."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

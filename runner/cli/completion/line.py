@@ -1,4 +1,4 @@
-"""A half typed command line: its words, and the one that is typed."""
+"""Partly typed command line, split into complete words and the word under the cursor."""
 
 import os
 import shlex

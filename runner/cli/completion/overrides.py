@@ -1,4 +1,4 @@
-"""Overrides as words: options of groups from the names of files, keys from the config that Hydra composes."""
+"""Completion of overrides: group options from file names, keys from the config that Hydra composes."""
 
 import re
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Folders and files as words: what is stored in ./outputs, and paths."""
+"""Completion of paths and of stored folders in ./outputs."""
 
 import os
 from collections.abc import Iterator, Sequence

@@ -1,1 +1,1 @@
-"""Composing a config: Hydra, overrides, units of input and error messages."""
+"""Config composition: Hydra, overrides, units of input and error messages."""

@@ -1,4 +1,4 @@
-"""Composing a config from the groups in conf/ and a list of overrides, with Hydra."""
+"""Config composition with Hydra, from the groups in conf/ and a list of overrides."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

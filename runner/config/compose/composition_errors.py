@@ -1,4 +1,4 @@
-"""Turning what Hydra, OmegaConf and YAML say of a bad config into what a user can mend."""
+"""Messages for errors of Hydra, OmegaConf and YAML."""
 
 import re
 from collections.abc import Sequence

@@ -1,4 +1,7 @@
-"""The data file of a trajectory, whose content becomes part of the config, so that a stored run needs no file."""
+"""Data file of a trajectory, copied into the config.
+
+A stored run does not need the file.
+"""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

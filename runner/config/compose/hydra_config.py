@@ -1,7 +1,7 @@
-"""Configs as Hydra composes them; what the chosen options give is composed once for the files as they are.
+"""Configs composed by Hydra, with a cache of the config for each choice of options.
 
-Options decide which files make up a config, and Hydra takes some 100 ms for them. Overrides of values are put into a
-copy, in some 1 ms. Everything else, and every line that fails, is left to Hydra as a whole.
+The chosen options determine the files of a config, and Hydra takes about 100 ms for them. Value overrides are put into
+a copy in about 1 ms. Hydra composes everything else, and every line that fails, as a whole.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""A composed config with its quantities, such as 20ms, as plain numbers in SI units."""
+"""Config quantities, such as 20ms, as plain numbers in SI units."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""In which unit a dotted key counts, as the model of its group says."""
+"""Unit of a dotted key, from the model of its group."""
 
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What is wrong with the form of an override, in words; Hydra's parser would answer with the names of its tokens."""
+"""Syntax errors of overrides, with messages that do not use the token names of Hydra's parser."""
 
 import re
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""What config keys mean and in which unit they count, as the docstrings of their models say."""
+"""Meanings and units of config keys, from the docstrings of their models."""
 
 import inspect
 import re

@@ -1,4 +1,4 @@
-"""Turning what pydantic says of a bad config into what a user can correct."""
+"""Messages for validation errors of pydantic."""
 
 import re
 from collections.abc import Iterator

@@ -1,6 +1,6 @@
-"""No config file runs code, reads the environment, lies elsewhere or grows without end: it may be a stranger's.
+"""Security checks of untrusted config files: code, environment variables, paths and size.
 
-Hydra would make whatever some of its own keys name, and import the modules that its search path names.
+Hydra would instantiate the objects that some of its keys name, and import the modules on its search path.
 """
 
 import contextlib

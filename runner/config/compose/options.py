@@ -1,4 +1,4 @@
-"""What stands in the config groups: names and one-line descriptions, read from the files alone."""
+"""Options of the config groups: names and one-line descriptions, read from the files."""
 
 from collections.abc import Sequence
 from pathlib import Path

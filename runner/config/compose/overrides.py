@@ -1,4 +1,4 @@
-"""Overrides as typed: checked before Hydra parses them, and made such that it composes unknown keys."""
+"""Overrides: checks before Hydra parses them, and a form in which Hydra composes unknown keys."""
 
 import re
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Gathering the problems that checks find, so that all of them are reported at once."""
+"""Collection of the problems that checks find, for one report."""
 
 from collections.abc import Callable, Sequence
 from typing import TypeVar, overload

@@ -1,4 +1,4 @@
-"""Giving each stage of a robot what its file leaves out; conf/robot_defaults.yaml gives it to a robot of one arm."""
+"""Defaults of conf/robot_defaults.yaml for each stage of a robot with several stages."""
 
 from functools import lru_cache
 from typing import Any

@@ -1,4 +1,4 @@
-"""Letting `controller.period.macro=0.03` change one stage where the group takes all of them from the robot."""
+"""Overrides of one stage, such as `controller.period.macro=0.03`, merged with the values of the other stages."""
 
 import re
 from collections.abc import Mapping, Sequence

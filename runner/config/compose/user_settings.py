@@ -1,7 +1,8 @@
-"""How and where runs are made: said by the command line and the user's settings, never by a file from outside.
+"""User settings: outputs folder, number of workers, and address of a Dask scheduler.
 
-The settings are `arm-control-runner/config.yaml` in XDG_CONFIG_HOME or ~/.config: KEYS, as a command line gives them.
-They change no result, so that a command means the same on another machine.
+The file is `arm-control-runner/config.yaml` in XDG_CONFIG_HOME or ~/.config. Its keys are KEYS, as on the command line.
+Only the command line and this file may set them; config files from outside may not. The settings change no result, so
+that a command has the same meaning on another machine.
 """
 
 import os

@@ -1,4 +1,4 @@
-"""Config folders: whose files lie in them; that of a work, whose experiments are found as experiment=NAME/..."""
+"""Config folders, including the folder of a study with its experiments as experiment=NAME/..."""
 
 from pathlib import Path
 

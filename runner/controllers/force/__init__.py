@@ -1,1 +1,1 @@
-"""Control laws for contact, and the readings of force that they use."""
+"""Force and contact controllers, force measurements and stability limits."""

@@ -1,4 +1,4 @@
-"""Admittance control: a position-controlled arm whose tool gives way as a mass on a damper and a spring would."""
+"""Admittance control of a position-controlled arm: mass, damper and spring at the tool."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""From wrenches to motion, as a mass on a damper and a spring would move (Meca500 report, section 5)."""
+"""Admittance filter from wrench to motion: mass, damper, spring (Meca500 report, section 5)."""
 
 from dataclasses import dataclass
 

@@ -1,6 +1,6 @@
-"""Against which wall a sampled admittance stays stable, with ideal joints, which go where they are told.
+"""Contact stability of sampled admittance control with ideal joints.
 
-Behind joint servos the arm's masses and the servos' springs decide with it; see runner/plants/servo_contact.py.
+With joint servos, the arm's mass and the servo stiffness also matter; see runner/plants/servo_contact.py.
 """
 
 import numpy as np

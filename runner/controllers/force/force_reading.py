@@ -1,4 +1,4 @@
-"""What the world does to the tip, as a torque law reads it: at the wrist, or from torque sensors in the joints."""
+"""External force on the tip from a wrist sensor or from joint torque sensors."""
 
 from typing import Literal, Protocol
 

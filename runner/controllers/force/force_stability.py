@@ -1,4 +1,4 @@
-"""How stiff a wall a sampled force law stands, by the map of one period."""
+"""Stability limits of sampled force control in contact with a wall."""
 
 from typing import Protocol
 

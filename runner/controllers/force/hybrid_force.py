@@ -1,4 +1,4 @@
-"""Hybrid control: the tip pushes on a wall with a force, and moves along it."""
+"""Hybrid force/motion control: force normal to a wall, motion along it."""
 
 from typing import Annotated, Literal
 

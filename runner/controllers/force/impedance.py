@@ -1,4 +1,4 @@
-"""Impedance control: the tip yields to the world as its own mass on a spring and a damper, without a force sensor."""
+"""Impedance control without a force sensor: the tip's own mass on a spring and a damper."""
 
 from typing import Annotated, Literal
 

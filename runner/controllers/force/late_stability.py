@@ -1,4 +1,4 @@
-"""How late torques may come, and how often not at all, by the maps of one period."""
+"""Stability limits for delayed and missed torque commands."""
 
 import numpy as np
 from scipy.optimize import brentq

@@ -1,4 +1,4 @@
-"""The tip of an arm, or of a stage on its moving base, under an acceleration and a force that a law asks for."""
+"""Joint torques for a tip acceleration and force, of a whole arm or of a mounted stage."""
 
 from typing import Literal, NamedTuple
 

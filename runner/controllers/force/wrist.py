@@ -1,4 +1,4 @@
-"""From the wrist sensor's reading to what the world does to the tool."""
+"""External wrench on the tool from the wrist sensor."""
 
 from typing import Literal
 

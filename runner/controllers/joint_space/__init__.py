@@ -1,1 +1,1 @@
-"""Control laws in joint space."""
+"""Joint-space controllers: PD, PID, computed torque, passivity-based, adaptive, sliding mode, learning."""

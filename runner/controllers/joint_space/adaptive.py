@@ -1,4 +1,4 @@
-"""Passivity-based control of the joints that adapts to the inertias of the bodies, and to friction."""
+"""Adaptive passivity-based joint control, with adaptation to body inertias and friction."""
 
 from typing import Literal, NamedTuple
 

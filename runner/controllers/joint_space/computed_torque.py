@@ -1,4 +1,4 @@
-"""Computed-torque control: joints follow a joint motion that is resolved from the tip's."""
+"""Computed-torque control of the joints."""
 
 from typing import Literal, NamedTuple
 

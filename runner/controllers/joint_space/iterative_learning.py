@@ -1,4 +1,4 @@
-"""Iterative learning over the periods of a motion that repeats, around computed torque."""
+"""Iterative learning control of periodic motions, around computed torque."""
 
 from copy import copy
 from typing import Annotated, Literal

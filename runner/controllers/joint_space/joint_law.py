@@ -1,4 +1,4 @@
-"""Laws in joint space: what their configs, their memories and their modules have in common."""
+"""Base classes and builder of joint-space control laws."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""The joint motion that laws in joint space follow: that of the reference, or one resolved from the tip's."""
+"""Desired joint motion of joint-space controllers, direct or resolved from the tip motion."""
 
 from typing import Any, NamedTuple, Protocol
 

@@ -1,4 +1,4 @@
-"""Proportional and derivative control of each joint, with gravity."""
+"""PD control of each joint with gravity compensation."""
 
 from typing import Literal, NamedTuple
 

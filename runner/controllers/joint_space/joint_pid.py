@@ -1,4 +1,4 @@
-"""Proportional, integral and derivative control of each joint, with gravity."""
+"""PID control of each joint with gravity compensation."""
 
 from typing import Literal, NamedTuple
 

@@ -1,4 +1,4 @@
-"""Proportional and derivative control of the motors of flexible joints, with gravity where they are to go."""
+"""PD control of flexible-joint motors, with gravity compensation at the desired configuration."""
 
 from typing import Literal, NamedTuple
 

@@ -1,4 +1,4 @@
-"""Passivity-based control of the joints, without adaptation."""
+"""Passivity-based joint control without adaptation."""
 
 from typing import Literal, NamedTuple
 

@@ -1,4 +1,4 @@
-"""Sliding-mode control of the joints, with a boundary layer."""
+"""Sliding-mode joint control with a boundary layer."""
 
 from typing import Literal, NamedTuple
 

@@ -1,1 +1,1 @@
-"""Controllers that command joint positions from the motion of the tip."""
+"""Kinematic controllers: joint position commands from the tip motion."""

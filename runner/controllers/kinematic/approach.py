@@ -1,4 +1,4 @@
-"""A reference that does not jump where the desired tip does."""
+"""Continuous reference for a desired tip position with jumps."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Inverse kinematics by integrating joint velocities, with the tip's error fed back."""
+"""Closed-loop inverse kinematics: integrated joint velocities with tip error feedback."""
 
 from typing import Literal
 

@@ -1,4 +1,4 @@
-"""A tip led from pose to pose by joints that stop smoothly at their limits."""
+"""Tip pose tracking within joint position and speed limits."""
 
 import numpy as np
 import pinocchio as pin

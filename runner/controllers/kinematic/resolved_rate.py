@@ -1,4 +1,4 @@
-"""Joint velocities for a tip velocity: weighted, damped, within bounds, with a null-space motion beside."""
+"""Resolved-rate control: weighted, damped and bounded joint velocities with a null-space motion."""
 
 import numpy as np
 from scipy.linalg.lapack import dgesv, dpotrf

@@ -1,1 +1,1 @@
-"""Control laws of an arm mounted on another arm."""
+"""Macro/Mini controllers: control of an arm mounted on another arm."""

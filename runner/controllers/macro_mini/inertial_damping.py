@@ -1,4 +1,4 @@
-"""A riding stage whose tip swings against the vibration of what carries it."""
+"""Inertial damping: tip motion of a mounted stage against the vibration of its base stage."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

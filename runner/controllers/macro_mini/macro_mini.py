@@ -1,4 +1,4 @@
-"""Control of riding arms from each arm's own dynamics (thesis methods 2 and 3): one loop for each stage."""
+"""Macro/Mini control with a loop for each stage, from its own dynamics (thesis methods 2 and 3)."""
 
 from collections.abc import Mapping
 from typing import Literal

@@ -1,4 +1,4 @@
-"""The block graph of stage-wise control of a Mini riding on a Macro (thesis figures 5.4, 5.5, 5.7 and 5.9)."""
+"""Block diagram of stage-wise Macro/Mini control (thesis figures 5.4, 5.5, 5.7 and 5.9)."""
 
 from dataclasses import dataclass, field
 

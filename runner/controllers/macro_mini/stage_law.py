@@ -1,4 +1,4 @@
-"""What a stage can be told to do from its own model alone."""
+"""Control law of one stage from its own model: tip motion or a held configuration."""
 
 from typing import Any, NamedTuple
 

@@ -1,4 +1,4 @@
-"""Control loops of riding arms: each stage's own law, and the target that the coupling gives it."""
+"""Control loops of mounted arms: control law and coupled target of each stage."""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple, TypeVar

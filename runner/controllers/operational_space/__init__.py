@@ -1,1 +1,1 @@
-"""Control laws in operational space, for a whole arm."""
+"""Operational-space controllers of a whole arm."""

@@ -1,4 +1,4 @@
-"""What a redundant arm does with the joint motion that its tip does not feel."""
+"""Null-space tasks of a redundant arm: configuration, joint limits or manipulability."""
 
 from typing import Literal
 

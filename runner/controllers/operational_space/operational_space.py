@@ -1,4 +1,4 @@
-"""Operational-space control of the tip's position or pose."""
+"""Operational-space control of the tip position or pose."""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple

@@ -1,4 +1,4 @@
-"""The block graph of operational-space control (thesis figures 3.4 and 3.7)."""
+"""Block diagram of operational-space control (thesis figures 3.4 and 3.7)."""
 
 from runner.controllers.graph import ControlGraph, Edge, Node
 

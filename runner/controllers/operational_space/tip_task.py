@@ -1,4 +1,4 @@
-"""What the tip is to do: its position led, or its pose; the same for every law that asks it for an acceleration."""
+"""Tip task of operational-space control: commanded acceleration for a position or a pose."""
 
 from typing import Literal, NamedTuple
 

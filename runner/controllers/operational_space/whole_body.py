@@ -1,4 +1,4 @@
-"""Operational-space control of a redundant arm as a whole, with a dynamically consistent null space."""
+"""Whole-body operational-space control of a redundant arm, with a dynamically consistent null space."""
 
 from collections.abc import Sequence
 from typing import Literal, NamedTuple

@@ -1,4 +1,4 @@
-"""The block graph of whole-body control of a redundant arm (thesis figure 5.2)."""
+"""Block diagram of whole-body control of a redundant arm (thesis figure 5.2)."""
 
 from runner.controllers.graph import ControlGraph, Edge, Node
 from runner.controllers.operational_space.operational_space_graph import damping

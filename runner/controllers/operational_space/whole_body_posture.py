@@ -1,4 +1,4 @@
-"""What a redundant arm is asked in the null space of its tip's task: to hold a posture."""
+"""Posture task in the null space of the tip task, for a redundant arm."""
 
 from typing import NamedTuple, Protocol
 

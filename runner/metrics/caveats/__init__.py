@@ -1,4 +1,4 @@
-"""Caveats: rules that look at a finished run and say why its result may not be what it seems."""
+"""Caveats: rules that check a finished run for misleading results."""
 
 from runner.metrics.caveats.caveat import Caveat, Found
 from runner.metrics.caveats.plant_error import PlantStep

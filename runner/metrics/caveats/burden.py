@@ -1,4 +1,4 @@
-"""Rules on what the arm carries."""
+"""Caveat rules on the load of the arm: overload, and payload without torque limits."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What a rule found."""
+"""Caveat of a run, and the result of all rules."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass

@@ -1,4 +1,4 @@
-"""Rules on contact with the world."""
+"""Caveat rule on unstable contact with the environment."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Rule on a plant that nobody chose."""
+"""Caveat rule on a plant that replaces the missing default plant."""
 
 from runner.metrics.caveats.rule import SettingRule
 from runner.metrics.caveats.setting import Setting

@@ -1,4 +1,4 @@
-"""A rule on what the files of the robot hold, and the run has not."""
+"""Caveat rule on contents of the robot's files that are missing in the run."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Rule on gains that the control period does not bear."""
+"""Caveat rule on gains that are too high for the control period."""
 
 from runner.metrics.caveats.rule import SettingRule
 from runner.metrics.caveats.setting import Setting

@@ -1,4 +1,4 @@
-"""Rule on runs that end before their law has done its work."""
+"""Caveat rule on runs that are too short for the time constants of their controller."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Rules on what controllers are told, and believe, of the arm."""
+"""Caveat rules on measurements and the nominal model: exact velocities, and fixed model error."""
 
 from runner.metrics.caveats.rule import SettingRule
 from runner.metrics.caveats.setting import Setting

@@ -1,4 +1,4 @@
-"""Rules on where the arm went."""
+"""Caveat rules on the motion: large tracking error, and joints beyond their position limits."""
 
 import numpy as np
 

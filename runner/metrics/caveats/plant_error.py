@@ -1,4 +1,4 @@
-"""Rule on the plant's own error: what its integration step is worth in a run that was held against Runge-Kutta."""
+"""Caveat rule on the integration error of a plant, from a comparison with Runge-Kutta."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""All rules, in the order in which they are told, and a digest of them."""
+"""List of all caveat rules in the order of output, and a digest of their source."""
 
 import hashlib
 from collections.abc import Mapping

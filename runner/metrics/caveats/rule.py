@@ -1,4 +1,4 @@
-"""What a rule is: what it measures, and what it says."""
+"""Types of caveat rules: rules on signals and rules on settings."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

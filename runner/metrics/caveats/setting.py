@@ -1,4 +1,4 @@
-"""What rules need to know of a run beside its signals."""
+"""Setting of a run for the caveat rules: robot, limits, sensors, controllers and model error."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What rules look at in a run, or in many."""
+"""Signals of one or several runs for the caveat rules."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,7 @@
-"""How long the parts of control laws take to do their work; imported where rigid bodies are to be had."""
+"""Time constants of the parts of control laws.
+
+Import this module only if rigid-body models are available.
+"""
 
 import math
 from functools import singledispatch

@@ -1,4 +1,4 @@
-"""Whether stored caveats were found by other rules, or with other thresholds, than those of today."""
+"""Differences between the rules and thresholds of stored caveats and the current ones."""
 
 from collections.abc import Mapping
 from functools import cache

@@ -1,4 +1,4 @@
-"""Rules on torques at their limits."""
+"""Caveat rules on torques at their limits: saturation and chatter."""
 
 import numpy as np
 

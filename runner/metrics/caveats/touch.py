@@ -1,4 +1,7 @@
-"""Contact with a wall as it is at the start of a run; imported where rigid bodies are to be had."""
+"""Contact with a wall at the start of a run.
+
+Import this module only if rigid-body models are available.
+"""
 
 import math
 

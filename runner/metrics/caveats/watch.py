@@ -1,4 +1,4 @@
-"""The rules at work: every repetition is looked at, and the worst is told."""
+"""Evaluation of the caveat rules in every repetition, with the worst value of each rule."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

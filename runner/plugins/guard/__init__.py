@@ -1,7 +1,8 @@
-"""Watching the user's parts: they can change nothing that they are handed, and what goes wrong is told with its place.
+"""Runtime checks of plug-ins: read-only inputs, validated results, and errors with file and line.
 
-A part of the user's gets copies that cannot be written to, and its answers are checked and copied. What it raises ends
-the run as a failure that names file and line. Parts of this package are not watched.
+A plug-in receives read-only copies, and its results are checked and copied. An exception in a plug-in ends the run as
+a failure that names file and line. Except for write attempts, a fault in a metric plug-in only leaves its metrics
+without values. Parts of this package are not checked.
 """
 
 from runner.plugins.guard.belief import watch_belief

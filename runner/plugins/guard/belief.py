@@ -1,4 +1,4 @@
-"""Watching what a mismatch of the user's makes of a robot."""
+"""Runtime check of the robot model from a mismatch plug-in."""
 
 from typing import TYPE_CHECKING, Any
 

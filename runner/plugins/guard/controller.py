@@ -1,4 +1,4 @@
-"""Watching controllers of the user's."""
+"""Runtime checks of controller plug-ins."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Watching environments of the user's."""
+"""Runtime checks of environment plug-ins."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""What is wrong with an answer of the user's part, and where it comes from, in words."""
+"""Fault messages for results and exceptions of plug-ins, with their source location."""
 
 import inspect
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Watching metric families of the user's."""
+"""Runtime checks of metric plug-ins."""
 
 import copy
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""Watching plants of the user's."""
+"""Runtime checks of plant plug-ins."""
 
 from typing import Any
 

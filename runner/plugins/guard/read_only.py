@@ -1,4 +1,4 @@
-"""Copies that cannot be written to, for parts of the user's."""
+"""Read-only copies of arrays and dataclasses, as inputs of plug-ins."""
 
 from dataclasses import fields, is_dataclass, replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""Watching sensors of the user's."""
+"""Runtime checks of sensor plug-ins."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Watching trajectories of the user's."""
+"""Runtime checks of trajectory plug-ins."""
 
 from collections.abc import Iterator
 from typing import Any

@@ -1,1 +1,1 @@
-"""The report on the equations of the three sources."""
+"""Report on the audited equations of the studies."""

@@ -1,4 +1,4 @@
-"""The forms of a judged equation as a report shows them: what differs is marked, and long ones are cut to that."""
+"""Displayed forms of an audited equation, shortened, with differences marked."""
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 

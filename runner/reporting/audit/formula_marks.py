@@ -1,4 +1,4 @@
-"""Two formulas in Typst mathematics, in which what they do not share is marked."""
+"""Marked differences between two formulas in Typst mathematics."""
 
 import difflib
 import re

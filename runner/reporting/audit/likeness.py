@@ -1,4 +1,4 @@
-"""Which right element a wrong one is: an element that stands in another's place is told by its name."""
+"""Search for the correct element that a wrong element equals up to exchanged symbols."""
 
 from collections.abc import Iterable, Mapping
 

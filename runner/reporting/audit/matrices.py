@@ -1,4 +1,4 @@
-"""Elements of an equation that belong together, as the matrix or vector that they form."""
+"""Matrices and vectors from elements such as T_11 to T_44."""
 
 import re
 from collections.abc import Mapping

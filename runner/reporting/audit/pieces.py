@@ -1,4 +1,4 @@
-"""A text that cannot be read as an expression, in pieces: what is not in the text beside it is marked."""
+"""Marked differences between two strings that cannot be parsed as expressions."""
 
 import difflib
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""The audit as a report: the equations of each source, wrong ones first, and what a robot does that uses them."""
+"""Audit report: the equations of each source, wrong ones first, and their effect on a robot."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Drawings made from a robot's model or a controller's graph; each returns SVG text."""
+"""SVG drawings of a robot model or of a controller's graph."""
 
 from runner.reporting.charts.arm import arm_motion, top_view
 from runner.reporting.charts.block_diagram import block_diagram

@@ -1,4 +1,4 @@
-"""An arm in motion as one still picture, and the path of its tip seen from above."""
+"""Still pictures of an arm in motion, and the path of its tip seen from above."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""A controller's graph as a block diagram (thesis figures 3.4 and 3.7)."""
+"""Block diagram of a controller's graph (thesis figures 3.4 and 3.7)."""
 
 from dataclasses import dataclass
 from itertools import pairwise

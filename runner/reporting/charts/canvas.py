@@ -1,4 +1,4 @@
-"""What all drawings share: style, SVG output, and the view of a scene in three dimensions."""
+"""Drawing tools shared by all drawings: style, SVG output and a three-dimensional view."""
 
 import functools
 import io

@@ -1,4 +1,4 @@
-"""The steps of stage-wise control as a flow chart (thesis figure 5.6)."""
+"""Flow chart of the steps of stage-wise control (thesis figure 5.6)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

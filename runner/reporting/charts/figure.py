@@ -1,4 +1,4 @@
-"""What a figure shows, as plain data: curves on axes, and maps of coloured cells."""
+"""Figures as plain data: curves on axes, and maps of coloured cells."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

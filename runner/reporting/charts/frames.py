@@ -1,4 +1,4 @@
-"""The assignment of coordinate frames to an arm at home (thesis figures 3.1, 4.1 and 5.1)."""
+"""Coordinate frames of an arm at its home configuration (thesis figures 3.1, 4.1 and 5.1)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Heat maps in numbers: what their colours follow, how the scale is marked, which values are printed."""
+"""Colour scales of heat maps: range, marks and printed cell values."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Heat maps as a still, drawn by matplotlib at the size they have on paper."""
+"""Heat maps as stills, drawn by matplotlib at print size."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""An arm in motion as a drawing that moves, without script: for the first screen of a report."""
+"""Animated SVG of an arm in motion, without script, for the first screen of a report."""
 
 from collections.abc import Iterable
 

@@ -1,4 +1,4 @@
-"""Names at the places 0, 1, ... of an axis, whole: broken into lines or turned where they do not fit side by side."""
+"""Tick labels of a categorical axis: complete names, broken into lines or rotated to fit."""
 
 import math
 import re

@@ -1,7 +1,7 @@
-"""Colours of curves and links, for paper and for a dark screen, told apart without red or green cones, too.
+"""Colour palettes of curves and links for paper and dark screens, safe for colour-blind readers.
 
-Any two of a palette are 20 or more apart in CIELAB for readers who see all colours, for protanopes and for deuteranopes
-(simulated after Machado, Oliveira and Fernandes, 2009); a test measures it.
+Any two colours of a palette differ by 20 or more in CIELAB; a test measures it. The same is true for protanopia and
+deuteranopia (simulated after Machado, Oliveira and Fernandes, 2009).
 """
 
 LIGHT = ("#0d4d8f", "#bb3a29", "#218e68", "#bb7c00", "#8a6bd4", "#1897b3", "#7b063b", "#4e6270")

@@ -1,4 +1,4 @@
-"""The paper that a still is drawn for: how wide it is, how large its letters are; and how it is saved."""
+"""Page width, font size and file output of stills."""
 
 import io
 import warnings

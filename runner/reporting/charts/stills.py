@@ -1,4 +1,4 @@
-"""A figure of curves as a still, drawn by matplotlib at the size it has on paper."""
+"""Figures of curves as stills, drawn by matplotlib at print size."""
 
 import io
 import itertools

@@ -1,4 +1,4 @@
-"""Long curves made short without losing a peak, and shaded bands as polygons."""
+"""Reduction of long curves that keeps their peaks, and outlines of shaded bands."""
 
 import math
 from dataclasses import replace

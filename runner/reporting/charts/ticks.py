@@ -1,4 +1,4 @@
-"""Labels of the marks on an axis, all in one notation: 0.0005 and 0.001, or 5·10⁻⁴ and 10⁻³."""
+"""Tick labels of an axis in one notation: 0.0005 and 0.001, or 5·10⁻⁴ and 10⁻³."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Axes in the unit that spares powers of ten: mm for errors below 0.1 m, ms for times below 0.1 s."""
+"""Axes in readable units: mm for errors below 0.1 m, ms for times below 0.1 s."""
 
 import re
 from collections.abc import Sequence

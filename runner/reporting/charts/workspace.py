@@ -1,4 +1,4 @@
-"""The workspace of an arm (thesis figures 2.3 and 2.4), with what the thesis leaves out: where it is singular."""
+"""Workspace of an arm with its manipulability (thesis figures 2.3 and 2.4)."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Published numbers, and whether our runs bear them out."""
+"""Published claims: data, statements and verdicts."""
 
 from runner.reporting.claims.claim import FILE as CLAIMS
 from runner.reporting.claims.claim import Bound, Extent, PublishedClaim, load_claims, works_with_claims

@@ -1,4 +1,4 @@
-"""The published numbers as data."""
+"""Published numbers as data, read from the claims file of a study."""
 
 from pathlib import Path
 from typing import Annotated, Literal, Self

@@ -1,4 +1,4 @@
-"""A published claim judged by simulated values, wherever these come from: a run's medians, or those of some seeds."""
+"""Verdict on a published claim from simulated values: medians of a run, or values of some seeds."""
 
 from collections.abc import Callable, Sequence
 

@@ -1,4 +1,4 @@
-"""What a source states in words and no number or path can judge, as data."""
+"""Published statements as data: qualitative claims that findings on many runs evaluate."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""From a printed and a simulated value to a verdict."""
+"""Verdict from a printed and a simulated value."""
 
 from collections.abc import Sequence
 from typing import Literal

@@ -1,1 +1,1 @@
-"""Fair comparisons of what is stored: levels of an axis of one sweep, and several runs or sweeps with each other."""
+"""Comparison of stored results: levels of a sweep axis, or several runs or sweeps."""

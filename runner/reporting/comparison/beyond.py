@@ -1,4 +1,4 @@
-"""What two sweeps, or two runs, differ in: the thing that is compared, and all else that could be the cause."""
+"""Config differences between two sweeps or runs: the compared values, and other possible causes."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

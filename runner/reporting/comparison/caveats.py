@@ -1,4 +1,4 @@
-"""The caveats of the sweeps that are compared."""
+"""Caveats of the compared sweeps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Which cells of two sweeps belong together: those with the same values of everything that either of them sweeps."""
+"""Matching of the cells of two sweeps by the values of all swept keys."""
 
 import contextlib
 from collections.abc import Mapping, Sequence

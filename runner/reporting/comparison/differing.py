@@ -1,4 +1,4 @@
-"""Tables of what differs between two sweeps."""
+"""Tables of the config and provenance differences between two sweeps."""
 
 from runner.base.quantities import label_with_unit
 from runner.config.compose.key_units import key_unit

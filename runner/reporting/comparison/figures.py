@@ -1,4 +1,4 @@
-"""Figures of two sweeps: the difference in each cell with its interval, or the medians of one against the other's."""
+"""Figures of two sweeps: differences with intervals, or scatter plots of medians."""
 
 from collections.abc import Mapping, Sequence
 

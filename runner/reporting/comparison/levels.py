@@ -1,4 +1,4 @@
-"""The levels of one axis of a sweep, compared within each combination of the levels of other axes."""
+"""Comparison of the levels of one sweep axis, within each combination of the other axes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

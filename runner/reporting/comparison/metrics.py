@@ -1,4 +1,4 @@
-"""Tables of every metric of two sweeps, over all cells and in those with the largest differences."""
+"""Metric tables of two sweeps: all cells, and the cells with the largest differences."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Cells that belong together pair by pair, and how the second of each pair differs from the first."""
+"""Paired comparison of matching cells on common random seeds."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

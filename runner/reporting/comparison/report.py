@@ -1,4 +1,4 @@
-"""The report on several sweeps: what differs between them, which cells match, and every metric in pairs."""
+"""Report on several sweeps: config differences, matched cells and paired metrics."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""One of several sweeps that are compared, as far as it is stored."""
+"""Stored part of one compared sweep; a run counts as a sweep of one cell."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

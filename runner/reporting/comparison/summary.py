@@ -1,4 +1,4 @@
-"""What is told of two sweeps before any number: how large they are, and which cells are compared."""
+"""Summary of a comparison: sizes of both sweeps, and matched and unmatched cells."""
 
 from collections.abc import Iterator, Mapping, Sequence
 

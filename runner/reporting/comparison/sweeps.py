@@ -1,4 +1,4 @@
-"""Two sweeps, compared cell by cell and repetition by repetition."""
+"""Comparison of two sweeps by cell and repetition."""
 
 import warnings
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What is said beside every comparison, so that nobody takes it for more than it is."""
+"""Notes on the limits of a comparison: noise draws, pooled cells."""
 
 from collections.abc import Iterable, Mapping
 from typing import Any

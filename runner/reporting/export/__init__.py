@@ -1,1 +1,1 @@
-"""What leaves for a paper: tables in Markdown and LaTeX, figures as files of their own."""
+"""Export for publications: tables in Markdown and LaTeX, figures as separate files."""

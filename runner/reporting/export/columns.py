@@ -1,4 +1,4 @@
-"""The numbers of a table for a paper: one unit for a column, and as many digits as an interval justifies."""
+"""Number format of table columns: one unit per column, digits from the confidence interval."""
 
 import math
 from collections.abc import Sequence

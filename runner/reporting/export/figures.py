@@ -1,4 +1,4 @@
-"""Each figure of a report as files of its own: SVG and PDF in the width of a column, and its points as CSV."""
+"""Figures of a report as separate files: SVG and PDF at column width, points as CSV."""
 
 import re
 import tempfile

@@ -1,4 +1,4 @@
-"""A table for a paper as LaTeX: rules by booktabs, numbers and units by siunitx."""
+"""LaTeX tables with booktabs and siunitx."""
 
 import re
 from collections.abc import Iterable

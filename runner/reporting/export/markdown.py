@@ -1,4 +1,4 @@
-"""A table for a paper as Markdown, as GitHub shows it."""
+"""Markdown tables in GitHub format."""
 
 import re
 

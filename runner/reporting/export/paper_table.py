@@ -1,4 +1,4 @@
-"""A table for a paper: rows, columns of medians with intervals, and what is to be said of them."""
+"""Tables for publications: rows, medians with intervals, and notes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The points of a figure as CSV, in the columns in which the HTML report saves them."""
+"""Points of a figure as CSV, in the columns of the HTML report's download."""
 
 import csv
 import io

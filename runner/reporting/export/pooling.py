@@ -1,4 +1,4 @@
-"""The cells of a sweep put together row by row for a table: what differs in the seed alone is one sample."""
+"""Pooling of sweep cells that differ only in the seed."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""A tidy selection of a sweep or run, in SI units: CSV or Parquet."""
+"""Tidy table of a sweep or run in SI units, as CSV or Parquet."""
 
 import io
 from collections.abc import Sequence

@@ -1,1 +1,1 @@
-"""The report that holds a recording of a real arm against a run."""
+"""Report that compares a recording of a real arm with a run."""

@@ -1,4 +1,4 @@
-"""Figures of a recording beside a run."""
+"""Figures that compare a recording with a run."""
 
 import numpy as np
 

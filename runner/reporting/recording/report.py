@@ -1,4 +1,4 @@
-"""The report on a recording beside a run: both signals, residuals, time offset, friction and metrics."""
+"""Report on a recording and a run: signals, residuals, time offset, friction and metrics."""
 
 import hashlib
 from pathlib import Path

@@ -1,1 +1,1 @@
-"""The report on a sweep, made from its stored runs alone."""
+"""Report on a sweep, from its stored runs."""

@@ -1,4 +1,4 @@
-"""What was swept: axes, what stood fixed, and how many runs failed."""
+"""Axes of a sweep, fixed values and number of failed runs."""
 
 import math
 

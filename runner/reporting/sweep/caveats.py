@@ -1,4 +1,4 @@
-"""Why the results of a sweep's cells may not be what they seem."""
+"""Caveats of the cells of a sweep."""
 
 from collections.abc import Mapping
 from typing import Any

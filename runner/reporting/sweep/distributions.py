@@ -1,4 +1,4 @@
-"""How the values are spread: shares of all runs by axis, and the cells in order."""
+"""Distributions of a metric: cumulative fractions of runs by axis, and sorted cells."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What the axes do: shares of the variation with permutation tests, and main effects."""
+"""Effects of the axes: fractions of the variance with permutation tests, and main effects."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The cells with the lowest and the highest median, and their motion."""
+"""Cells with the lowest and the highest median, and their motion."""
 
 from collections.abc import Sequence
 

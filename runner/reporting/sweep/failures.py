@@ -1,4 +1,4 @@
-"""The runs that failed: where on the axes, when and why."""
+"""Failed runs of a sweep: axis values, times and reasons."""
 
 import numpy as np
 from numpy.typing import NDArray

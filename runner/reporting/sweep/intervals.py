@@ -1,4 +1,4 @@
-"""Cells of a sweep over one or two axes, each with its confidence interval."""
+"""Medians with confidence intervals over one or two axes of a sweep."""
 
 from dataclasses import replace
 

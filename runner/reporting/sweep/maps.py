@@ -1,4 +1,4 @@
-"""Heat maps over two axes, and small multiples over more."""
+"""Heat maps over two axes, with small multiples for further axes."""
 
 from collections.abc import Sequence
 from dataclasses import replace

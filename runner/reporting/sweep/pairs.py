@@ -1,4 +1,4 @@
-"""Comparisons in pairs: the values of one axis, over all others and within each combination of their values."""
+"""Paired comparisons of the values of one axis, pooled and for each combination of the other axes."""
 
 from collections.abc import Sequence
 

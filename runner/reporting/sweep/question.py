@@ -1,4 +1,4 @@
-"""What a sweep asks first: how the values of one axis compare, over all else and at each value of another axis."""
+"""Main question of a sweep: comparison of one axis's values, pooled and for each value of a second axis."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

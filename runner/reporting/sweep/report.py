@@ -1,4 +1,4 @@
-"""The report on a sweep: the answers, axes, effects, maps, trade-off, distributions, failures, all runs."""
+"""Report on a sweep: answers, axes, effects, maps, trade-off, distributions, failures and runs."""
 
 import shlex
 from collections.abc import Sequence

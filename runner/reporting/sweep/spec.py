@@ -1,4 +1,4 @@
-"""The spec of a sweep over its axes: the probability of failing each bound, its interval, and where it tells little."""
+"""Spec of a sweep: failure probabilities of each bound over the axes, with intervals."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What a report on a sweep is about: its cells, the metrics that it compares, and their order."""
+"""Subject of a sweep report: cells, compared metrics and their order."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Lines that theory draws over a map."""
+"""Theoretical stability limit over a heat map: omega_n h = 1."""
 
 import numpy as np
 

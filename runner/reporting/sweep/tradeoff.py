@@ -1,4 +1,4 @@
-"""The Pareto front of two metrics: cells that no other cell beats in both."""
+"""Pareto front of two metrics over the cells of a sweep."""
 
 from collections.abc import Sequence
 

@@ -1,1 +1,1 @@
-"""The report on a tuning: history, Pareto front, keys, best trials."""
+"""Report on a tuning: history, Pareto front, keys and best trials."""

@@ -1,4 +1,4 @@
-"""The best trials: their values, their command and their motion."""
+"""Best trials of a tuning: values, commands and motions."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""The Pareto front of several objectives."""
+"""Pareto front of a tuning with several objectives."""
 
 from itertools import combinations
 

@@ -1,4 +1,4 @@
-"""How the objectives got better, trial by trial."""
+"""Convergence history of the objectives over the trials."""
 
 import numpy as np
 

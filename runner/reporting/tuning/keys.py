@@ -1,4 +1,4 @@
-"""What each key does to the objectives, and how much of it decides."""
+"""Objectives over each tuned key, and the importance of the keys."""
 
 import numpy as np
 

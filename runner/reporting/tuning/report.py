@@ -1,4 +1,4 @@
-"""The report on a tuning, made from its journal and its stored runs."""
+"""Report on a tuning, from its journal and its stored runs."""
 
 import os
 import shlex

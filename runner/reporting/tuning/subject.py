@@ -1,4 +1,4 @@
-"""What a report on a tuning is about: its trials in order, and which of them are good and best."""
+"""Subject of a tuning report: trials in order, successful trials and best trials."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

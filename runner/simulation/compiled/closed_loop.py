@@ -1,4 +1,4 @@
-"""Closed loops as compiled code: what loops ask in a tick, or whole runs, one alone or many together."""
+"""Compiled closed loops: commands of each tick, or whole runs, one or many at a time."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

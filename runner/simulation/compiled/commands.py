@@ -1,4 +1,4 @@
-"""What control loops ask of their joints in a tick, as code: measurement, law and torque limit."""
+"""Compiled commands of control loops in a tick: measurement, control law and torque limit."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass

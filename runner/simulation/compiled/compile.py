@@ -1,4 +1,4 @@
-"""What of a closed loop is compiled, as its config decides."""
+"""Choice of the compiled parts of a closed loop, from its config."""
 
 import sys
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Closed loops with the tangents of their signals: how a run changes with its numbers, several directions at once."""
+"""Compiled closed loops with tangents: derivatives of a run's signals by several parameters at once."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""A torque law over expressions."""
+"""Torque law over expressions."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple

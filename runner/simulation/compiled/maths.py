@@ -1,4 +1,4 @@
-"""The functions of control laws as expressions; see runner/symbolic/maths.py."""
+"""Functions of control laws as expressions; see runner/symbolic/maths.py."""
 
 from collections.abc import Callable
 from typing import Any, cast

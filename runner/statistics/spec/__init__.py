@@ -1,4 +1,4 @@
-"""How often the repetitions of a run keep the bounds of a spec."""
+"""Evaluation of a spec: the fraction of a run's repetitions within its bounds."""
 
 from runner.statistics.spec.kept import Kept, Spec, bounds_of, judge, read_spec
 

@@ -1,4 +1,7 @@
-"""What a result was judged by over time: what was set after the result was known is told, with its date."""
+"""History of bounds and claims, with the date on which each value was first set.
+
+`set_after` returns this date for a value that was set after the result was known.
+"""
 
 import time
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""How many repetitions of a run keep each bound of a spec, and all of them: worked out from values, as stored."""
+"""Number of a run's repetitions within each bound of a spec and within all bounds, from stored values."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Whether a share of repetitions shows that a bound is kept as often as it has to be."""
+"""Verdict on a bound, from the fraction of repetitions within it."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal

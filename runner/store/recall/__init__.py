@@ -1,6 +1,10 @@
-"""What a command line gave before, recalled without composing or checking its config again.
+"""Command cache: the stored run of a command line, found without composing or checking its config.
 
-Each answer is kept under a digest of all that it follows from: what is typed, the folder it is typed in, the content of
-every config file, URDF and mesh that can be read, the source of this package and what is installed. An answer that may
-follow from anything else is not kept.
+The key of an entry is a digest of everything that the result depends on:
+
+- the command line and the working folder;
+- the content of every config file, URDF and mesh that can be read;
+- the source of this package, and the installed packages.
+
+A result that may depend on anything else is not cached.
 """

@@ -1,4 +1,4 @@
-"""Answers kept in the user's cache folder, where compiled code is, each under the digest of what it follows from."""
+"""Entries of the command cache, in the user's cache folder with the compiled code, each under its digest."""
 
 import json
 from typing import Any

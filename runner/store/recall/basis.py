@@ -1,4 +1,4 @@
-"""A digest of all that composing and checking a config follow from."""
+"""Digest of everything that the composition and the checks of a config depend on."""
 
 import hashlib
 import os

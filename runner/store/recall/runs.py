@@ -1,4 +1,4 @@
-"""Which stored run a command line gave: found again without composing and checking its config."""
+"""Cache of the stored run of each command line."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Baselines: what a run's metrics are checked against."""
+"""Baselines: tolerance bands for the metrics of runs and sweeps."""
 
 from runner.store.references.learned import Learned, Move, cell_names, find_moves, learn, load_learned
 from runner.store.references.reference import Band, Finding, Reference, check_run, load_reference

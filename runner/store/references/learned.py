@@ -1,4 +1,4 @@
-"""The baseline of a whole sweep: each metric of each cell, with its spread over the seeds."""
+"""Baseline of a whole sweep: each metric of each cell, with its spread over the seeds."""
 
 import math
 from collections.abc import Iterator, Mapping

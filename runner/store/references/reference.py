@@ -1,4 +1,4 @@
-"""A baseline: a band for each metric, with the reason for its width."""
+"""Baseline of a run: a tolerance band for each metric, with the reason for its width."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

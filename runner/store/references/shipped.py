@@ -1,4 +1,4 @@
-"""The baselines that come with the package, one for each published experiment and preset."""
+"""Bundled baselines, one for each published experiment and preset."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING

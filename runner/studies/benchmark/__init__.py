@@ -1,1 +1,1 @@
-"""The laws of arm control against each other."""
+"""Benchmark study: comparison of arm controllers."""

@@ -1,4 +1,4 @@
-"""The chapter with a section for each arm: groups of laws under each condition, and every error."""
+"""Benchmark chapter by arm: groups of controllers under each condition, and all errors."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""The chapter with a section for each law: what it is told, its gains, where it stands, what a tick of it takes."""
+"""Benchmark chapter by controller: required model data, gains, rank and computing time."""
 
 from collections.abc import Mapping, Sequence
 

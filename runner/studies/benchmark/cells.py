@@ -1,4 +1,4 @@
-"""What the laws did on one arm under one condition: errors along every path, and which law is ahead of which."""
+"""Results on one arm under one condition: errors along every path, and significant leads."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What the chapter on the other engine calls: whether the laws of an arm stand in the same order on it."""
+"""Rank order and leads of the controllers on a second plant."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""What the chapters call: the answer as tables, maps and numbers over arms, laws and conditions."""
+"""Tables, maps and numbers of the benchmark over arms, controllers and conditions."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""What the chapter on other seeds calls: the leads of one half of the seeds against those of the other."""
+"""Replication of the benchmark's leads: one half of the seeds compared with the other."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""What would change the answer: later rounds, another speed, less tuning."""
+"""Sensitivity of the benchmark's result to later rounds, another speed and less tuning."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""What the chapter on tuning calls: tuned values that lie at the ends of their ranges."""
+"""Tuned values near the ends of their ranges."""
 
 import itertools
 from collections.abc import Mapping

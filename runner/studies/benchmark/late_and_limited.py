@@ -1,4 +1,4 @@
-"""What the chapter on delay and torque limits calls."""
+"""Effects of delay and torque limits in the benchmark."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""How far one law is ahead of another: by seeds, and by whichever tunings of the two."""
+"""Lead of one controller over another: by seeds, and by each pair of tunings."""
 
 import itertools
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What was made: the arms, laws and conditions of the runs, and what the laws did there, worked out once."""
+"""Cached benchmark results: arms, controllers and conditions of the runs."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""What the chapter on a motion that repeats calls: the error of its last period, told of it or not."""
+"""Tracking error in the last period of a repeated motion, compared with iterative learning."""
 
 from collections.abc import Mapping
 

@@ -1,1 +1,1 @@
-"""The report that holds three physics engines against each other."""
+"""Engines study: comparison of three physics engines."""

@@ -1,4 +1,4 @@
-"""How far plants agree on a controlled motion."""
+"""Agreement of the plants on a controlled motion."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""An impact whose closed form is known, and a tool that is led into walls, on every plant."""
+"""Impact compared with its closed form, and contact of a tool with walls, on every plant."""
 
 import math
 from collections.abc import Callable, Mapping

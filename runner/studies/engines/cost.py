@@ -1,4 +1,4 @@
-"""What a plant's accuracy costs in time, from the clocks of stored runs."""
+"""Computing time of a plant relative to simulated time, from the timing of stored runs."""
 
 from runner.store import Run
 

@@ -1,4 +1,4 @@
-"""What the chapters call: names of the arms, and numbers that are not rounded away."""
+"""Arm names and unrounded numbers for the chapters of the engines study."""
 
 from collections.abc import Callable
 

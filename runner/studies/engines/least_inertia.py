@@ -1,4 +1,4 @@
-"""What the inertia that MuJoCo asks for does to accelerations."""
+"""Effect of MuJoCo's minimum inertia on accelerations."""
 
 from runner.reporting.figures import model_of
 from runner.store import Run

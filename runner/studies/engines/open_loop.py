@@ -1,4 +1,4 @@
-"""How far plants are from a fine solution under held torques, and by which power of their step."""
+"""Integration error of the plants under constant torques, and its order in the step."""
 
 import math
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""The equations of motion of one arm by three code bases, at random states."""
+"""Equations of motion of one arm in three code bases, at random states."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""An arm in an engine beside the same arm in Pinocchio, at random states."""
+"""Comparison of an arm in an engine with the same arm in Pinocchio, at random states."""
 
 from dataclasses import dataclass
 

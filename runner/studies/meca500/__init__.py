@@ -1,1 +1,1 @@
-"""The report on the Meca500's kinematics and force control."""
+"""Meca500 study: kinematics, calibration and force control."""

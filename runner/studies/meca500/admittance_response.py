@@ -1,4 +1,4 @@
-"""How a mass on a damper and a spring answers, in closed form."""
+"""Closed-form step and frequency responses of a mass-spring-damper admittance."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""What a force through the tip turns."""
+"""Measured moment and commanded rotation under a force through the tip."""
 
 import numpy as np
 

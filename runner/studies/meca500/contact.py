@@ -1,4 +1,4 @@
-"""Forces at walls of known stiffness, felt and true."""
+"""Measured and true contact forces at walls of known stiffness."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What the chapters of the Meca500 report call: signals of runs that feel, their law, and errors of calibrations."""
+"""Signals, admittance laws and calibration errors for the chapters of the Meca500 study."""
 
 from collections.abc import Callable, Mapping
 from functools import wraps

@@ -1,4 +1,4 @@
-"""Sinusoidal loads: amplitude and phase of the answer against the analytic ones."""
+"""Frequency response to sinusoidal loads: amplitude and phase compared with the closed form."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Gravity compensation (section 4 of the report), right and as it is printed, judged by the true tool and sensor."""
+"""Gravity compensation (section 4 of the report), corrected and as printed, compared with true tool and sensor."""
 
 import numpy as np
 import pinocchio as pin

@@ -1,4 +1,4 @@
-"""Numbers of a tool that is led by a hand."""
+"""Distance, remaining position error and damping force of a tool under hand guiding."""
 
 import numpy as np
 

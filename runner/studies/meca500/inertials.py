@@ -1,4 +1,4 @@
-"""How well the arm's masses are known, and what follows for its torques."""
+"""Comparison of two sets of link masses, and the effect on gravity torques."""
 
 import xml.etree.ElementTree as ET
 from typing import Any

@@ -1,4 +1,4 @@
-"""The report's kinematics against our own: table, transform and Jacobians, element by element."""
+"""Printed kinematics compared with the model: D-H table, transform and Jacobians, by element."""
 
 import re
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""How close an arm comes to the limits of its joints and of its reach, and what its run says."""
+"""Margins of a run to joint limits and singularities, and its warnings."""
 
 from typing import Any
 

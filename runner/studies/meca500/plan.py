@@ -1,4 +1,4 @@
-"""Which runs and calibrations the Meca500 report needs: those of runs.yaml, and those whose overrides are computed."""
+"""Computed runs and calibrations of the Meca500 study, in addition to runs.yaml."""
 
 from collections.abc import Mapping
 from pathlib import Path

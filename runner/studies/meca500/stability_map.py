@@ -1,4 +1,4 @@
-"""Up to which wall a sampled admittance is stable: what its linear maps predict and what runs show."""
+"""Stability map of a sampled admittance over wall stiffness: linear prediction and simulated runs."""
 
 import json
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""What the report claims in words, judged by the findings of its chapters."""
+"""Verdicts on the report's statements, from the findings of the chapters."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""Steady pushes: the answer of the pushed axis against the analytic one."""
+"""Step response to constant forces, compared with the closed form."""
 
 from collections.abc import Callable
 from typing import Any

@@ -1,4 +1,4 @@
-"""The tool centre point by touching one point (section 2 of the report), judged by the true one."""
+"""Tool centre point calibration at one fixed point (section 2 of the report), compared with the true point."""
 
 import numpy as np
 import pinocchio as pin

@@ -1,4 +1,4 @@
-"""Tool direction and alignment (section 3 of the report), judged by the true direction."""
+"""Tool direction and alignment (section 3 of the report), compared with the true direction."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""The wrist's sensor: the plant's joint reaction against the tool's rigid-body balance, and a Mini40's noise."""
+"""Wrist sensor: joint reaction of the plant compared with the tool's rigid-body balance, and noise of a Mini40."""
 
 import numpy as np
 from scipy.linalg import solve_discrete_lyapunov

@@ -1,1 +1,1 @@
-"""The report on what the plants' accuracy costs, against a solution that is good to rounding."""
+"""Precision study: computing time and integration error of the plants."""

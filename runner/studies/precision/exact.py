@@ -1,4 +1,4 @@
-"""Motion under held torques, solved as well as double precision allows, in two ways that share no formula."""
+"""Reference solutions of motion under constant torques in double precision, by two independent methods."""
 
 import numpy as np
 import pinocchio as pin

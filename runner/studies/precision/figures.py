@@ -1,4 +1,4 @@
-"""What the chapters call: the figure, the tables, and the numbers on which their findings rest."""
+"""Figure, tables and numbers of the precision study."""
 
 from collections.abc import Mapping
 

@@ -1,6 +1,7 @@
-"""The solutions that the runs are held against, Runge-Kutta by Pinocchio, and what both ways of it take.
+"""Reference solutions of the runs, Runge-Kutta by Pinocchio, and computing times of both Runge-Kutta versions.
 
-No config asks for either; it is worked out once, and kept in a file beside the runs.
+No config selects the solutions or Runge-Kutta by Pinocchio. They are computed once and stored in a file next to the
+runs.
 """
 
 from collections.abc import Mapping

@@ -1,1 +1,1 @@
-"""The report that reproduces the Macro-Mini thesis, chapter by chapter."""
+"""Thesis study: reproduction of the Macro/Mini thesis by chapter."""

@@ -1,4 +1,4 @@
-"""How near to the base axis a path passes, when joint 1 is at its limit, and when a move diverges."""
+"""Distance of a path from the base axis, times at the limit of joint 1, and divergence."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""Parameters and workspaces of both arms, read from their models."""
+"""Parameters and workspaces of both arms, from their models."""
 
 from collections.abc import Mapping, Sequence
 

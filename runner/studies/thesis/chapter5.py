@@ -1,4 +1,4 @@
-"""The combined arm's laws as they ran, and its numbers beside those of the Macro alone."""
+"""Controllers of the combined arm as executed, and its metrics compared with those of the Macro."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""One figure of the thesis under both presets: a panel for each joint and axis, with the printed values drawn in."""
+"""Thesis figures under both presets: a panel for each joint and axis, with the printed values."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

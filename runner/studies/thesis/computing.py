@@ -1,4 +1,4 @@
-"""What the chapter on computing works out: limits of late and missing commands, and how long laws take."""
+"""Stability limits with delayed and missed commands, and computing times of controllers."""
 
 from collections.abc import Callable, Mapping
 

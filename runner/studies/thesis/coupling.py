@@ -1,6 +1,6 @@
-"""What remains of the coupling as the Mini's mass vanishes: the inertial force of its base, per mass.
+"""Residual coupling in the limit of a massless Mini: the inertial force of its base, per mass.
 
-Two runs of one Mini are compared, the coupled arm and the decoupled one, whose point masses are equal.
+Two runs of one Mini are compared, the coupled arm and the decoupled one, with equal point masses.
 """
 
 from collections.abc import Callable, Mapping

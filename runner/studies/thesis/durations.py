@@ -1,4 +1,4 @@
-"""Which duration of a motion a printed tracking error asks for."""
+"""Motion duration at which a printed tracking error is reached."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""What the dynamics of M, C and G take today, from the file that the reproduction keeps."""
+"""Computing time of M, C and G over the number of joints, from the stored measurement."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What the plant's step is worth in a figure's runs, and what became of those that Runge-Kutta takes another way."""
+"""Integration error in the runs of a figure, and runs that differ from Runge-Kutta."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

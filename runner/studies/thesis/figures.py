@@ -1,4 +1,4 @@
-"""What several chapters of the thesis call: the arms and laws that they draw, and numbers that more than one reads."""
+"""Drawings and numbers shared by several chapters of the thesis study."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence

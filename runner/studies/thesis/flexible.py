@@ -1,4 +1,4 @@
-"""What the chapter on a flexible Macro works out: modes, limits of stability, and damping from what rings down."""
+"""Flexible Macro: modes, stability limits and damping ratios from free vibration."""
 
 from collections.abc import Callable, Mapping
 from typing import Literal

@@ -1,4 +1,4 @@
-"""Stability maps of sampled laws on flexible joints: the spectral radius of the map of a period, differentiated."""
+"""Stability maps of sampled controllers on flexible joints: spectral radius of the linearized period map."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, cast

@@ -1,6 +1,7 @@
-"""How close the Mini is to a singular posture, the sag that keeps it from folding, and what repetitions then tell.
+"""Folding of the Mini: distance to a singular configuration, stabilizing sag, and scatter over repetitions.
 
-Folded, the Mini is chaotic: what a single run gives is decided by rounding, what all repetitions have in common is not.
+The folded Mini is chaotic: the result of a single run depends on rounding; the common result of all repetitions does
+not.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What the chapter on force works out: rise times, effective masses, the stiffest wall, impacts, sliding."""
+"""Force control: rise times, effective masses, stiffest stable wall, impacts and sliding friction."""
 
 from collections.abc import Callable, Mapping
 

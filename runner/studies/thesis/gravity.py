@@ -1,4 +1,4 @@
-"""The sag of a law without gravity term."""
+"""Steady-state sag of a controller without gravity compensation."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""How sure the verdicts are: tables, a figure and numbers of the claims judged by many seeds."""
+"""Robustness of the verdicts: tables, a figure and numbers of the claims over many seeds."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""A claim judged by many seeds: by all of them, by each alone, and by as many as the work's own run has."""
+"""Verdicts on a claim by all seeds, by each seed, and by groups as large as the run of the study."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The lag of a law without feedforward, 2 xi / omega_n times the quintic's largest velocity, and the sag beside it."""
+"""Lag of a controller without feedforward, 2 xi / omega_n times the quintic's peak velocity, and its sag."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""The gravity that the Macro's law leaves out, as an acceleration of its end point."""
+"""Uncompensated gravity of the Macro's controller, as an acceleration of its end point."""
 
 import numpy as np
 import pinocchio as pin

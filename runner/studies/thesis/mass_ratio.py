@@ -1,4 +1,4 @@
-"""What the chapter on the mass ratio works out: ratios, and the Minis beyond the one that breaks one-way control."""
+"""Mini/Macro mass ratios, and tip errors of Minis heavier than a given one."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""How long the rigid-body dynamics of chains of mounted arms take: a measurement by the clock, kept in a file."""
+"""Timing of rigid-body dynamics for chains of mounted arms, stored in a file."""
 
 import timeit
 from collections.abc import Callable

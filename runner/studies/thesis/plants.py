@@ -1,4 +1,4 @@
-"""How far a run on a plant is from the same one on the Runge-Kutta plant."""
+"""Distance of runs on other plants from the same run on the Runge-Kutta plant."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""What the answers to the thesis' questions need beyond metrics."""
+"""Values for the thesis questions that metrics do not give: effectiveness of the pair, encoder error bound."""
 
 from collections.abc import Mapping
 

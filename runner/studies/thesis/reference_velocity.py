@@ -1,4 +1,4 @@
-"""How fast the Mini's target moves, and the lag behind it of a Mini that is given a series of goals."""
+"""Speed of the Mini's target, and the lag of a Mini that receives a series of goals."""
 
 import numpy as np
 import pinocchio as pin

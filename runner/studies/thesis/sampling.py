@@ -1,4 +1,4 @@
-"""How much a deviation grows at a sample time."""
+"""Growth of a deviation at a sample time."""
 
 from collections.abc import Mapping
 

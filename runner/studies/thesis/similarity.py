@@ -1,4 +1,4 @@
-"""The Mini, which lives ten times faster, beside the Macro: its tick k is the Macro's tick k."""
+"""Comparison of the Mini with the ten times slower Macro at equal control steps."""
 
 from collections.abc import Callable
 

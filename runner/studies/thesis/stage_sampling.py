@@ -1,4 +1,4 @@
-"""How slowly each stage of the combined arm may be sampled: growth measured, against the closed forms."""
+"""Longest stable sample time of each stage of the combined arm: measured growth and closed form."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

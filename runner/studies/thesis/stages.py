@@ -1,4 +1,4 @@
-"""What the chapter on three stages works out: errors, masses and bandwidths stage by stage."""
+"""Three-stage arm: errors, effective masses and force bandwidths by stage."""
 
 from collections.abc import Callable, Mapping
 from itertools import pairwise

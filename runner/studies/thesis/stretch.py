@@ -1,4 +1,4 @@
-"""When two-way coupling loses the goal, and how fast the Macro sinks until then."""
+"""Loss of the goal under two-way coupling, and the sinking speed of the Macro before it."""
 
 import numpy as np
 

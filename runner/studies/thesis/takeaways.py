@@ -1,4 +1,4 @@
-"""What a compared figure shows, in sentences that follow the stored numbers."""
+"""Summary sentences of a compared figure, from stored numbers."""
 
 from collections.abc import Mapping, Sequence
 

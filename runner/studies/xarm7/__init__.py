@@ -1,1 +1,1 @@
-"""The report that reproduces the xArm7 path-planning report, and makes its second part work."""
+"""xArm7 study: reproduction of the path-planning report, with its second part corrected."""

@@ -1,4 +1,4 @@
-"""What the chapters call: numbers of a run that are no metrics."""
+"""Quantities of a run that are not metrics: joint margins, lag, saturation, sag and drift."""
 
 from collections.abc import Callable, Mapping, Sized
 from functools import partial

@@ -1,4 +1,4 @@
-"""The report's kinematics against the model: the tip's position, inverse kinematics and its branches."""
+"""Printed kinematics compared with the model: tip position, inverse kinematics and its branches."""
 
 from collections.abc import Mapping
 

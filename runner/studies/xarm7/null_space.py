@@ -1,4 +1,4 @@
-"""What joint motion that the tip does not feel does: to the tip, to the joints, to the arm's manipulability."""
+"""Effect of null-space motion on the tip, the joints and the manipulability of the arm."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""What a payload asks of the joints, and which they bear."""
+"""Payload capacity of the joints, from their effort limits."""
 
 from collections.abc import Mapping
 

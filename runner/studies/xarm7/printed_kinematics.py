@@ -1,4 +1,4 @@
-"""The xArm7 report's own formulas as its audited equations have them: P_e, and q1, q2 and q4 of its inverse."""
+"""Formulas of the xArm7 report from its audited equations: P_e, and q1, q2 and q4 of its inverse."""
 
 from collections.abc import Collection, Mapping
 from functools import cache

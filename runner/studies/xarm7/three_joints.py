@@ -1,4 +1,4 @@
-"""The line by three joints: a picture of it, and where the report's X may come from."""
+"""Line motion of the xArm7 with three joints: a picture, and quantities for the origin of the report's X."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""The report's second part as printed: its inverse, its Jacobian, and what they do to the motion."""
+"""Errors in the report's second part: inverse, Jacobian, and their effect on the motion."""
 
 from collections.abc import Mapping
 from contextlib import suppress

@@ -1,4 +1,4 @@
-"""Chapters of a report written as Markdown with expressions, read into the typed blocks of a Document."""
+"""Chapters of a report: Markdown with expressions, read into typed blocks of a Document."""
 
 from runner.study.prose.problem import ProseError
 from runner.study.prose.reader import read_chapter

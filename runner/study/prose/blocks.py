@@ -1,6 +1,6 @@
-"""What every chapter may call: values of stored runs, and the blocks that most chapters need.
+"""Functions for every chapter: values of stored runs, and common blocks.
 
-A function whose first argument is `runs` gets the work's runs filled in by what makes the chapter.
+If the first argument of a function is `runs`, the chapter reader inserts the runs of the study.
 """
 
 import math

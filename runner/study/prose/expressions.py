@@ -1,6 +1,6 @@
-"""Expressions in a chapter, `{{ ... }}`: their values are kept apart from the Markdown around them.
+"""Expressions in a chapter, `{{ ... }}`, with their values kept separate from the Markdown.
 
-Each value gives way to a placeholder before Markdown is read, so that nothing it holds can become markup, a block or
+A placeholder replaces each value before Markdown is parsed. A value can therefore never become markup, a block or
 another expression.
 """
 

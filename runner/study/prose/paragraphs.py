@@ -1,4 +1,4 @@
-"""Markdown between containers: headings, paragraphs and lists, as markdown-it reads them, to blocks."""
+"""Blocks from Markdown headings, paragraphs and lists, parsed by markdown-it."""
 
 import dataclasses
 from collections.abc import Iterator, Sequence

@@ -1,6 +1,6 @@
-"""Patterns of run names, such as "turns/{preset}/goal": which runs they stand for, and which levels each has.
+"""Patterns of run names, such as "turns/{preset}/goal", with their runs and levels.
 
-`{axis=a|b}` stands for these levels alone, in this order.
+`{axis=a|b}` matches only these levels, in this order.
 """
 
 import re

@@ -1,4 +1,4 @@
-"""Figures over the runs that a pattern stands for: curves over time, and numbers of runs against an axis."""
+"""Figures over the runs of a pattern: signals over time, numbers over an axis, heat maps."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

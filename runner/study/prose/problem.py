@@ -1,4 +1,4 @@
-"""What is wrong with a chapter, with the place."""
+"""Error in a chapter, with file and line."""
 
 from runner.base.errors import RunnerError
 

@@ -1,4 +1,4 @@
-"""A chapter's file to a Section: expressions first, then containers, then Markdown."""
+"""Reader of a chapter file: expressions, then containers, then Markdown."""
 
 import re
 from collections.abc import Iterator, Mapping

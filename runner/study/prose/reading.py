@@ -1,4 +1,4 @@
-"""Reads signals and numbers from stored runs, by name or by a function."""
+"""Signals and numbers of stored runs, by name or by a function."""
 
 from collections.abc import Callable, Mapping
 from typing import Any

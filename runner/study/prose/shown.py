@@ -1,4 +1,4 @@
-"""How a value stands in a sentence."""
+"""Format of values in sentences."""
 
 import re
 from typing import Any

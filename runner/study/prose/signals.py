@@ -1,4 +1,4 @@
-"""What a chapter may draw of a run: signals over time, and numbers of one run or two."""
+"""Signals over time, and numbers of one or two runs, for chapters."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any

@@ -1,4 +1,4 @@
-"""Tables over the runs that a pattern stands for."""
+"""Tables over the runs of a pattern."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Tries the conditions of a chapter both ways: each must fail for some change of the values that it names."""
+"""Condition tests of a chapter: each condition must fail for some change of its values."""
 
 import dataclasses
 from collections.abc import Callable, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""Numbers that are typed in the words of a finding, which go stale when the runs change."""
+"""Literal numbers in findings, which become outdated if the runs change."""
 
 import re
 from collections.abc import Iterable, Iterator, Set

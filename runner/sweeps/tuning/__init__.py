@@ -1,1 +1,1 @@
-"""Tuning: numeric keys of a config chosen, trial by trial, so that metrics get better."""
+"""Tuning: optimization of numeric config keys, trial by trial, for one or more metrics."""

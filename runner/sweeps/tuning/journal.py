@@ -1,4 +1,4 @@
-"""The trials of a tuning as Optuna's journal: a sealed line of JSON for each trial that ended, in order."""
+"""Journal of a tuning in Optuna's format: a sealed line of JSON for each finished trial, in order."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""A numeric key that is tuned, and the range that it is tuned in."""
+"""Tuned key: a numeric config key and its range."""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a tuning makes better: a metric, as small or as large as possible."""
+"""Objective of a tuning: a metric to minimize or maximize."""
 
 import math
 from dataclasses import dataclass

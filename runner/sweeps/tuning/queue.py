@@ -1,4 +1,4 @@
-"""The trials of a tuning, handed out to the engine of sweeps as they are chosen."""
+"""Queue of the trials of a tuning, chosen during execution."""
 
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence

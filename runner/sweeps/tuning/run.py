@@ -1,4 +1,4 @@
-"""A whole tuning: from its command line to its stored trials."""
+"""Execution of a whole tuning, from its command line to its stored trials."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What to try next: Optuna's Sobol sequence, then its tree-structured Parzen estimator, given what came before."""
+"""Sampler of a tuning: Optuna's Sobol sequence, then its tree-structured Parzen estimator."""
 
 import warnings
 from collections.abc import Mapping, Sequence

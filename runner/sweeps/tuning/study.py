@@ -1,4 +1,4 @@
-"""A tuning: what is tuned, towards what, and where it is kept."""
+"""Definition of a tuning (keys, objectives and folder), and stored tunings."""
 
 import hashlib
 import json

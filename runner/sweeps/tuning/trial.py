@@ -1,4 +1,4 @@
-"""A trial that has ended, and which trials are best."""
+"""Finished trial of a tuning, and the best trials."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

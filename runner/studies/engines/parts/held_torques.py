@@ -1,4 +1,4 @@
-"""Torques that are held whatever the arm does: open loop, to hold plants against each other."""
+"""Constant joint torques without feedback, for comparisons of plants in open loop."""
 
 from typing import Literal
 

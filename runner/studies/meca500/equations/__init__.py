@@ -1,1 +1,1 @@
-"""The printed equations of this work, what they claim to equal, and what a robot does that believes wrong ones."""
+"""Printed equations of the Meca500 report: entries, truths and rollouts."""

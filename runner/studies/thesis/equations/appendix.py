@@ -1,8 +1,8 @@
-"""The equations of motion of the six-joint arm in the thesis' appendix: read term by term, and counted.
+"""Equations of motion of the six-joint arm in the thesis' appendix, parsed and counted term by term.
 
 The appendix writes each torque as a sum of groups, "(sum of terms) * product of velocities" or "... * acceleration",
-and of gravity terms. A term is a fraction times the sine or cosine of a sum of joint positions. The text is damaged
-here and there; it is read as it stands, and what is mended on the way is recorded.
+and of gravity terms. A term is a fraction times the sine or cosine of a sum of joint positions. Some of the text is
+damaged; it is parsed as it is, and every repair is recorded.
 """
 
 import re

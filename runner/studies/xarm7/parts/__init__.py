@@ -1,1 +1,1 @@
-"""Parts of the runner that this work alone needs, registered as those of other packages are."""
+"""Plug-ins of the xArm7 study, registered like those of other packages."""

@@ -1,4 +1,4 @@
-"""The xArm7 report's second part as it is printed, error by error: what its authors could not get to work."""
+"""Resolved-motion control with the xArm7 report's printed Jacobian and pseudo-inverse, each error selectable."""
 
 from typing import Literal
 

@@ -1,4 +1,4 @@
-"""The Meca500 by the printed formulas and by the right ones. Lengths in mm, forces in N."""
+"""Motions of the Meca500 under the printed and the correct formulas. Lengths in mm, forces in N."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,8 +1,8 @@
-"""The Meca500's kinematics: the maker's joints by Pinocchio, and the report's Denavit-Hartenberg table mended.
+"""Truths of the Meca500's kinematics: URDF by Pinocchio, and the report's D-H table after repair.
 
-The maker's description, `report.urdf`, has all frames parallel at q = 0, with joint axes z, y, y, x, y, x. The report's
-frames stand otherwise; that file says how each lies in the maker's frame of the same joint. The report's table is of
-the modified (Craig) convention. Lengths in mm, as the report has them.
+The manufacturer's description, `report.urdf`, has all frames parallel at q = 0, with joint axes z, y, y, x, y, x. The
+frames of the report differ; the URDF defines each of them in the manufacturer's frame of the same joint. The report's
+Denavit-Hartenberg table uses the modified (Craig) convention. Lengths in mm, as in the report.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The Meca500's admittance: its response in time, finite rotations, Euler rates. Angles in rad."""
+"""Truths of the Meca500's admittance: time response, finite rotations, Euler rates. Angles in rad."""
 
 from collections.abc import Callable
 

@@ -1,7 +1,7 @@
-"""The Meca500's force sensor: what it reads of a tool's weight, and of a contact besides.
+"""Truths of the Meca500's force sensor: readings under a tool's weight and a contact.
 
-Forces in N, moments in N mm. The sensor is turned by theta about the flange's z axis: R_s = 0R6 Rz(theta). The tool's
-weight G acts at (x, y, z) in the sensor frame; the readings have the offsets F_0 and M_0.
+Forces in N, moments in N mm. The sensor is rotated by theta about the flange's z axis: R_s = 0R6 Rz(theta). The
+tool's weight G acts at (x, y, z) in the sensor frame; the readings have the offsets F_0 and M_0.
 """
 
 from functools import reduce

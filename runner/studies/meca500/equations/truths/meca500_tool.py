@@ -1,4 +1,4 @@
-"""The Meca500's tool: its centre point from four poses, and its direction. Lengths in mm."""
+"""Truths of the Meca500's tool: centre point from four poses, and direction. Lengths in mm."""
 
 import numpy as np
 import pinocchio as pin

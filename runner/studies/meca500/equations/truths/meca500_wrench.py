@@ -1,4 +1,4 @@
-"""A wrench seen from another frame: force in N, moment in N mm, lengths in mm."""
+"""Truths of a wrench in another frame: force in N, moment in N mm, lengths in mm."""
 
 import numpy as np
 import pinocchio as pin

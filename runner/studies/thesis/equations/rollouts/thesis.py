@@ -1,4 +1,4 @@
-"""The thesis' arms by the printed formulas and by the right ones. Lengths in m."""
+"""Motions of the thesis arms under the printed and the correct formulas. Lengths in m."""
 
 from collections.abc import Callable
 

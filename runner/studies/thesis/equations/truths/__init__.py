@@ -1,1 +1,1 @@
-"""What the printed equations claim to equal, each worked out in two ways."""
+"""Truths of the thesis equations, each evaluated in two ways."""

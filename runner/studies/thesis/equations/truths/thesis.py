@@ -1,4 +1,4 @@
-"""What the names in the thesis' formulas stand for."""
+"""Symbols of the thesis formulas at random states."""
 
 import numpy as np
 

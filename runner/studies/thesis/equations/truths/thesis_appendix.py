@@ -1,8 +1,8 @@
-"""The appendix of the thesis against the true dynamics of the six-joint arm, torque by torque and term by term.
+"""Thesis appendix compared with the true dynamics of the six-joint arm, by torque and term.
 
 The torques of such a chain are trigonometric polynomials in the joint positions, times products of two velocities or
-an acceleration. The model gives them at the points of a grid that is fine enough, a discrete Fourier transform gives
-their coefficients, and each printed term has its true value beside it.
+an acceleration. The model evaluates them on a sufficiently fine grid. A discrete Fourier transform gives their
+coefficients, the true values of the printed terms.
 """
 
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The thesis' arms: by their URDFs, and as chains of Denavit-Hartenberg transforms with point masses."""
+"""Arms of the thesis: URDF models, and Denavit-Hartenberg chains with point masses."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

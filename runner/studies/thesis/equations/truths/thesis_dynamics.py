@@ -1,4 +1,4 @@
-"""The thesis' general formulas of dynamics in joint space carried out as printed, on the Macro and the combined arm."""
+"""Joint-space dynamics formulas of the thesis evaluated as printed, on the Macro and the combined arm."""
 
 from collections.abc import Callable
 from itertools import combinations

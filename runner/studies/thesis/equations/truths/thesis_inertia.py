@@ -1,4 +1,4 @@
-"""What (3.11), (3.16) and (4.5) of the thesis say of links that resist turning; its point masses cannot tell."""
+"""Truths of (3.11), (3.16) and (4.5) of the thesis for links with rotational inertia instead of point masses."""
 
 import xml.etree.ElementTree as ET
 from functools import lru_cache

@@ -1,4 +1,4 @@
-"""The thesis' general formulas for Jacobians carried out as printed, and the truths of axes and velocities."""
+"""Jacobian formulas of the thesis evaluated as printed, and the truths of axes and velocities."""
 
 import numpy as np
 

@@ -1,7 +1,7 @@
 """Truths of the thesis' kinematics: tables, transforms, positions and axes, for both arms.
 
-The first way is the model, built by Pinocchio from the URDF, with frames placed on its joint axes; the second is the
-product of elementary turns and shifts by the measures of Tables 2.1, 3.1 and 4.1.
+The first way is the model, built by Pinocchio from the URDF, with frames on its joint axes. The second is the product
+of elementary rotations and translations with the dimensions of Tables 2.1, 3.1 and 4.1.
 """
 
 from collections.abc import Callable

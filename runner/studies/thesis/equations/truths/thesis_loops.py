@@ -1,4 +1,4 @@
-"""Truths of the thesis' second-order loop and of its quintic trajectory, sections 3.3.1 and 3.3.2."""
+"""Truths of the second-order loop and the quintic trajectory, sections 3.3.1 and 3.3.2 of the thesis."""
 
 import numpy as np
 from scipy.interpolate import BPoly, PPoly

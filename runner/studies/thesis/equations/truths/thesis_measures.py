@@ -1,4 +1,4 @@
-"""Truths of what the thesis says of its arms in numbers and words: measures, homes, workspaces, frames, names."""
+"""Truths of the thesis arms' dimensions, home configurations, workspaces, frames and names."""
 
 from itertools import combinations
 

@@ -1,7 +1,7 @@
 """Truths of operational-space dynamics and control, sections 3.2 and 3.3 of the thesis, on the Macro.
 
-With its three joints the linear Jacobian is square; the samples keep off its singular postures. The formulas are
-carried out with M, V, G and J as the thesis prints them; the truth is the motion of the model, and of the chain.
+With its three joints the linear Jacobian is square; the samples exclude its singular configurations. The formulas are
+evaluated with M, V, G and J as printed in the thesis; the truth is the motion of the model, and of the chain.
 """
 
 from collections.abc import Callable

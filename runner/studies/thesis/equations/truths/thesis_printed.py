@@ -1,4 +1,4 @@
-"""The matrices of both arms as the thesis means them, repaired or corrected, read from the audit's own entries."""
+"""Matrices of both thesis arms, repaired or corrected, read from the audit entries."""
 
 from functools import lru_cache
 

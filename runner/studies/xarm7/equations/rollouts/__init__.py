@@ -1,1 +1,1 @@
-"""Wrong formulas run beside the right ones."""
+"""Simulated motions under wrong and correct formulas of the xArm7 report."""

@@ -1,4 +1,4 @@
-"""The xArm7 on the report's own line, 40 cm along y, by the printed formulas and by the right ones. Lengths in cm."""
+"""Motion of the xArm7 on the report's 40 cm line along y, under printed and correct formulas. Lengths in cm."""
 
 from collections.abc import Callable
 

@@ -1,6 +1,6 @@
-"""The xArm7 by the report's own measures: transform, Jacobian and inverse kinematics. Lengths in cm, as it has them.
+"""Truths of the xArm7's transform, Jacobian and inverse kinematics, with the report's dimensions. Lengths in cm.
 
-The first way is Pinocchio on a URDF of these measures; the second multiplies the elementary transforms that the
+The first way is Pinocchio on a URDF with these dimensions; the second multiplies the elementary transforms that the
 report gives.
 """
 

@@ -1,8 +1,8 @@
-"""The xArm7's inverse kinematics with three joints: q3 = q5 = q7 = 0, q6 = 0.75 rad. Lengths in cm.
+"""Truths of the xArm7's three-joint inverse kinematics: q3 = q5 = q7 = 0, q6 = 0.75 rad. Lengths in cm.
 
-With q2 = 0 the tip lies p4 in front of the shoulder and p3 above it; q2 turns that vector. Half the squared distance of
-the tip from the shoulder is a constant plus p1 cos q4 + p2 sin q4. All of them can therefore be read from the tip's
-position alone, and are: from Pinocchio's, and from the chain of transforms.
+With q2 = 0 the tip is p4 in front of the shoulder and p3 above it; q2 rotates that vector. Half the squared distance
+of the tip from the shoulder is a constant plus p1 cos q4 + p2 sin q4. All of them therefore follow from the position
+of the tip, by Pinocchio and by the chain of transforms.
 """
 
 from collections.abc import Callable
