@@ -3,8 +3,8 @@
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.plants.compiled_motion import compile_links_torque
 from runner.robots.model import RobotModel
-from runner.simulation.compiled.compile import compile_links_torque
 
 
 class LinksTorque:

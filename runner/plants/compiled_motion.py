@@ -11,6 +11,7 @@ from runner.robots.robot import StageBase
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import ArmConstants, constants_of, to_scalars
 from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat
+from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, absolute, both, equal, less, places, select
 from runner.symbolic.places import Slots
 from runner.symbolic.program import Expressed, Frame, program
@@ -319,3 +320,17 @@ def step_scalars(model: RobotModel, step: float, number: Callable[[float], Any])
     """Return the numbers of an arm's steps as `number` makes them: gravity, which comes first, step, and bodies."""
     gravity = [number(value) for value in model.gravity.tolist()]
     return gravity, number(step), constants_of(model, number, [0.0] * 3)
+
+
+def compile_motion(model: RobotModel, step: float) -> CompiledStep | None:
+    """Return a compiled Runge-Kutta step of an arm, in s; None where there is none."""
+    if not evaluator() or model.nq > MOST_JOINTS:
+        return None
+    return CompiledStep(model, step)
+
+
+def compile_links_torque(model: RobotModel) -> CompiledLinksTorque | None:
+    """Return the compiled torques of an arm's links beside its armature; None where there is none."""
+    if not evaluator() or model.nq > MOST_JOINTS:
+        return None
+    return CompiledLinksTorque(model)

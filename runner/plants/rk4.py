@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.plants.compiled_motion import compile_motion
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import FlexibleJoints, links_of
@@ -15,7 +16,6 @@ from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
-from runner.simulation.compiled.compile import compile_motion
 
 
 class Rk4Config(TorquePlantConfig):

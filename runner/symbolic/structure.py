@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from runner.base.errors import RunnerError
-from runner.controllers.torque_law import TorqueLaw
 from runner.robots.model import RobotModel
 from runner.symbolic.arm import constants_of, to_scalars
 from runner.symbolic.vectors import Scalar, as_array
@@ -39,33 +38,6 @@ def scalars(numbers: Any, number: Callable[[float], Scalar]) -> Any:
     return to_scalars(numbers, number)
 
 
-def law_cache_key(law: TorqueLaw[Any]) -> str:
-    """Return a text that is the same for two laws whose code is the same.
-
-    Raises:
-        CannotCompileError: where the law has kept what cannot be compared.
-    """
-    kind = type(law)
-    return repr(
-        (
-            f"{kind.__module__}.{kind.__qualname__}",
-            law.gravity_compensation,
-            _structure("", law.structure()),
-            scalars(law.numbers, any_number),
-            [arm_pattern(model) for model in law.models],
-        )
-    )
-
-
-def structure_cache_key(law: TorqueLaw[Any]) -> str:
-    """Return a text of what is fixed in a law's code: it is the same for laws that differ in their numbers alone.
-
-    Raises:
-        CannotCompileError: where the law has kept what cannot be compared.
-    """
-    return repr(_structure("", law.structure()))
-
-
 def arm_pattern(model: RobotModel) -> str:
     """Return a text that is the same for two arms with the same zeros and ones among their constants."""
     return repr(constants_of(model, any_number))
@@ -76,17 +48,26 @@ def any_number(_: float) -> str:
     return "x"
 
 
-def _structure(name: str, value: Any) -> Any:
+def plain_structure(name: str, value: Any) -> Any:
+    """Return a value that is fixed in code, as plain data; its attribute `numbers` is left out.
+
+    Args:
+        name: Name of the value, for the message.
+        value: The value.
+
+    Raises:
+        CannotCompileError: if it cannot be compared.
+    """
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     if isinstance(value, np.ndarray) and value.dtype != object:
         return value.dtype.str, value.shape, value.tobytes()
     if isinstance(value, (tuple, list)):
-        return [_structure(name, entry) for entry in value]
+        return [plain_structure(name, entry) for entry in value]
     if isinstance(value, Mapping):
-        return {str(key): _structure(str(key), entry) for key, entry in value.items()}
+        return {str(key): plain_structure(str(key), entry) for key, entry in value.items()}
     if callable(value) or not hasattr(value, "__dict__"):
         raise CannotCompileError(f"a law that keeps {name}, {type(value).__name__}, of which nobody knows what it does")
     kind = type(value)
     kept = {key: entry for key, entry in vars(value).items() if key != "numbers"}
-    return f"{kind.__module__}.{kind.__qualname__}", _structure(name, kept)
+    return f"{kind.__module__}.{kind.__qualname__}", plain_structure(name, kept)

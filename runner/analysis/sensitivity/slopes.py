@@ -15,7 +15,7 @@ from runner.simulation.assembly import describe_loop, find_start
 from runner.simulation.batch import RunSpec
 from runner.simulation.compiled.closed_loop import LoopProgram
 from runner.simulation.compiled.directed import Setting
-from runner.symbolic.structure import structure_cache_key
+from runner.simulation.compiled.law import structure_cache_key
 from runner.trajectories.trajectory import Trajectory, joint_reference
 
 _PART = 1.0 / 512.0  # of a parameter's value, between the nine at which numbers are taken

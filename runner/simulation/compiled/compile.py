@@ -9,10 +9,8 @@ from runner.base.arrays import FloatArray
 from runner.config.timing import Timing
 from runner.controllers.controller import Loop
 from runner.controllers.torque_law import TorqueLaw
-from runner.plants.compiled_motion import CompiledLinksTorque, CompiledStep
 from runner.plants.motion import Motion
 from runner.plugins.guard.controller import WatchedController
-from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
@@ -82,20 +80,6 @@ def compile_program(commands: Commands | None, motion: Motion, timing: Timing) -
 def describe_program(commands: Commands, motion: Motion, timing: Timing) -> LoopProgram:
     """Return a closed loop, of which code can be made as a whole."""
     return LoopProgram(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.late[0])
-
-
-def compile_motion(model: RobotModel, step: float) -> CompiledStep | None:
-    """Return a compiled Runge-Kutta step of an arm, in s; None where there is none."""
-    if not evaluator() or model.nq > MOST_JOINTS:
-        return None
-    return CompiledStep(model, step)
-
-
-def compile_links_torque(model: RobotModel) -> CompiledLinksTorque | None:
-    """Return the compiled torques of an arm's links beside its armature; None where there is none."""
-    if not evaluator() or model.nq > MOST_JOINTS:
-        return None
-    return CompiledLinksTorque(model)
 
 
 def _law(controller: Any) -> Any:

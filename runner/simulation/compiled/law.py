@@ -11,7 +11,7 @@ from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import ArmConstants, constants_of
 from runner.symbolic.expression import Value
 from runner.symbolic.maths import Array
-from runner.symbolic.structure import CannotCompileError, scalars
+from runner.symbolic.structure import CannotCompileError, any_number, arm_pattern, scalars, plain_structure
 from runner.symbolic.vectors import as_array
 
 
@@ -111,3 +111,30 @@ def expressed_torque(
             f"{type(law).__name__} is not compiled, and runs through Pinocchio: {reason}"
         ) from error
     return list(np.asarray(torque).tolist()), list(np.asarray(after).tolist()), backend
+
+
+def law_cache_key(law: TorqueLaw[Any]) -> str:
+    """Return a text that is the same for two laws whose code is the same.
+
+    Raises:
+        CannotCompileError: where the law has kept what cannot be compared.
+    """
+    kind = type(law)
+    return repr(
+        (
+            f"{kind.__module__}.{kind.__qualname__}",
+            law.gravity_compensation,
+            plain_structure("", law.structure()),
+            scalars(law.numbers, any_number),
+            [arm_pattern(model) for model in law.models],
+        )
+    )
+
+
+def structure_cache_key(law: TorqueLaw[Any]) -> str:
+    """Return a text of what is fixed in a law's code: it is the same for laws that differ in their numbers alone.
+
+    Raises:
+        CannotCompileError: where the law has kept what cannot be compared.
+    """
+    return repr(plain_structure("", law.structure()))

@@ -16,8 +16,9 @@ from runner.sensing import EncoderNoise
 from runner.simulation.compiled import compile
 from runner.simulation.compiled.closed_loop import CompiledCommands
 from runner.simulation.compiled.commands import Commands, LoopCode
+from runner.simulation.compiled.law import law_cache_key
 from runner.symbolic import program
-from runner.symbolic.structure import CannotCompileError, law_cache_key
+from runner.symbolic.structure import CannotCompileError
 
 LAWS = ("adaptive", "joint_pid", "passivity", "sliding_mode")
 CASES = [
