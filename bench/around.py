@@ -20,10 +20,10 @@ from runner.plugins.metric_units import units_of
 from runner.sensing import encoder_errors
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
+from runner.simulation.provenance import job_provenance
 from runner.simulation.sensors import make_encoders
 from runner.store import Outcome
 from runner.store.json_texts import JsonTexts
-from runner.store.provenance import job_provenance
 from runner.store.shards import ShardRow, shard_name, write_shard
 from runner.store.writing import record_texts, timing
 

@@ -11,7 +11,7 @@ from runner.reporting.charts import arm_motion
 from runner.reporting.document import Document, Notice, Playback, Provenance, Section, Table
 from runner.reporting.markup import literal, literals
 from runner.robots.model import RobotModel
-from runner.store.provenance import versions
+from runner.simulation.provenance import versions
 
 _SWING = 0.3  # rad, or share of the travel, by which each joint is shown
 _FRAMES = 24  # for each joint

@@ -17,7 +17,7 @@ from runner.config.run import RunConfig
 from runner.metrics import measure, summarize_arrays
 from runner.metrics.caveats import Found, Setting, Watch, look_together, setting_of, signals_of
 from runner.simulation.batch import BatchSimulator, RunSpec
-from runner.store.provenance import job_provenance
+from runner.simulation.provenance import job_provenance
 from runner.store.writing import timing
 
 Job = tuple[RunConfig, Composed]

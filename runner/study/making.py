@@ -8,8 +8,8 @@ from pathlib import Path
 from runner import store
 from runner.base import progress
 from runner.base.progress.stages import SOON
+from runner.simulation.provenance import portable_overrides
 from runner.store import Calibration, Run
-from runner.store.provenance import portable_overrides
 from runner.study.estimate import counted, estimate_all, planned, told
 from runner.study.items import Way, listed, make_items
 from runner.study.job import Made

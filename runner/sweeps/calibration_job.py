@@ -17,7 +17,7 @@ from runner.calibration import consistency
 from runner.calibration.procedures import Outcome
 from runner.config.calibration import CalibrationConfig, validate_calibration
 from runner.config.compose.compose import Composed, compose
-from runner.store import provenance
+from runner.simulation import provenance
 from runner.store.latest import note
 
 CALIBRATION = "calibrate"

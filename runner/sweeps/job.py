@@ -20,8 +20,8 @@ from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch_blocks import simulate_blocks
 from runner.simulation.batch_jobs import NO_DEADLINE, seconds_together, warm_time
 from runner.simulation.loop import ClosedLoop, simulate
+from runner.simulation.provenance import job_provenance
 from runner.simulation.sensors import make_sensors
-from runner.store.provenance import job_provenance
 from runner.store.writing import timing
 
 PROBED_TICKS = 50

@@ -11,8 +11,8 @@ from runner.metrics.summary import MOST_LISTED
 from runner.plugins.metric_units import units_of
 from runner.simulation.batch import BatchSimulator
 from runner.simulation.batch_jobs import Job, Simulated, simulate_together
+from runner.simulation.provenance import command, job_provenance
 from runner.store.json_texts import JsonTexts
-from runner.store.provenance import command, job_provenance
 from runner.store.shards import ShardRow
 from runner.store.writing import record_texts
 from runner.sweeps.deadline import TimeLimitError, deadline

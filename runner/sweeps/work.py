@@ -21,7 +21,7 @@ from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.plugins.discovery import use_only
 from runner.simulation.batch_jobs import Job
-from runner.store.provenance import job_provenance
+from runner.simulation.provenance import job_provenance
 from runner.store.shards import ShardRun, find_shards, outcome, read_outcomes, write_shard
 from runner.store.writing import cut_short_record
 from runner.sweeps.block import Part

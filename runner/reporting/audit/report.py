@@ -30,7 +30,7 @@ from runner.reporting.document import (
     Text,
 )
 from runner.reporting.markup import literals, mark_text
-from runner.store import provenance
+from runner.simulation import provenance
 
 COMMAND = "runner reproduce audit"
 DATA = "equations.csv"

@@ -11,7 +11,7 @@ from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import ArmConstants, constants_of
 from runner.symbolic.expression import Value
 from runner.symbolic.maths import Array
-from runner.symbolic.structure import CannotCompileError, any_number, arm_pattern, scalars, plain_structure
+from runner.symbolic.structure import CannotCompileError, any_number, arm_pattern, plain_structure, scalars
 from runner.symbolic.vectors import as_array
 
 

@@ -21,11 +21,11 @@ from runner.plants import Plant
 from runner.plants.rk4 import Rk4
 from runner.robots.model import RobotModel
 from runner.sensing import JointEncoders
+from runner.simulation import provenance
 from runner.simulation.assembly import assemble
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
-from runner.store import provenance
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 from runner.studies.precision.exact import Adaptive, Collocation, energy_drift

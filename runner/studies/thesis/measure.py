@@ -14,7 +14,7 @@ from runner.config.robot import StagedRobotConfig
 from runner.config.validation import validate
 from runner.robots import RobotModel
 from runner.robots.mounting import Mount, mount
-from runner.store import provenance
+from runner.simulation import provenance
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 

@@ -9,7 +9,8 @@ import yaml
 from runner.base.errors import StoreError
 from runner.config.compose.compose import compose
 from runner.plugins import discovery as plugins
-from runner.store import open_calibration, provenance
+from runner.simulation import provenance
+from runner.store import open_calibration
 from runner.store.seal import sealed_json
 from runner.sweeps import calibration_job
 from runner.sweeps.calibration_job import calibrate

@@ -9,7 +9,7 @@ from runner.base import engines
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.store.provenance import command
+from runner.simulation.provenance import command
 from runner.sweeps.grid import plan_sweep
 
 
