@@ -21,11 +21,12 @@ from runner.sensing import encoder_errors
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.provenance import job_provenance
+from runner.simulation.result import timing
 from runner.simulation.sensors import make_encoders
 from runner.store import Outcome
 from runner.store.json_texts import JsonTexts
 from runner.store.shards import ShardRow, shard_name, write_shard
-from runner.store.writing import record_texts, timing
+from runner.store.writing import record_texts
 
 _RUNS, _TIMES = 256, 30
 _OVERRIDES = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "torque_limits=thesis")

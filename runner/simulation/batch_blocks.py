@@ -16,12 +16,11 @@ from itertools import chain
 
 import numpy as np
 
-from runner import store
 from runner.config.limits import TICKS_AT_ONCE
 from runner.plugins.discovery import has_users_parts
 from runner.simulation.batch import BatchSimulator
 from runner.simulation.batch_jobs import Job, Simulated, simulate_together
-from runner.store.writing import timing
+from runner.simulation.result import RunResult, timing
 
 MOST_THREADS = 4
 """More would wait for each other."""
@@ -32,7 +31,7 @@ TICKS = TICKS_AT_ONCE // MOST_THREADS
 _AHEAD = 2  # blocks for each thread that are under way or wait to be taken
 
 
-def simulate_blocks(job: Job, threads: int = 1, ticks: int = TICKS) -> store.RunResult | None:
+def simulate_blocks(job: Job, threads: int = 1, ticks: int = TICKS) -> RunResult | None:
     """Simulate a run; None where one of its repetitions is not compiled as a whole.
 
     Args:

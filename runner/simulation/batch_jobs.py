@@ -9,7 +9,6 @@ from itertools import groupby
 
 import numpy as np
 
-from runner import store
 from runner.base.arrays import FloatArray
 from runner.base.trace import Failure, Trace
 from runner.config.compose.compose import Composed
@@ -18,7 +17,7 @@ from runner.metrics import measure, summarize_arrays
 from runner.metrics.caveats import Found, Setting, Watch, look_together, setting_of, signals_of
 from runner.simulation.batch import BatchSimulator, RunSpec
 from runner.simulation.provenance import job_provenance
-from runner.store.writing import timing
+from runner.simulation.result import RunResult, timing
 
 Job = tuple[RunConfig, Composed]
 NO_DEADLINE: AbstractContextManager[None] = nullcontext()
@@ -59,10 +58,10 @@ class Simulated:
         """What a clock measured."""
         return timing(self.trace.tick_seconds, self.seconds, self.seconds)
 
-    def result(self) -> store.RunResult:
+    def result(self) -> RunResult:
         """Return all that it leaves to be stored."""
         config, composed = self.job
-        return store.RunResult(
+        return RunResult(
             resolved=config.resolved,
             urdf=config.arm.urdf,
             trace=self.trace,

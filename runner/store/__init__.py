@@ -8,7 +8,7 @@ from runner.store.run import Run, is_run, open_run
 from runner.store.seal import DamagedError, SchemaError
 from runner.store.shards import Outcome
 from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_grid, write_sweep
-from runner.store.writing import RunResult, prepare, write_run
+from runner.store.writing import prepare, write_run
 
 __all__ = [
     "Calibration",
@@ -16,7 +16,6 @@ __all__ = [
     "Finished",
     "Outcome",
     "Run",
-    "RunResult",
     "SchemaError",
     "Sweep",
     "find_calibration",

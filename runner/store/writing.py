@@ -4,9 +4,8 @@ A run with metrics is complete.
 """
 
 import io
-import os
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +14,11 @@ import yaml
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
-from runner.base.trace import Failure, Trace
+from runner.base.trace import Trace
 from runner.metrics.caveats import Found
-from runner.metrics.plant_error import PlantError
-from runner.metrics.summary import Summary, over_repetitions
+from runner.metrics.summary import over_repetitions
 from runner.plugins.metric_units import units_of
+from runner.simulation.result import RunResult
 from runner.statistics.spec import bounds_of, judge
 from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically
@@ -27,35 +26,6 @@ from runner.store.json_texts import JsonTexts, encode_finite
 from runner.store.run import Run
 from runner.store.stored import write_job
 from runner.store.values import VALUES_FILE, values_parquet
-
-
-@dataclass(frozen=True)
-class RunResult:
-    """All that a job leaves to be stored.
-
-    Attributes:
-        resolved: The resolved config.
-        urdf: The URDF's text.
-        trace: The trace of repetition 0.
-        metrics: Metrics over the repetitions.
-        caveats: Why they may not be what they seem.
-        repetitions: Number of repetitions.
-        failure: The first failure and its repetition, or None.
-        timing: What a clock measured.
-        provenance: Commit, versions, machine, seed, command.
-        plant_error: What the plant's step is worth, where that was asked for and can be.
-    """
-
-    resolved: Mapping[str, Any]
-    urdf: str
-    trace: Trace
-    metrics: Mapping[str, Summary]
-    caveats: Found
-    repetitions: int
-    failure: tuple[int, Failure] | None
-    timing: Mapping[str, float | None]
-    provenance: Mapping[str, Any]
-    plant_error: PlantError | None = None
 
 
 def prepare(outputs: Path) -> None:
@@ -237,23 +207,3 @@ def _parquet(trace: Trace) -> bytes:
         trace_table(trace), buffer, compression="zstd", use_dictionary=False, use_byte_stream_split=True
     )
     return buffer.getvalue()
-
-
-def timing(
-    tick_seconds: np.ndarray, wall_s: float, cpu_s: float, law_seconds: np.ndarray | None = None
-) -> dict[str, float | None]:
-    """Return the timing record.
-
-    Args:
-        tick_seconds: Time of every tick, shape (N,), in s; a run that failed at once has no tick.
-        wall_s: Wall-clock time of the whole, in s.
-        cpu_s: CPU time of it, in s.
-        law_seconds: What the control loops took in each tick, shape (N,), in s; None where nobody can tell.
-    """
-    median, p99 = np.percentile(tick_seconds, [50, 99]).tolist() if len(tick_seconds) else (None, None)
-    record = {"tick_time_median": median, "tick_time_p99": p99, "wall_s": wall_s, "cpu_s": cpu_s}
-    if law_seconds is not None and len(law_seconds):
-        names = ("law_time_median", "law_time_p99", "law_time_p999", "law_time_max")
-        record |= dict(zip(names, np.percentile(law_seconds, [50, 99, 99.9, 100]).tolist(), strict=True))
-        record["load_average"] = os.getloadavg()[0]
-    return record

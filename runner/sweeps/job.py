@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from runner import store
 from runner.base.errors import ConfigError, SimulationError
 from runner.base.trace import Failure, Trace
 from runner.config.compose.compose import Composed
@@ -21,8 +20,8 @@ from runner.simulation.batch_blocks import simulate_blocks
 from runner.simulation.batch_jobs import NO_DEADLINE, seconds_together, warm_time
 from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.provenance import job_provenance
+from runner.simulation.result import RunResult, timing
 from runner.simulation.sensors import make_sensors
-from runner.store.writing import timing
 
 PROBED_TICKS = 50
 """Ticks from which the time for a tick is measured, of a run that is simulated alone."""
@@ -30,7 +29,7 @@ _PROBED_TOGETHER = 100_000  # ticks, of repetitions that are simulated together
 _CLOCKED_TICKS = 1_000_000  # ticks whose time is kept; more would tell nothing new
 
 
-def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> store.RunResult:
+def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> RunResult:
     """Simulate the repetitions of a checked config.
 
     Args:
@@ -80,7 +79,7 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> sto
     seconds = time.perf_counter() - wall, time.process_time() - cpu
     error = _plant_error(config, composed, first, of_first)
     step = PlantStep(config.plant.kind, config.timing.step, config.timing.tick, config.robot.settling_band)
-    return store.RunResult(
+    return RunResult(
         resolved=config.resolved,
         urdf=config.arm.urdf,
         trace=first,

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor, Future
 
 from runner import store
+from runner.simulation.result import RunResult
 from runner.store.atomic import write_atomically
 from runner.store.shards import ShardRow, ShardRun, outcome, write_shard
 from runner.store.writing import make_record
@@ -25,7 +26,7 @@ class Shelf:
         self._written: Future[store.Run] | None = None
         self._traceless: list[ShardRun | ShardRow] = []
 
-    def put(self, name: str, made: store.RunResult | ShardRun) -> bool:
+    def put(self, name: str, made: RunResult | ShardRun) -> bool:
         """Take a run, and tell whether it failed."""
         if isinstance(made, ShardRun):
             self._traceless.append(made)
@@ -56,7 +57,7 @@ class Shelf:
             self._written = None
 
 
-def without_trace(name: str, result: store.RunResult, rules: Rules) -> store.RunResult | ShardRun:
+def without_trace(name: str, result: RunResult, rules: Rules) -> RunResult | ShardRun:
     """Return a result as it is kept: whole, or without its trace; then a failure is written down, too."""
     if rules.keeps_trace(name, result.failure is not None):
         return result

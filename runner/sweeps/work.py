@@ -22,6 +22,7 @@ from runner.config.validation import validate
 from runner.plugins.discovery import use_only
 from runner.simulation.batch_jobs import Job
 from runner.simulation.provenance import job_provenance
+from runner.simulation.result import RunResult
 from runner.store.shards import ShardRun, find_shards, outcome, read_outcomes, write_shard
 from runner.store.writing import cut_short_record
 from runner.sweeps.block import Part
@@ -156,7 +157,7 @@ def _check_folder(rules: Rules) -> None:
         raise StoreError(f"a worker does not see {rules.sweep}; outputs must be a folder that all workers share")
 
 
-def _make(name: str, composed: Composed, rules: Rules) -> store.RunResult | ShardRun:
+def _make(name: str, composed: Composed, rules: Rules) -> RunResult | ShardRun:
     """Simulate one run; return what is to be stored, in a folder of its own or in a shard."""
     config = _checked(name, composed)
     result, reason, details = _try(lambda: simulate_job(config, composed), rules)
