@@ -1,0 +1,34 @@
+"""docs/architecture.md and its picture against the package: docstrings, contract and imports."""
+
+import ast
+
+from support.pages import ROOT
+
+from bench.make_architecture import PAGE, PICTURE, layers, page, picture, reduced
+
+PACKAGE = ROOT / "runner"
+
+
+def test_the_page_and_the_picture_are_up_to_date():
+    stale = "stale: run `python -m bench.make_architecture`"
+    assert PAGE.read_text() == page(), stale
+    assert PICTURE.read_text() == picture(), stale
+
+
+def test_every_package_is_a_layer_and_two_modules_are_loose():
+    assert {f"runner.{path.parent.name}" for path in PACKAGE.glob("*/__init__.py")} == set(layers()) - {"hydra_plugins"}
+    assert sorted(path.name for path in PACKAGE.glob("*.py")) == ["__init__.py", "__main__.py"]
+
+
+def test_an_edge_that_follows_from_others_is_left_out():
+    graph = {"a": {"b", "c", "d"}, "b": {"c"}, "c": set(), "d": set()}
+    assert reduced(graph) == {"a": ["b", "d"], "b": ["c"], "c": [], "d": []}
+
+
+def test_docstrings_of_modules_begin_with_a_noun_phrase():
+    """A phrase of one line that ends in a full stop, and no clause without a head."""
+    headless = {"What", "How", "Where", "Which", "Whether", "Who", "Why", "When", "Tell", "Return"}
+    texts = {path: ast.get_docstring(ast.parse(path.read_text())) or "" for path in PACKAGE.rglob("*.py")}
+    firsts = {path.relative_to(PACKAGE).as_posix(): text.partition("\n")[0] for path, text in texts.items()}
+    assert {name: first for name, first in firsts.items() if not first.endswith((".", ":"))} == {}
+    assert {name: first for name, first in firsts.items() if first.partition(" ")[0] in headless} == {}
