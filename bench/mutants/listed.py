@@ -44,13 +44,13 @@ def _of(module: str, test: str, *errors: tuple[str, str, str]) -> list[Listed]:
 MUTANTS = [
     *_of(
         "metrics/reaching.py",
-        "metrics/test_reaching.py",
+        "unit/metrics/test_reaching.py",
         ("reach counted from the tip", "traces.end_points[-2]", "traces.end_points[-1]"),
         ("reach counted from the first stage", "traces.end_points[-2]", "traces.end_points[0]"),
     ),
     *_of(
         "metrics/contact.py",
-        "metrics/test_contact.py",
+        "unit/metrics/test_contact.py",
         ("the force's error against its last sample", "mean(axis=0) - mean)", "mean(axis=0) - force[-1])"),
         ("the last sample's error", "felt[steady].mean(axis=0) - mean", "felt[-1] - mean"),
         ("the largest component for the peak", "np.linalg.norm(force, axis=1).max()", "np.abs(force).max()"),
@@ -58,13 +58,13 @@ MUTANTS = [
     ),
     *_of(
         "metrics/positioning.py",
-        "metrics/test_positioning.py",
+        "unit/metrics/test_positioning.py",
         ("overshoot of the desired motion counted", "past - np.maximum(wanted, 0.0)", "past"),
         ("overshoot of an arm that is ahead of its desired motion", "past - np.maximum(wanted, 0.0)", "past - wanted"),
     ),
     *_of(
         "metrics/summary.py",
-        "metrics/test_summary.py",
+        "unit/metrics/test_summary.py",
         (
             "the tip judged for a stage",
             "evaluate(at_stage, stage_context)",
@@ -74,12 +74,12 @@ MUTANTS = [
     ),
     *_of(
         "metrics/summary.py",
-        "metrics/test_measure.py",
+        "unit/metrics/test_measure.py",
         ("the last block of runs lost", "range(0, traces.runs, block)", "range(0, traces.runs - block, block)"),
     ),
     *_of(
         "store/writing.py",
-        "store/test_batch_records.py",
+        "contract/store/test_batch_records.py",
         (
             "the largest for the least",
             "for end in over_repetitions(own).T)",
@@ -88,12 +88,12 @@ MUTANTS = [
     ),
     *_of(
         "metrics/tracking.py",
-        "metrics/test_tracking.py",
+        "unit/metrics/test_tracking.py",
         ("the tick at t_f lost to rounding", "trajectory.duration + 1e-9", "trajectory.duration"),
     ),
     *_of(
         "metrics/effort.py",
-        "metrics/test_effort.py",
+        "unit/metrics/test_effort.py",
         ("a limit missed by rounding", "1.0 - 1e-12", "1.0"),
         (
             "work that cancels",
@@ -103,7 +103,7 @@ MUTANTS = [
     ),
     *_of(
         "sensing/force_torque.py",
-        "sensing/test_force_torque.py",
+        "physics/sensing/test_force_torque.py",
         (
             "noise fed back through the low-pass",
             "value = self._seen + self._noise[tick]",
@@ -123,12 +123,12 @@ MUTANTS = [
     ),
     *_of(
         "sensing/streams.py",
-        "sensing/test_streams.py",
+        "physics/sensing/test_streams.py",
         ("large seeds cut off", "for more in entropy[_POOL:]", "for more in entropy[:0]"),
     ),
     *_of(
         "sensing/encoders.py",
-        "sensing/test_encoders.py",
+        "physics/sensing/test_encoders.py",
         ("differences of true positions", "self._period, measured, state)", "self._period, q, state)"),
     ),
     *_of(
@@ -148,7 +148,7 @@ MUTANTS = [
         ("percentiles that are not expanded", "np.sqrt(n / (n - 1)) * stdtrit", "stdtrit"),
     ),
     *_of(
-        "controllers/stage_loops.py",
+        "controllers/macro_mini/stage_loops.py",
         "physics/controllers/test_stage_loops.py",
         ("later stages' offset added", "way = reference[0] - numbers.later", "way = reference[0] + numbers.later"),
         ("the carrier adds it", "bases[0][0] - numbers.later", "bases[0][0] + numbers.later"),
@@ -185,7 +185,7 @@ MUTANTS = [
     ),
     *_of(
         "calibration/gravity.py",
-        "calibration/test_gravity.py",
+        "physics/calibration/test_gravity.py",
         ("the moment's bias with the wrong sign", "k + np.cross(r, F_0)", "k - np.cross(r, F_0)"),
     ),
 ]

@@ -114,8 +114,8 @@ def test_all_that_import_runner_gives_is_on_the_page_of_the_api(site, pages):
 
 @OF_THE_SITE
 def test_a_file_of_the_source_is_shown_where_a_page_links_to_it(site):
-    shown = re.sub(r"<[^>]+>", "", (site / "source" / "runner" / "trace.py.html").read_text())
-    assert (ROOT / "runner" / "trace.py").read_text().splitlines()[0].strip('"')[:60] in shown
+    shown = re.sub(r"<[^>]+>", "", (site / "source" / "runner" / "base" / "trace.py.html").read_text())
+    assert (ROOT / "runner" / "base" / "trace.py").read_text().splitlines()[0].strip('"')[:60] in shown
 
 
 def test_a_missing_report_is_told(tmp_path):

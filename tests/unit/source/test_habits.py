@@ -84,7 +84,7 @@ def test_every_published_work_and_cited_author_is_in_the_citation():
         assert {"type", "title", "authors", "year"} <= set(reference)
     families = {person["family-names"] for each in citation["references"] for person in each["authors"]}
     cited = r"\(([A-Z][a-z]+) and ([A-Z][a-z]+)(?:, [A-Z][\w .]+ \d+\(\d+\),| \d{4}\))"
-    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "runner" / "controllers").glob("*.py")]
+    sources = [path.read_text(encoding="utf-8") for path in (ROOT / "runner" / "controllers").rglob("*.py")]
     named = {name for text in sources for pair in re.findall(cited, text) for name in pair}
     assert named
     assert named <= families

@@ -8,7 +8,7 @@ from pathlib import Path
 from support.pages import ROOT
 
 _TEXT = (ROOT / "CONTRIBUTING.md").read_text()
-_SECTION = _TEXT.split("### Read these twenty files in this order")[1].split("###")[0]
+_SECTION = _TEXT.split("### Read these twenty files in this order")[1].split("\n## ")[0]
 FILES = [ROOT / path for path in re.findall(r"^\d+\. `([\w/.]+)`: .{20,}$", _SECTION, re.MULTILINE)]
 _MOST_LINES, _LONGEST_FUNCTION = 2600, 60
 
