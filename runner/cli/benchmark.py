@@ -17,7 +17,7 @@ from runner.cli.arguments import ActionParser, Parser
 from runner.plugins.discovery import in_use, use_plugins
 
 if TYPE_CHECKING:
-    from runner.study.given import GivenPart
+    from runner.study.plugins import GivenPart
 
 WORK = "benchmark"
 
@@ -35,7 +35,7 @@ def main(arguments: Sequence[str]) -> int:
 def _check(options: Namespace) -> int:
     quiet_environment()
     use_plugins([f"controller={options.law}"])
-    from runner.study.given import given_parts
+    from runner.study.plugins import given_parts
     from runner.sweeps.loading import Loader
 
     (part,) = given_parts(in_use()[-1:])
@@ -61,7 +61,7 @@ def check_law(name: str, profile: str, part: "GivenPart", workers: int) -> Itera
     """
     from runner.study.estimate import told
     from runner.study.fit import fit
-    from runner.study.work import load_work
+    from runner.study.study import load_work
 
     without = load_work(name, profile=profile)
     found = fit(load_work(name, profile=profile, parts=(part,)), without, part)

@@ -98,8 +98,8 @@ def _of_work(name: str, outputs: Path) -> "tuple[Document, Path]":
     folder, mend = outputs / "reports" / name, f"`runner reproduce {name} --output {outputs}` makes"
     if not folder.is_dir():
         raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
-    from runner.study.making import count_missing, make_all
-    from runner.study.work import load_work
+    from runner.study.execute import count_missing, make_all
+    from runner.study.study import load_work
 
     print(f"looking for the runs of {name} ...", file=sys.stderr)
     work = load_work(name)

@@ -112,7 +112,7 @@ def _list_baselines(_: Sequence[Path]) -> dict[str, str]:
 
 
 def _list_works(_: Sequence[Path]) -> dict[str, str]:
-    from runner.study.about import read_about
+    from runner.study.manifest import read_about
     from runner.study.names import find_work, work_names
 
     found = {name: read_about(find_work(name).folder) for name in work_names()}

@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from runner.reporting.document import Document
     from runner.store import Calibration, Run
     from runner.study.expected_caveats import ExpectedCaveat
-    from runner.study.given import GivenPart
-    from runner.study.work import Work
+    from runner.study.plugins import GivenPart
+    from runner.study.study import Work
 
 AUDIT = "audit"
 _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
@@ -91,7 +91,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def _parts(work: str) -> "tuple[GivenPart, ...]":
     """Return the parts that --plugin names, for one work that may take them."""
-    from runner.study.given import given_parts
+    from runner.study.plugins import given_parts
 
     if in_use() and work in (AUDIT, "all"):
         raise RunnerError(f"reproduce {work}: --plugin gives a part to one work; name it")
@@ -106,7 +106,7 @@ def _chosen(text: str, way: _Way) -> "list[Work | None]":
     Raises:
         RunnerError: if there is no such work; names what there is.
     """
-    from runner.study.work import load_work
+    from runner.study.study import load_work
 
     if text == AUDIT:
         return [None]
@@ -168,7 +168,7 @@ def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
     from runner.reporting.markup import literal
     from runner.study.check import formulas_at
     from runner.study.late_claims import late_claims
-    from runner.study.making import make_all
+    from runner.study.execute import make_all
 
     progress.plan(of_work(len(work.jobs()) + len(work.calibrations())))
     work.measure(way.outputs)

@@ -20,7 +20,7 @@ from runner.reporting.claims import CLAIMS, FACTOR, Verdict, load_claims
 from runner.reporting.document import Equations, Origin, Section, Verdicts
 from runner.reporting.outline import number_sections
 from runner.store import Calibration, Run
-from runner.study.about import About, Part
+from runner.study.manifest import About, Part
 from runner.study.claims import judged_claims, legend
 from runner.study.code import Code, public_functions
 from runner.study.findings import Finding
@@ -29,7 +29,7 @@ from runner.study.job import Made
 from runner.study.measured import Measured
 from runner.study.prose import blocks, plots, read_chapter, signals, tables
 from runner.study.prose.reader import Reading
-from runner.study.work_report import parts
+from runner.study.report import parts
 
 SHARED = (blocks, signals, tables, plots)
 """The modules whose functions every chapter may call."""

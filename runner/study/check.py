@@ -12,9 +12,9 @@ from runner.study.chapters import Chapters, chapter_text
 from runner.study.conclusions import list_failed_findings
 from runner.study.expected_caveats import unexpected_caveats
 from runner.study.job import LeftOutError, MissingError
-from runner.study.prose.trying import never_failing
+from runner.study.prose.condition_tests import never_failing
 from runner.study.prose.typed import levels_in, typed_numbers
-from runner.study.work import Work
+from runner.study.study import Work
 
 
 def problems(work: Work, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> Iterator[str]:

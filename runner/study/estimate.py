@@ -13,7 +13,7 @@ from runner.study.grid import Overrides
 from runner.study.items import Way, listed
 from runner.study.tune import ROUNDS
 from runner.study.tunings import Tuning
-from runner.study.work import Work
+from runner.study.study import Work
 from runner.sweeps.listed import Item, Listed
 from runner.sweeps.loading import Loader
 from runner.sweeps.pace import START_UP, Estimate, estimate

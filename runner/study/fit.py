@@ -18,12 +18,12 @@ from runner.simulation.sensors import make_sensors
 from runner.study.alike import difference, setting
 from runner.study.estimate import Amount, counted, estimate_all, planned
 from runner.study.gains import without_gains
-from runner.study.given import GivenPart
+from runner.study.plugins import GivenPart
 from runner.study.grid import Overrides
 from runner.study.items import Way
 from runner.study.tune import read_number
 from runner.study.tunings import Tuning, key_of
-from runner.study.work import Work
+from runner.study.study import Work
 from runner.sweeps.job import PROBED_TICKS
 
 

@@ -11,7 +11,7 @@ from runner.base.errors import RunnerError, nearest
 from runner.base.limits import GRID
 from runner.schema.model import StrictModel
 from runner.study.arithmetic import Level, alone, fill, names_in
-from runner.study.given import GivenPart
+from runner.study.plugins import GivenPart
 
 Overrides = tuple[str, ...]
 

@@ -38,7 +38,7 @@ from runner.config.compose.user_settings import refuse_settings
 from runner.schema.model import StrictModel
 from runner.study.arithmetic import Level
 from runner.study.gains import check_named
-from runner.study.given import GivenPart
+from runner.study.plugins import GivenPart
 from runner.study.grid import Grid, Overrides
 from runner.study.profiles import Profile
 from runner.study.tunings import TunedGrid, Tuning, all_tunings

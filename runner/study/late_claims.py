@@ -10,7 +10,7 @@ from runner.store import Run
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 from runner.study.claims import run_name
-from runner.study.work import Work
+from runner.study.study import Work
 
 _JUDGED_BY = {"printed", "metric", "extents", "fails", "bound", "like"}
 

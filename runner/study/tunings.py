@@ -36,7 +36,7 @@ from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.plugins.metric_units import unit_of, units
 from runner.study.arithmetic import Level
-from runner.study.given import GivenPart
+from runner.study.plugins import GivenPart
 from runner.study.grid import FlatOverrides, Grid, Overrides
 from runner.sweeps.tuning.key import Key
 

@@ -19,7 +19,7 @@ from support.thin_plans import make_runs
 from support.work_plans import RECORDED, recorded_jobs
 
 from runner.store import Run
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 FOLDER = Path(__file__).parents[1] / "recorded"
 OUTPUTS = "outputs"

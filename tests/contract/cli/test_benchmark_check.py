@@ -9,7 +9,7 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.cli.benchmark import check_law
-from runner.study.given import given_parts
+from runner.study.plugins import given_parts
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
 LAW = "gravity_pd"

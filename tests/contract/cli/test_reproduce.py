@@ -12,9 +12,9 @@ from runner.cli import reproduce
 from runner.reporting.document import Document, Section
 from runner.study.expected_caveats import ExpectedCaveat
 from runner.study.findings import finding
-from runner.study.making import make_all
+from runner.study.execute import make_all
 from runner.study.measured import Measured
-from runner.study.work import load_work
+from runner.study.study import load_work
 from runner.sweeps import work as workers
 from runner.sweeps.lock import at_work
 

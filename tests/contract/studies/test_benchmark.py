@@ -23,8 +23,8 @@ from runner.studies.benchmark.how_tuned import ends_of
 from runner.studies.benchmark.late_and_limited import bearable
 from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
 from runner.study.findings import findings
-from runner.study.prose.trying import never_failing
-from runner.study.work import load_work
+from runner.study.prose.condition_tests import never_failing
+from runner.study.study import load_work
 
 WORK = load_work("benchmark")
 METRIC = "rms_tracking_error"

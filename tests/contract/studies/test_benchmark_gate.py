@@ -3,7 +3,7 @@
 import pytest
 
 from runner.config.compose.compose import compose
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 SWEEP = ("-m", "experiment=benchmark/macro,benchmark/planar", "hydra.sweeper.workers=0", "repetitions=8")
 

@@ -5,7 +5,7 @@ from support.finding_words import typed_in_module
 
 from runner.base.paths import package_dir
 from runner.study.prose.typed import levels_in, typed_numbers
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 
 @pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500", "engines", "benchmark"])

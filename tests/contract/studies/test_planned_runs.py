@@ -3,7 +3,7 @@
 import pytest
 
 from runner.study.names import work_names
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 SOME = {
     "thesis": {

@@ -9,7 +9,7 @@ from support.work_plans import RECORDED, planned
 from runner.base.engines import has_pybullet
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 
 def parts(overrides: Overrides) -> set[str]:

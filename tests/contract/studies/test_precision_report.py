@@ -20,7 +20,7 @@ from runner.store import Run
 from runner.studies.precision import measure, tried
 from runner.studies.precision.exact import Adaptive, Collocation, energy_drift
 from runner.study.job import MissingError
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 WORK = load_work("precision")
 LENGTH, ANGLE = 0.5, 2.0  # m, rad from hanging

@@ -12,8 +12,8 @@ from runner.reporting import outline
 from runner.reporting.document import Document, Section
 from runner.reporting.formulas import faulty
 from runner.store import Run
-from runner.study.prose.trying import never_failing
-from runner.study.work import load_work
+from runner.study.prose.condition_tests import never_failing
+from runner.study.study import load_work
 
 FILES = {study: [file for file in chapter_files(study) if file not in FULL_ALONE] for study in WORKS}
 NEEDS = {"engines": pytest.mark.bullet}  # its chapters load arms into PyBullet

@@ -15,7 +15,7 @@ from runner.store import Run
 from runner.studies.thesis import how_sure
 from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
 from runner.study.findings import Finding
-from runner.study.work import load_work
+from runner.study.study import load_work
 from runner.sweeps.execution import run
 
 CLAIMS = load_claims("thesis")

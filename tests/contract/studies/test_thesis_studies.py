@@ -15,7 +15,7 @@ from runner.store import Run
 from runner.studies.thesis import measure
 from runner.study.checklist import load_checklist
 from runner.study.job import MissingError
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 STUDIES = ("coupling", "mass_ratio", "stage_sampling", "folding", "stretch", "reference_velocity", "bandwidth", "turns",
            "whole_body")  # fmt: skip

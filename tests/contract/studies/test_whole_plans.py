@@ -12,8 +12,8 @@ from support.work_plans import RECORDED, meca500_calibrations, meca500_jobs, pla
 from runner.reporting.formulas import faulty
 from runner.store import Run
 from runner.study.findings import findings
-from runner.study.prose.trying import never_failing
-from runner.study.work import load_work
+from runner.study.prose.condition_tests import never_failing
+from runner.study.study import load_work
 
 # True of real numbers, which take minutes; from runs cut to a moment findings do not hold.
 pytestmark = [pytest.mark.slow, pytest.mark.bullet]

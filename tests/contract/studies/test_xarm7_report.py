@@ -12,7 +12,7 @@ from runner.reporting.render import write_report
 from runner.study.chapters import Chapters
 from runner.study.findings import findings
 from runner.study.job import PRESETS
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")
 TITLES = {"why_it_failed": "Why the second part failed"}  # of those that the checklist names

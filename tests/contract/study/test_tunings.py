@@ -7,9 +7,9 @@ from runner.base.errors import RunnerError
 from runner.study.gains import put_in, read_gains, write_gains
 from runner.study.grids import Grids
 from runner.study.items import Way
-from runner.study.making import make_all
+from runner.study.execute import make_all
 from runner.study.tune import find_gains
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 HERE = "hydra.sweeper.workers=0"
 RUNS = """
@@ -145,7 +145,7 @@ def test_the_gains_of_a_tuning_have_numbers():
 
 
 def test_a_law_of_the_reader_s_has_its_ranges_beside_its_module(paper, tmp_path):
-    from runner.study.given import GivenPart
+    from runner.study.plugins import GivenPart
 
     mine = tmp_path / "mine"
     (mine / "controller").mkdir(parents=True)

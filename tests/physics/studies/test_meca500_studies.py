@@ -13,7 +13,7 @@ from runner.studies.meca500.frequency_response import fitted_response
 from runner.studies.meca500.limits import limits
 from runner.studies.meca500.plan import REPORTED, law
 from runner.studies.meca500.step_response import step
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 
 @pytest.fixture(scope="module")

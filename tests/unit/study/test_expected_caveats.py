@@ -18,7 +18,7 @@ from runner.study.expected_caveats import (
 )
 from runner.study.job import Made
 from runner.study.run_values import cell, measured
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 
 def run_with(*rules):

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.study.given import given_parts
+from runner.study.plugins import given_parts
 from runner.study.grids import Grids
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
 LAW = "gravity_pd"

@@ -11,12 +11,12 @@ from runner.base.paths import check_inside
 from runner.plugins.discovery import use_plugins
 from runner.reporting.claims import CLAIMS, load_claims
 from runner.store import Calibration, Run
-from runner.study.about import read_about
+from runner.study.manifest import read_about
 from runner.study.caveats import read_expected
 from runner.study.code import Code
 from runner.study.expected_caveats import ExpectedCaveat
 from runner.study.gains import Gains, named, put_in, read_gains
-from runner.study.given import GivenPart
+from runner.study.plugins import GivenPart
 from runner.study.grid import Overrides
 from runner.study.grids import FILE as RUNS
 from runner.study.grids import Grids
@@ -173,7 +173,7 @@ class Work:
             chapters: What makes its chapters from these, if some have been read.
         """
         from runner.study.checklist import load_checklist
-        from runner.study.work_report import work_document
+        from runner.study.report import work_document
 
         made = work_document(
             title=self.about.title,

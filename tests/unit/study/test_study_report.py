@@ -5,7 +5,7 @@ import pytest
 from runner.base.errors import RunnerError
 from runner.reporting.document import Section, Text
 from runner.study.job import Made, MissingError
-from runner.study.work_report import parts
+from runner.study.report import parts
 
 RUNS = Made({"a": 1, "b": 2}, {"c": "cut short: killed for $5"})
 

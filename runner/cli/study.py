@@ -59,8 +59,8 @@ def _check(options: Namespace) -> int:
     find_work(options.work)  # one that is not there is told at once
     quiet_environment()
     from runner.study.check import problems
-    from runner.study.making import make_all
-    from runner.study.work import load_work
+    from runner.study.execute import make_all
+    from runner.study.study import load_work
 
     work = load_work(options.work, options.code)
     runs, calibrations = make_all(work, options.output)

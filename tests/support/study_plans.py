@@ -7,7 +7,7 @@ from support.thin_plans import Overrides, stand_ins
 
 from runner.studies.precision.measure import PLANT
 from runner.study.job import Job
-from runner.study.work import load_work
+from runner.study.study import load_work
 
 FULL_ALONE = ("late_and_limited.md",)  # chapters of the benchmark's full profile alone
 MOMENT = 0.08  # s

@@ -4,7 +4,7 @@ import pytest
 
 from runner.study.measured import Measured
 from runner.study.prose import ProseError, read_chapter
-from runner.study.prose.trying import never_failing
+from runner.study.prose.condition_tests import never_failing
 from runner.study.prose.typed import typed_numbers
 
 NAMES = {

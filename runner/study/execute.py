@@ -15,7 +15,7 @@ from runner.study.items import Way, listed, make_items
 from runner.study.job import Made
 from runner.study.tune import find_gains
 from runner.study.tunings import Tuning
-from runner.study.work import Work
+from runner.study.study import Work
 from runner.sweeps.calibration_job import CALIBRATION
 from runner.sweeps.listed import Item
 from runner.sweeps.loading import Loader
