@@ -25,7 +25,7 @@ class Entry(StrictModel):
     Attributes:
         rules: Names of the rules that find them.
         runs: Patterns of the names of the runs, such as "figure_5_*/as_reported".
-        why: Why they are there, and why the work's conclusions stand; a sentence.
+        why: Why they are there, and why the study's conclusions stand; a sentence.
     """
 
     rules: _Texts
@@ -34,7 +34,7 @@ class Entry(StrictModel):
 
 
 def read_expected(folder: Path) -> tuple[ExpectedCaveat, ...]:
-    """Return the caveats that a work expects: those of its file, if it has one, and one that is the machine's.
+    """Return the caveats that a study expects: those of its file, if it has one, and one that is the machine's.
 
     Raises:
         RunnerError: if the file does not fit, or names a rule that does not exist; tells entry and key.

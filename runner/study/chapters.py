@@ -20,12 +20,12 @@ from runner.reporting.claims import CLAIMS, FACTOR, Verdict, load_claims
 from runner.reporting.document import Equations, Origin, Section, Verdicts
 from runner.reporting.outline import number_sections
 from runner.store import Calibration, Run
-from runner.study.manifest import About, Part
 from runner.study.claims import judged_claims, legend
 from runner.study.code import Code, public_functions
 from runner.study.findings import Finding
 from runner.study.grids import Grids
 from runner.study.job import Made
+from runner.study.manifest import About, Part
 from runner.study.measured import Measured
 from runner.study.prose import blocks, plots, read_chapter, signals, tables
 from runner.study.prose.reader import Reading
@@ -33,7 +33,7 @@ from runner.study.report import parts
 
 SHARED = (blocks, signals, tables, plots)
 """The modules whose functions every chapter may call."""
-_FIGURES = "figures"  # the module whose functions all chapters of a work may call
+_FIGURES = "figures"  # the module whose functions all chapters of a study may call
 _SECTION = "section"  # the function of a chapter that is Python
 
 Concluded = Callable[[str], tuple[list[Finding], Mapping[str, Any]]]
@@ -41,11 +41,11 @@ Concluded = Callable[[str], tuple[list[Finding], Mapping[str, Any]]]
 
 
 class Chapters:
-    """The chapters of a work, made from its stored runs and calibrations; each file is read once.
+    """The chapters of a study, made from its stored runs and calibrations; each file is read once.
 
     Args:
-        folder: The work's folder.
-        about: What work.yaml says.
+        folder: The study's folder.
+        about: What study.yaml says.
         code: Its Python.
         grids: Its runs.yaml.
         command: What `runner reproduce` takes for it: its name or its folder.
@@ -101,7 +101,7 @@ class Chapters:
         """Return what a chapter in Markdown may call and read, by name.
 
         These are the shared blocks, which find calibrations among the runs; the public functions of `figures.py` and of
-        the module that bears the chapter's name; and what work.yaml, runs.yaml and claims.yaml hold. A function whose
+        the module that bears the chapter's name; and what study.yaml, runs.yaml and claims.yaml hold. A function whose
         first argument is `runs`, `calibrations` or `concluded` gets the runs, the calibrations, or the method above.
         """
         presets, tunings = self._about.presets, self._grids.tunings
@@ -144,7 +144,7 @@ class Chapters:
         return Measured(words, float(given.count({verdict})))
 
     def _equations(self, caption: str) -> Equations:
-        """Return the printed equations of the work with their verdicts."""
+        """Return the printed equations of the study with their verdicts."""
         judged = audit(Source(self._folder, self._code.runs))
         return Equations(caption, rows(judged), Origin(command=self._command), self._folder.name)
 

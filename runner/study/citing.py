@@ -13,7 +13,7 @@ def citing_section(title: str, source: str, bibtex: str, runs: Mapping[str, Run]
     """Return how the report is cited, and its source where that is known.
 
     Args:
-        title: Title of the work.
+        title: Title of the study.
         source: Whose it is.
         bibtex: Entry of the source; empty where there is none.
         runs: The stored runs behind the report, by name.

@@ -21,7 +21,7 @@ _DIGITS = 4  # at least as many as a source prints
 
 
 def legend(claims: Sequence[PublishedClaim]) -> str:
-    """Return what the words of the verdicts on a work's claims mean: of the kinds of claims that it has."""
+    """Return what the words of the verdicts on a study's claims mean: of the kinds of claims that it has."""
     numbers, motions = [claim for claim in claims if claim.metric], [claim for claim in claims if claim.extents]
     told = []
     if numbers:
@@ -48,8 +48,8 @@ def judged_claims(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], pre
     """Return each claim with what the runs say of it, under each preset.
 
     Args:
-        claims: All claims of a work: a bound of one names another.
-        runs: The stored runs of the work, by names such as "figure_3_5/full_equations"; see `run_name`.
+        claims: All claims of a study: a bound of one names another.
+        runs: The stored runs of the study, by names such as "figure_3_5/full_equations"; see `run_name`.
         presets: Names of the presets under which they are judged, with their words; where there are none, once.
 
     Raises:
@@ -64,7 +64,7 @@ def judged_statements(
     """Return each statement with its verdict, numbered in order.
 
     Args:
-        statements: All statements of a work.
+        statements: All statements of a study.
         judged: Verdict on each by its name, and what was measured.
 
     Raises:
@@ -80,7 +80,7 @@ def judged_statements(
 
 
 def run_name(experiment: str, preset: str) -> str:
-    """Return the name that the run of an experiment has among the runs of a work: "sources/name" is "name/preset"."""
+    """Return the name that the run of an experiment has among the runs of a study: "sources/name" is "name/preset"."""
     name = experiment.rpartition("/")[2]
     return f"{name}/{preset}" if preset else name
 
@@ -90,8 +90,8 @@ class _Claimed:
 
     Args:
         claim: The claim.
-        claims: All claims of its work.
-        runs: The stored runs of its work, by name.
+        claims: All claims of its study.
+        runs: The stored runs of its study, by name.
         presets: Names of the presets with their words.
     """
 

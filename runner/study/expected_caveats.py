@@ -15,12 +15,12 @@ _TOLD = 20  # unexpected caveats that the report names one by one
 
 @dataclass(frozen=True)
 class ExpectedCaveat:
-    """A caveat that some runs of a work are to have.
+    """A caveat that some runs of a study are to have.
 
     Attributes:
         rule: Name of the rule that finds it.
         runs: Pattern of the names of the runs, such as "figure_5_*/as_reported".
-        why: Why it is there, and why the work's conclusions stand; a sentence.
+        why: Why it is there, and why the study's conclusions stand; a sentence.
     """
 
     rule: str
@@ -33,9 +33,9 @@ class ExpectedCaveat:
 
 
 def unexpected_caveats(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[str]:
-    """Return the caveats that a work does not expect, a line for each."""
+    """Return the caveats that a study does not expect, a line for each."""
     return [
-        f"{name}: caveat {caveat['rule']}, which the work does not expect: {caveat['text']}"
+        f"{name}: caveat {caveat['rule']}, which the study does not expect: {caveat['text']}"
         for name, run in runs.items()
         for caveat in run.caveats
         if not any(each.covers(name, caveat) for each in expected)
@@ -43,7 +43,7 @@ def unexpected_caveats(runs: Mapping[str, Run], expected: Sequence[ExpectedCavea
 
 
 def caveats_as_data(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[dict[str, object]]:
-    """Return every caveat of a work's runs, with why it is expected, or None, as plain data."""
+    """Return every caveat of a study's runs, with why it is expected, or None, as plain data."""
     return [
         {
             "run": name,
@@ -56,7 +56,7 @@ def caveats_as_data(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat])
 
 
 def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> Section:
-    """Return which caveats a work's runs have, and why; a warning on top where one is not expected."""
+    """Return which caveats a study's runs have, and why; a warning on top where one is not expected."""
     lines = unexpected_caveats(runs, expected)
     blocks: list[Block] = []
     if lines:
@@ -64,7 +64,7 @@ def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat])
         text = literal(f"{'; '.join(lines[:_TOLD])}{more}.")
         blocks.append(
             Notice(
-                "warning", f"{len(lines)} caveat{'s' if len(lines) > 1 else ''} that this work does not expect", text
+                "warning", f"{len(lines)} caveat{'s' if len(lines) > 1 else ''} that this study does not expect", text
             )
         )
     reasons = dict.fromkeys((each.rule, each.why) for each in expected)

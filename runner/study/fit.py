@@ -18,12 +18,12 @@ from runner.simulation.sensors import make_sensors
 from runner.study.alike import difference, setting
 from runner.study.estimate import Amount, counted, estimate_all, planned
 from runner.study.gains import without_gains
-from runner.study.plugins import GivenPart
 from runner.study.grid import Overrides
 from runner.study.items import Way
+from runner.study.plugins import GivenPart
+from runner.study.study import Study
 from runner.study.tune import read_number
 from runner.study.tunings import Tuning, key_of
-from runner.study.study import Work
 from runner.sweeps.job import PROBED_TICKS
 
 
@@ -73,23 +73,23 @@ class Fit:
             self._found[text] = first, count + 1
 
 
-def fit(work: Work, without: Work, part: GivenPart) -> Fit:
-    """Return how a law of the user's fits among those of a work; nothing is stored.
+def fit(study: Study, without: Study, part: GivenPart) -> Fit:
+    """Return how a law of the user's fits among those of a study; nothing is stored.
 
     Args:
-        work: The work with the law.
-        without: The same work without it.
+        study: The study with the controller.
+        without: The same study without it.
         part: The law.
     """
-    tunings = [each for each in work.untuned() if each.law == part.name]
+    tunings = [each for each in study.untuned() if each.law == part.name]
     ranged = {each.overrides: each for each in tunings if each.ranges}
     found = Fit(bool(ranged))
-    counts = counted(work, tunings, {part.override})
+    counts = counted(study, tunings, {part.override})
     compared: dict[Overrides, tuple[str, Overrides]] = {}
-    for name, own, other in work.compared():
+    for name, own, other in study.compared():
         compared.setdefault(without_gains(own), (name, without_gains(other)))
     cells = [*dict.fromkeys([*compared, *counts])]
-    plan = planned(cells, Way(Path("outputs"), config_dirs=work.config_dirs))
+    plan = planned(cells, Way(Path("outputs"), config_dirs=study.config_dirs))
     seen: set[str] = set()
     begun: set[str] = set()
     ended: set[str] = set()

@@ -38,8 +38,8 @@ from runner.config.compose.user_settings import refuse_settings
 from runner.schema.model import StrictModel
 from runner.study.arithmetic import Level
 from runner.study.gains import check_named
-from runner.study.plugins import GivenPart
 from runner.study.grid import Grid, Overrides
+from runner.study.plugins import GivenPart
 from runner.study.profiles import Profile
 from runner.study.tunings import TunedGrid, Tuning, all_tunings
 
@@ -53,7 +53,7 @@ class _Values(StrictModel):
 
 
 class Grids:
-    """The grids of a work.
+    """The grids of a study.
 
     Args:
         path: Its runs.yaml.

@@ -35,9 +35,9 @@ class LeftOutError(MissingError):
 
 
 class Made(dict[str, Thing]):
-    """The runs or calibrations of a work by name; asking for one that was not made raises MissingError.
+    """The runs or calibrations of a study by name; asking for one that was not made raises MissingError.
 
-    One that is not of the work is refused with the nearest name, so that no condition is left without its runs.
+    One that is not of the study is refused with the nearest name, so that no condition is left without its runs.
 
     Args:
         found: Those that were made.
@@ -57,7 +57,7 @@ class Made(dict[str, Thing]):
             raise MissingError(f"{name}: {self.missing[name]}")
         if name in self.dropped:
             raise LeftOutError(f"{name}: {self.dropped[name]}")
-        raise RunnerError(f"the work has no run or calibration '{name}'{nearest(name, [*self, *self.missing])}")
+        raise RunnerError(f"the study has no run or calibration '{name}'{nearest(name, [*self, *self.missing])}")
 
 
 def distinct(named: Mapping[str, Stored]) -> list[Stored]:

@@ -10,12 +10,12 @@ from runner.store import Run
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 from runner.study.claims import run_name
-from runner.study.study import Work
+from runner.study.study import Study
 
 _JUDGED_BY = {"printed", "metric", "extents", "fails", "bound", "like"}
 
 
-def late_claims(outputs: Path, work: Work, runs: Mapping[str, Run], date: str = "") -> list[str]:
+def late_claims(outputs: Path, study: Study, runs: Mapping[str, Run], date: str = "") -> list[str]:
     """Return for each claim that was changed since these runs were first judged when that was, and what stood before.
 
     What claims are judged by is kept in `claims/NAME.json` of the outputs folder, on this date, or where it is empty
@@ -24,10 +24,10 @@ def late_claims(outputs: Path, work: Work, runs: Mapping[str, Run], date: str = 
     Raises:
         StoreError: if the file is damaged, or the disk does not take it.
     """
-    path, late = outputs / "claims" / f"{work.name}.json", []
+    path, late = outputs / "claims" / f"{study.name}.json", []
     known = read_json(path, "remove it to forget what claims were judged by").get("claims", {}) if path.exists() else {}
-    for claim in load_claims(work.folder) if (work.folder / CLAIMS).is_file() else ():
-        names = [run_name(simulated_by(claim)[0], preset) for preset in work.about.presets or ("",)]
+    for claim in load_claims(study.folder) if (study.folder / CLAIMS).is_file() else ():
+        names = [run_name(simulated_by(claim)[0], preset) for preset in study.about.presets or ("",)]
         if all(name in runs for name in names):
             value = claim.model_dump(mode="json", include=_JUDGED_BY)
             key = " ".join([str(claim.number), *(runs[name].hash for name in names)])

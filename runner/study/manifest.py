@@ -1,4 +1,4 @@
-"""Manifest of a study, `work.yaml`: titles, chapters, presets and profiles."""
+"""Manifest of a study, `study.yaml`: titles, chapters, presets and profiles."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -8,7 +8,7 @@ from pydantic import Field
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.base.paths import WORK_FILE
+from runner.base.paths import STUDY_FILE
 from runner.schema.model import StrictModel
 from runner.study.profiles import Profile
 
@@ -44,19 +44,19 @@ class CoverRun(StrictModel):
 
 
 class About(StrictModel):
-    """All that `work.yaml` says.
+    """All that `study.yaml` says.
 
     Attributes:
         title: Title of the report.
-        source: One line below it: whose work it is.
+        source: One line below it: author and institution of the source.
         abstract: What comes out; inline mathematics between dollar signs.
         chapters: Files of the chapters in order, `.md` or `.py`, and chapters that have files as sections.
         presets: Names of the presets under which claims are judged, with their words.
-        in_all: Whether `runner reproduce all` makes the work.
+        in_all: Whether `runner reproduce all` makes the study.
         traces: Whether its runs keep their traces, which figures over time read.
-        plugins: Parts of the work's own, GROUP=WORK_FILE.py each, such as "controller=spring.py".
+        plugins: Parts of the study's own, GROUP=FILE.py each, such as "controller=spring.py".
         profiles: Profiles by name.
-        default_profile: Name of the profile by which it is made where none is chosen; empty for the whole work.
+        default_profile: Name of the profile by which it is made where none is chosen; empty for the whole study.
         cover: What moves on the first screen.
         bibtex: BibTeX entry of the source.
     """
@@ -81,12 +81,12 @@ class About(StrictModel):
 
 
 def read_about(folder: Path) -> About:
-    """Return what a work's folder says of it.
+    """Return what a study's folder says of it.
 
     Raises:
-        RunnerError: if `work.yaml` cannot be read or does not fit, or names a file that is not there.
+        RunnerError: if `study.yaml` cannot be read or does not fit, or names a file that is not there.
     """
-    path = folder / WORK_FILE
+    path = folder / STUDY_FILE
     about = read_data(path, About)
     there = sorted(each.name for each in folder.iterdir() if each.suffix in _SUFFIXES)
     problems = [

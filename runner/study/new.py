@@ -3,12 +3,12 @@
 from pathlib import Path
 
 from runner.base.errors import RunnerError
-from runner.base.paths import example_work_dir
+from runner.base.paths import example_study_dir
 from runner.store.atomic import write_atomically
 
 
 def write_new(folder: Path) -> list[Path]:
-    """Write a small work that runs at once; return its files.
+    """Write a small study that runs at once; return its files.
 
     Args:
         folder: Where; made if it is not there.
@@ -18,7 +18,7 @@ def write_new(folder: Path) -> list[Path]:
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise RunnerError(f"{folder}: is there already, and not empty; name a new folder")
-    sources = sorted(path for path in example_work_dir().iterdir() if path.suffix in (".yaml", ".md"))
+    sources = sorted(path for path in example_study_dir().iterdir() if path.suffix in (".yaml", ".md"))
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for path in sources:

@@ -11,7 +11,7 @@ from runner.base.errors import RunnerError
 
 @dataclass(frozen=True)
 class GivenPart:
-    """A part of the user's that stands beside those of a work.
+    """A part of the user's that stands beside those of a study.
 
     Attributes:
         group: Its config group, such as "controller".

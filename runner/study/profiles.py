@@ -14,7 +14,7 @@ G = TypeVar("G", bound=Grid)
 
 
 class Profile(StrictModel):
-    """What differs from the whole work.
+    """What differs from the whole study.
 
     Attributes:
         repetitions: Repetitions of every run; None leaves those of the grids.

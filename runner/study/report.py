@@ -14,7 +14,7 @@ from runner.study.expected_caveats import ExpectedCaveat, caveats_section, unexp
 from runner.study.job import LeftOutError, Made, MissingError, distinct
 
 
-def work_document(
+def study_document(
     title: str,
     subtitle: str,
     abstract: str,
@@ -27,18 +27,18 @@ def work_document(
     cover: Cover | None = None,
     bibtex: str = "",
 ) -> Document:
-    """Return the report on a published work.
+    """Return the report on a study.
 
     Args:
-        title: The work's title.
+        title: The study's title.
         subtitle: Whose it is.
         abstract: What comes out; inline mathematics as in Text.
         chapters: The report's own chapters.
-        runs: The stored runs of the work's plan, by name.
-        calibrations: The stored calibrations of the work, by name.
-        expected: The caveats that the work expects of them.
-        checklist: What of the work is to stand where, for the last chapter; None where the work has no list.
-        code: What is to be said of the work's own code; nothing where it has none.
+        runs: The stored runs of the study's plan, by name.
+        calibrations: The stored calibrations of the study, by name.
+        expected: The caveats that the study expects of them.
+        checklist: What of the study is to stand where, for the last chapter; None where the study has no list.
+        code: What is to be said of the study's own code; nothing where it has none.
         cover: The picture of the first screen.
         bibtex: BibTeX entry of the source; empty where there is none.
     """
@@ -72,7 +72,7 @@ def _where_from(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]
     blocks: list[Block] = [Text(text)]
     if runs:
         rows = provenance(list(runs.values())).rows
-        blocks.append(Provenance([*rows, *([("code of the work", code)] if code else [])]))
+        blocks.append(Provenance([*rows, *([("code of the study", code)] if code else [])]))
     return Section("Provenance", blocks)
 
 

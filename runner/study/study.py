@@ -11,17 +11,17 @@ from runner.base.paths import check_inside
 from runner.plugins.discovery import use_plugins
 from runner.reporting.claims import CLAIMS, load_claims
 from runner.store import Calibration, Run
-from runner.study.manifest import read_about
 from runner.study.caveats import read_expected
 from runner.study.code import Code
 from runner.study.expected_caveats import ExpectedCaveat
 from runner.study.gains import Gains, named, put_in, read_gains
-from runner.study.plugins import GivenPart
 from runner.study.grid import Overrides
 from runner.study.grids import FILE as RUNS
 from runner.study.grids import Grids
 from runner.study.job import Job, Jobs, distinct
-from runner.study.names import Place, find_work
+from runner.study.manifest import read_about
+from runner.study.names import Place, find_study
+from runner.study.plugins import GivenPart
 from runner.study.profiles import Profile
 from runner.study.tunings import Tuning
 
@@ -35,21 +35,21 @@ _PLAN = "plan"  # module whose computed_runs() and calibrations(given) add to ru
 _MEASURE = "measure"  # module and function that measures what no run does
 
 
-class Work:
-    """A published work, read from its folder; docs/paper.md tells what stands in it.
+class Study:
+    """A study, read from its folder; docs/paper.md describes the format.
 
     Args:
         place: Where it is.
         allow_code: Whether Python of a folder that is no installed package may run.
-        profile: Name of the profile by which it is made; empty for the one that work.yaml names, or the whole work.
+        profile: Name of the profile by which it is made; empty for the one that study.yaml names, or the whole study.
         parts: Parts of the user's that stand beside its own.
 
     Attributes:
         name: What it is called.
         folder: Its folder.
-        about: What work.yaml says.
+        about: What study.yaml says.
         installed: Whether it is an installed package.
-        profile: The profile by which it is made; empty for the whole work.
+        profile: The profile by which it is made; empty for the whole study.
         expected: The caveats that its runs are to have.
         tuned: The gains that were tuned and not read from its folder.
 
@@ -134,7 +134,7 @@ class Work:
         self._gains = {**self._gains, **gains}
 
     def dropped(self) -> dict[str, str]:
-        """Return the runs and calibrations of the whole work that its profile does without, each with why."""
+        """Return the runs and calibrations of the whole study that its profile does without, each with why."""
         if not self.profile:
             return {}
         whole, kept = Grids(self.folder / RUNS), {**self._grids.runs, **self._grids.calibrations}
@@ -157,7 +157,7 @@ class Work:
         return Chapters(self.folder, self.about, self._code, self._grids, command, runs, calibrations)
 
     def measure(self, outputs: Path) -> None:
-        """Measure what no run does, such as computing times, into an outputs folder, where the work does so."""
+        """Measure what no run does, such as computing times, into an outputs folder, where the study does so."""
         function = self._code.functions(_MEASURE).get(_MEASURE)
         if function is not None:
             function(outputs)
@@ -173,9 +173,9 @@ class Work:
             chapters: What makes its chapters from these, if some have been read.
         """
         from runner.study.checklist import load_checklist
-        from runner.study.report import work_document
+        from runner.study.report import study_document
 
-        made = work_document(
+        made = study_document(
             title=self.about.title,
             subtitle=self.about.source,
             abstract=self.about.abstract,
@@ -191,13 +191,13 @@ class Work:
         return replace(made, sections=[*self._by_profile(runs), *made.sections])
 
     def _by_profile(self, runs: Mapping[str, Run]) -> "Iterator[Section]":
-        """Yield what the profile makes otherwise than the whole work; nothing where that is nothing."""
+        """Yield what the profile makes otherwise than the whole study; nothing where that is nothing."""
         from runner.reporting.document import Section, Text
 
         dropped, repetitions = self.dropped(), self._profile.repetitions if self._profile else None
         if not (dropped or repetitions):
             return
-        less = " and leaves out some of the whole work" if dropped else ""
+        less = " and leaves out some of the whole study" if dropped else ""
         each = f" Every run has {repetitions} repetitions." if repetitions else ""
         text = f"The profile {self.profile} takes {len(distinct(runs)):,} runs{less}.{each}"
         yield Section("Made with a profile", (Text(text),))
@@ -237,16 +237,16 @@ class Work:
         return profiles[profile] if profile else None
 
 
-def load_work(
+def load_study(
     name: str,
     allow_code: bool = False,
     profile: str = "",
     others: Sequence[str] = (),
     parts: Sequence[GivenPart] = (),
-) -> Work:
-    """Return a work by its name, or by its folder; see Work and find_work.
+) -> Study:
+    """Return a study by its name, or by its folder; see Study and find_study.
 
     Raises:
         RunnerError: if there is none, or its data do not fit.
     """
-    return Work(find_work(name, others), allow_code, profile, parts)
+    return Study(find_study(name, others), allow_code, profile, parts)

@@ -36,8 +36,8 @@ from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.plugins.metric_units import unit_of, units
 from runner.study.arithmetic import Level
-from runner.study.plugins import GivenPart
 from runner.study.grid import FlatOverrides, Grid, Overrides
+from runner.study.plugins import GivenPart
 from runner.sweeps.tuning.key import Key
 
 Factor = Annotated[float, Field(gt=0.0)]

@@ -12,7 +12,7 @@ def typed_in_module(path: Path, names: Iterable[str]) -> Iterator[str]:
 
     Args:
         path: The module.
-        names: Names of the work's runs; a number with its unit that stands in one is a level of an axis.
+        names: Names of the study's runs; a number with its unit that stands in one is a level of an axis.
     """
     levels = levels_in(names)
     tree = ast.parse(path.read_text(encoding="utf-8"))

@@ -41,7 +41,7 @@ def parser_of(command: str) -> Parser | None:
 
 
 def _awaited(parser: argparse.ArgumentParser, words: Sequence[str]) -> tuple[argparse.Action | None, Sequence[str]]:
-    """Return the argument that comes next after some words; of an action such as `work new` with the words from it."""
+    """Return the argument that comes next after some words; of an action such as `study new` with the words from it."""
     options, positionals = _options(parser), parser._get_positional_actions()
     place, rest = 0, list(words)
     while rest:
@@ -89,7 +89,7 @@ def _values(action: argparse.Action, line: Line, root: str, before: str = "") ->
         yield from override_words(line, root)
     elif names is not None:
         yield from _listed(word, before, names(line.words[0]))
-    if action.dest == "work" or (action.metavar in _FILES and not isinstance(action.type, Stored)):
+    if action.dest == "study" or (action.metavar in _FILES and not isinstance(action.type, Stored)):
         yield from files(line.word, before, folders_only=action.metavar not in ("FILE", "URDF"))
 
 
@@ -123,10 +123,10 @@ def metric_names() -> Iterable[str]:
     return known
 
 
-def _works(command: str) -> Iterable[str]:
-    from runner.study.names import work_names
+def _studies(command: str) -> Iterable[str]:
+    from runner.study.names import study_names
 
-    return (*work_names(), *(("audit", "all") if command == "reproduce" else ()))
+    return (*study_names(), *(("audit", "all") if command == "reproduce" else ()))
 
 
 _FILES = ("DIR", "FILE", "URDF")
@@ -135,5 +135,5 @@ _NAMED: Mapping[str, Callable[[str], Iterable[str]]] = {
     "topic": _topics,
     "metric": _metrics,
     "objectives": _metrics,
-    "work": _works,
+    "study": _studies,
 }

@@ -75,7 +75,7 @@ def cells(
     """Return what the laws did on an arm, by condition.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         arm: Level of the axis arm.
         grid: How the runs' names begin: "first"; "engine", the same on another plant; "learned"; or "changed", where
             the change stands in place of a condition and there is one tuning.

@@ -26,7 +26,7 @@ def best_laws(runs: Mapping[str, Run], question: str, caption: str) -> list[Tabl
     """Return the laws that none is shown to be ahead of, on each arm under each condition, and who is next.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         question: One of QUESTIONS.
         caption: What is seen.
     """
@@ -58,7 +58,7 @@ def troubles(runs: Mapping[str, Run], question: str, gains: str, caption: str) -
     """Return the share of repetitions of each law that failed as maps, an arm each; a sentence where none did.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         question: One of QUESTIONS.
         gains: "tuned" or "untuned".
         caption: What is seen.
@@ -78,7 +78,7 @@ def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: s
     """Return the error of each law in the first round against what another metric says of its torques, by arm.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         metric: The metric, such as "torque_chatter".
         label: Its axis, with unit.
         condition: The condition.
@@ -130,7 +130,7 @@ def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> l
     """Return the share of repetitions that failed of each law under a condition, in per cent.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         gains: "tuned" or "untuned".
         condition: The condition.
         arms: The arms; all where none is named.

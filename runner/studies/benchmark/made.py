@@ -47,7 +47,7 @@ CONDITIONS = {
 
 
 class _Kept:
-    """What was worked out of the runs of one work, as every table and finding asks for it again."""
+    """What was worked out of the runs of one study, as every table and finding asks for it again."""
 
     runs: Mapping[str, Run]
     cells: dict[tuple[object, ...], dict[str, Cell]]

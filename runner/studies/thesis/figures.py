@@ -90,7 +90,7 @@ def reproduced(
     """Return one published figure, such as "3.5", with both presets in it, and what the plant's step is worth in it.
 
     Args:
-        runs: The runs of the work by name.
+        runs: The runs of the study by name.
         number: Number of the figure.
         what: What moves, in a few words.
         metrics: The metrics that its caption compares.

@@ -41,7 +41,7 @@ def found(runs: Mapping[str, Run], pattern: str, by: Sequence[str] = ()) -> list
     """Return the runs that a pattern stands for, sorted by levels, each axis in the order of the plan.
 
     Args:
-        runs: The runs of a work by name, in the order of its plan.
+        runs: The runs of a study by name, in the order of its plan.
         pattern: A run's name in which an axis in braces stands for any of its levels.
         by: In which order the axes are gone through, the outermost first; the others follow as the pattern has them.
 

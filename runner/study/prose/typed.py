@@ -9,7 +9,7 @@ _BOX = re.compile(r"^::: finding (.*?)^:::$", re.MULTILINE | re.DOTALL)
 _MATHEMATICS = re.compile(r"\$[^$]*\$")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?: [a-zA-Z%]+)?")
 _PARTS = re.compile(r"[/,] ?")
-# Names that hold a digit: parts of the source, of the arm, and of what the works number.
+# Names that hold a digit: parts of the source, of the arm, and of what the studies number.
 _NAMED = re.compile(
     r"\b(?:[Ff]igures?|[Ss]ections?|[Tt]ables?|[Cc]laims?|[Cc]hapters?|[Ee]quations?|[Mm]ethods?|[Jj]oints?|[Ll]inks?|"
     r"[Ff]rames?|[Pp]oses?|Mini|xArm|Meca|rk|RK|q)"
@@ -23,7 +23,7 @@ def typed_numbers(file: str, text: str, levels: Set[str]) -> Iterator[str]:
     Args:
         file: Name of the chapter's file.
         text: Its content.
-        levels: Levels of axes, as the names of the work's runs have them; these may be typed.
+        levels: Levels of axes, as the names of the study's runs have them; these may be typed.
     """
     for box in _BOX.finditer(text):
         words = "\n".join("" if line.startswith("holds:") else line for line in _blank(box[1]).splitlines())

@@ -1,4 +1,4 @@
-"""`runner benchmark check`: laws that fit and laws that do not, against a small work with one law of ours."""
+"""`runner benchmark check`: laws that fit and laws that do not, against a small study with one law of ours."""
 
 import re
 import shutil
@@ -37,14 +37,14 @@ tunings:
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    """A folder with a law of one's own, which is in use, and a work that takes it."""
+    """A folder with a law of one's own, which is in use, and a study that takes it."""
     (tmp_path / "mine" / "controller").mkdir(parents=True)
     for file in (f"{LAW}.py", CONFIG):
         shutil.copy(EXAMPLE / file, tmp_path / "mine" / file)
     ranges = "controller.natural_frequency: [0.2, 1.5]\ncontroller.damping_ratio: [0.5, 1.5]\n"
     (tmp_path / "mine" / RANGES).write_text(ranges)
     (tmp_path / "paper").mkdir()
-    (tmp_path / "paper" / "work.yaml").write_text("{title: T, source: S, abstract: A, chapters: [a.md]}")
+    (tmp_path / "paper" / "study.yaml").write_text("{title: T, source: S, abstract: A, chapters: [a.md]}")
     (tmp_path / "paper" / "a.md").write_text("# A\n\nText.\n")
     (tmp_path / "paper" / "runs.yaml").write_text(RUNS)
     monkeypatch.setattr(sys, "path", [*sys.path])

@@ -13,13 +13,13 @@ from runner.studies.meca500.frequency_response import fitted_response
 from runner.studies.meca500.limits import limits
 from runner.studies.meca500.plan import REPORTED, law
 from runner.studies.meca500.step_response import step
-from runner.study.study import load_work
+from runner.study.study import load_study
 
 
 @pytest.fixture(scope="module")
 def planned(shared_store):
     """Run a job of the plan by its name, with further overrides."""
-    jobs = load_work("meca500").jobs()
+    jobs = load_study("meca500").jobs()
     return lambda name, *overrides: make_runs(shared_store, {name: (*jobs[name].overrides, *overrides)})[name]
 
 

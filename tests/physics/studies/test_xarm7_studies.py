@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.study_plans import xarm7_studies
 from support.thin_plans import make_runs
-from support.work_plans import xarm7_studies
 
 from runner.store import Run
 from runner.studies.xarm7.figures import ROWS, first_saturation, lag, sag

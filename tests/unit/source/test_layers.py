@@ -1,4 +1,4 @@
-"""Rooms know only those before them: drawings know no report, the vocabulary of reports no audit and no work."""
+"""Rooms know only those before them: drawings know no report, the vocabulary of reports no audit and no study."""
 
 import ast
 from pathlib import Path
@@ -28,6 +28,6 @@ def test_drawings_and_numbers_as_text_know_no_report():
     assert known([*DRAWING, Path(runner.base.quantities.__file__)], "runner.report", "runner.study") == []
 
 
-def test_the_vocabulary_knows_nothing_of_the_audit_and_the_works():
+def test_the_vocabulary_knows_nothing_of_the_audit_and_the_studies():
     names = ("document.py", "markup.py", "templating.py", "html.py", "pdf.py", "formulas.py")
     assert known([FOLDER / name for name in names], "runner.audit", "runner.study") == []

@@ -65,9 +65,9 @@ def test_its_test_is_there(row):
 def test_the_modules_listed_are_those_that_read_something():
     listed = {name for row in ROWS for name in re.findall(r"`([\w/]+\.py)`", row[2])}
     places = {f"hydra_plugins/{path.name}": path for path in (ROOT / "hydra_plugins").glob("*.py")}
-    of_works = {path.parent for path in (ROOT / "runner/study").glob("*/__init__.py")}
+    of_studies = {path.parent for path in (ROOT / "runner/study").glob("*/__init__.py")}
     for path in (ROOT / "runner").rglob("*.py"):
-        if not of_works.intersection(path.parents):
+        if not of_studies.intersection(path.parents):
             places[path.relative_to(ROOT / "runner").as_posix()] = path
     assert listed == {name for name, path in places.items() if readers(path.read_text())}
 

@@ -21,8 +21,8 @@ def judge(tmp_path):
 
     def judged(date, runs=RUNS, **changes):
         (tmp_path / "claims.yaml").write_text(yaml.safe_dump([CLAIM | changes]))
-        work = SimpleNamespace(name="mine", folder=tmp_path, about=SimpleNamespace(presets=dict.fromkeys("ab", "")))
-        return late_claims(tmp_path / "outputs", work, runs, date)
+        study = SimpleNamespace(name="mine", folder=tmp_path, about=SimpleNamespace(presets=dict.fromkeys("ab", "")))
+        return late_claims(tmp_path / "outputs", study, runs, date)
 
     return judged
 
@@ -43,9 +43,9 @@ def test_other_runs_are_another_result_and_those_that_are_missing_none(judge):
     assert judge("2026-03-04", printed=[2.9])
 
 
-def test_a_work_without_claims_leaves_no_file(tmp_path):
-    work = SimpleNamespace(name="mine", folder=tmp_path)
-    assert late_claims(tmp_path / "outputs", work, {}) == []
+def test_a_study_without_claims_leaves_no_file(tmp_path):
+    study = SimpleNamespace(name="mine", folder=tmp_path)
+    assert late_claims(tmp_path / "outputs", study, {}) == []
     assert list(tmp_path.iterdir()) == []
 
 

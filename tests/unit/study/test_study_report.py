@@ -1,4 +1,4 @@
-"""A work whose report lacks some of its runs: what needs them says so, all else stands."""
+"""A study whose report lacks some of its runs: what needs them says so, all else stands."""
 
 import pytest
 
