@@ -2,7 +2,7 @@
 
 `runner reproduce all --json FILE` writes FILE, for all studies or for some. Each table is below a comment that names
 the study and its claims. Their verdicts are stored in bench/studies.json, and a test compares the page with that file,
-because only whole runs have them. `--check` changes nothing, and ends with 1 where the page says something else than FILE.
+because only whole runs have them. `--check` writes nothing, and exits with 1 if the page differs from FILE.
 """
 
 import argparse

@@ -84,9 +84,9 @@ def test_the_table_counts_by_package_and_shows_what_was_not_found():
     lines = list(table(results))
     counts = {line.split()[0]: line.split()[1:] for line in lines[1:5]}
     assert counts == {
-        "runner": ["0", "0", "0", "1"],
+        "runner/cli": ["0", "0", "0", "1"],
         "runner/plants": ["1", "1", "0", "0"],
-        "runner/study": ["0", "0", "1", "0"],
+        "runner/studies": ["0", "0", "1", "0"],
         "all": ["1", "1", "1", "1"],
     }
     assert lines[5:] == [
