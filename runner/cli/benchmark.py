@@ -17,7 +17,7 @@ from runner.cli.arguments import ActionParser, Parser
 from runner.plugins.discovery import in_use, use_plugins
 
 if TYPE_CHECKING:
-    from runner.study.plugins import GivenPart
+    from runner.study.plugins import UserPlugin
 
 STUDY = "benchmark"
 
@@ -35,10 +35,10 @@ def main(arguments: Sequence[str]) -> int:
 def _check(options: Namespace) -> int:
     quiet_environment()
     use_plugins([f"controller={options.law}"])
-    from runner.study.plugins import given_parts
+    from runner.study.plugins import read_user_plugins
     from runner.sweeps.loading import Loader
 
-    (part,) = given_parts(in_use()[-1:])
+    (part,) = read_user_plugins(in_use()[-1:])
     workers = Loader().sweeper([]).workers
     for line in check_law(STUDY, options.profile, part, workers):
         print(one_line(line))
@@ -47,7 +47,7 @@ def _check(options: Namespace) -> int:
     return 0
 
 
-def check_law(name: str, profile: str, part: "GivenPart", workers: int) -> Iterator[str]:
+def check_law(name: str, profile: str, part: "UserPlugin", workers: int) -> Iterator[str]:
     """Yield how a law fits in a study that takes such: a line for each arm, and what all takes.
 
     Args:

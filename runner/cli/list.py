@@ -115,12 +115,14 @@ def _list_baselines(_: Sequence[Path]) -> dict[str, str]:
 
 
 def _list_studies(_: Sequence[Path]) -> dict[str, str]:
-    from runner.study.manifest import read_about
+    from runner.study.manifest import read_manifest
     from runner.study.names import find_study, study_names
 
-    found = {name: read_about(find_study(name).folder) for name in study_names()}
-    apart = {name: "" if about.in_all else " (not made by `runner reproduce all`)" for name, about in found.items()}
-    return {name: f"{about.title}. {about.source}{apart[name]}" for name, about in found.items()}
+    found = {name: read_manifest(find_study(name).folder) for name in study_names()}
+    apart = {
+        name: "" if manifest.in_all else " (not made by `runner reproduce all`)" for name, manifest in found.items()
+    }
+    return {name: f"{manifest.title}. {manifest.source}{apart[name]}" for name, manifest in found.items()}
 
 
 TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from runner.reporting.document import Document
     from runner.store import Calibration, Run
     from runner.study.expected_caveats import ExpectedCaveat
-    from runner.study.plugins import GivenPart
+    from runner.study.plugins import UserPlugin
     from runner.study.study import Study
 
 AUDIT = "audit"
@@ -45,7 +45,7 @@ class _Way:
     command: str
     profile: str = ""
     code: bool = False
-    parts: "Sequence[GivenPart]" = ()
+    parts: "Sequence[UserPlugin]" = ()
 
 
 @dataclass(frozen=True)
@@ -93,13 +93,13 @@ def main(arguments: Sequence[str]) -> int:
     return 1 if fallen or any(each.missing for each in made.values()) else 0
 
 
-def _parts(study: str) -> "tuple[GivenPart, ...]":
+def _parts(study: str) -> "tuple[UserPlugin, ...]":
     """Return the parts that --plugin names, for one study that may take them."""
-    from runner.study.plugins import given_parts
+    from runner.study.plugins import read_user_plugins
 
     if in_use() and study in (AUDIT, "all"):
         raise RunnerError(f"reproduce {study}: --plugin gives a part to one study; name it")
-    return given_parts(in_use())
+    return read_user_plugins(in_use())
 
 
 def _chosen(text: str, way: _Way) -> "list[Study | None]":
@@ -116,7 +116,7 @@ def _chosen(text: str, way: _Way) -> "list[Study | None]":
         return [None]
     if text != "all":
         return [load_study(text, way.code, way.profile, (AUDIT, "all"), way.parts)]
-    studies = [study for name in study_names() if (study := load_study(name, way.code, way.profile)).about.in_all]
+    studies = [study for name in study_names() if (study := load_study(name, way.code, way.profile)).manifest.in_all]
     return [None, *sorted(studies, key=lambda study: len(study.jobs()))]
 
 

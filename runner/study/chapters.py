@@ -24,8 +24,8 @@ from runner.study.claims import judged_claims, legend
 from runner.study.code import Code, public_functions
 from runner.study.findings import Finding
 from runner.study.grids import Grids
-from runner.study.job import Made
-from runner.study.manifest import About, Part
+from runner.study.job import Results
+from runner.study.manifest import Manifest, Part
 from runner.study.measured import Measured
 from runner.study.prose import blocks, plots, read_chapter, signals, tables
 from runner.study.prose.reader import Reading
@@ -45,7 +45,7 @@ class Chapters:
 
     Args:
         folder: The study's folder.
-        about: What study.yaml says.
+        manifest: Content of study.yaml.
         code: Its Python.
         grids: Its runs.yaml.
         command: What `runner reproduce` takes for it: its name or its folder.
@@ -56,22 +56,22 @@ class Chapters:
     def __init__(
         self,
         folder: Path,
-        about: About,
+        manifest: Manifest,
         code: Code,
         grids: Grids,
         command: str,
         runs: Mapping[str, Run],
         calibrations: Mapping[str, Calibration],
     ) -> None:
-        self._folder, self._about, self._code, self._grids = folder, about, code, grids
+        self._folder, self._manifest, self._code, self._grids = folder, manifest, code, grids
         self._command = shlex.join(["runner", "reproduce", command])
         self._runs, self._calibrations = runs, calibrations
         self._readings: dict[str, Reading] = {}
 
     def sections(self) -> list[Section]:
         """Return all chapters; one that needs what was not made says so in its place."""
-        progress.begin(CHAPTERS, None, _count(self._about.chapters), "chapters")
-        return self._each(self._about.chapters)
+        progress.begin(CHAPTERS, None, _count(self._manifest.chapters), "chapters")
+        return self._each(self._manifest.chapters)
 
     def concluded(self, name: str) -> tuple[list[Finding], Mapping[str, Any]]:
         """Return the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
@@ -104,7 +104,7 @@ class Chapters:
         the module that bears the chapter's name; and what study.yaml, runs.yaml and claims.yaml hold. A function whose
         first argument is `runs`, `calibrations` or `concluded` gets the runs, the calibrations, or the method above.
         """
-        presets, tunings = self._about.presets, self._grids.tunings
+        presets, tunings = self._manifest.presets, self._grids.tunings
         found: dict[str, Any] = {
             "level_of": self._grids.level,
             "value": self._grids.value,
@@ -124,15 +124,15 @@ class Chapters:
             found |= _filled(self._code.functions(name), own)
         return found
 
-    def _stored(self) -> Made[Run | Calibration]:
+    def _stored(self) -> Results[Run | Calibration]:
         """Return runs and calibrations in one."""
-        made = [each for each in (self._runs, self._calibrations) if isinstance(each, Made)]
+        made = [each for each in (self._runs, self._calibrations) if isinstance(each, Results)]
         missing = ChainMap(*(each.missing for each in made))
         dropped = ChainMap(*(each.dropped for each in made))
-        return Made({**self._runs, **self._calibrations}, missing, dropped)
+        return Results({**self._runs, **self._calibrations}, missing, dropped)
 
     def _claims(self) -> list[Claim]:
-        return judged_claims(load_claims(self._folder), self._runs, self._about.presets)
+        return judged_claims(load_claims(self._folder), self._runs, self._manifest.presets)
 
     def _legend(self) -> str:
         """Return what the words of its verdicts mean; nothing where it has no claims."""

@@ -29,13 +29,13 @@ def problems(study: Study, runs: Mapping[str, Run], calibrations: Mapping[str, C
     """
     levels, chapters = levels_in([*runs, *calibrations]), study.chapters(runs, calibrations)
     faults = 0
-    for file in study.about.files():
+    for file in study.manifest.files():
         for line in _of_chapter(study, file, chapters, levels):
             faults += 1
             yield line
     yield from (f"{study.name}: {name}: expected caveats: no run of it is named so" for name in _unused(study, runs))
     yield from unexpected_caveats(runs, study.expected)
-    cover = study.about.cover
+    cover = study.manifest.cover
     if cover is not None and cover.run not in {**runs, **study.dropped()}:
         yield f"{study.folder.name}/{STUDY_FILE}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
     if not faults:
@@ -46,7 +46,7 @@ def problems(study: Study, runs: Mapping[str, Run], calibrations: Mapping[str, C
 
 def formulas_at(study: Study, document: Document) -> Iterator[str]:
     """Yield each formula of a study's report that cannot be read, with file and line where a chapter has it."""
-    texts = [(file, chapter_text(study.folder / file)) for file in study.about.files()]
+    texts = [(file, chapter_text(study.folder / file)) for file in study.manifest.files()]
     for formula in faulty(document):
         found = ((file, text.count("\n", 0, text.index(formula)) + 1) for file, text in texts if formula in text)
         file, line = next(found, (STUDY_FILE, 1))

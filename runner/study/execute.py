@@ -12,7 +12,7 @@ from runner.store import Calibration, Run
 from runner.store.provenance import portable_overrides
 from runner.study.estimate import counted, estimate_all, planned, told
 from runner.study.items import Way, listed, make_items
-from runner.study.job import Made
+from runner.study.job import Results
 from runner.study.study import Study
 from runner.study.tune import find_gains
 from runner.study.tunings import Tuning
@@ -24,7 +24,7 @@ from runner.sweeps.plan import check
 
 def make_all(
     study: Study, outputs: Path, overrides: Sequence[str] = (), command: str = "runner reproduce"
-) -> tuple[Made[Run], Made[Calibration]]:
+) -> tuple[Results[Run], Results[Calibration]]:
     """Make the runs and calibrations of a study that are not stored yet; return all by name.
 
     Gains that its runs take and that are not known are tuned at first.
@@ -46,7 +46,7 @@ def make_all(
         _tell_estimate(study, tunings, way)
     study.take(find_gains(tunings, way))
     jobs, calibrations = study.jobs(), study.calibrations()
-    made = make_items(_items(study), way, trace="all" if study.about.traces else "never")
+    made = make_items(_items(study), way, trace="all" if study.manifest.traces else "never")
     missing = {name: each.missing for name, each in made.items() if each.missing}
     finished = store.Finished(outputs)
     stored = {name: finished.open(made[name].place) for name in jobs if name not in missing}
@@ -57,8 +57,8 @@ def make_all(
         if name not in missing
     }
     return (
-        Made(runs, {name: why for name, why in missing.items() if name in jobs}, study.dropped()),
-        Made(found, {name: why for name, why in missing.items() if name in calibrations}, study.dropped()),
+        Results(runs, {name: why for name, why in missing.items() if name in jobs}, study.dropped()),
+        Results(found, {name: why for name, why in missing.items() if name in calibrations}, study.dropped()),
     )
 
 

@@ -20,7 +20,7 @@ from runner.study.estimate import Amount, counted, estimate_all, planned
 from runner.study.gains import without_gains
 from runner.study.grid import Overrides
 from runner.study.items import Way
-from runner.study.plugins import GivenPart
+from runner.study.plugins import UserPlugin
 from runner.study.study import Study
 from runner.study.tune import read_number
 from runner.study.tunings import Tuning, key_of
@@ -73,7 +73,7 @@ class Fit:
             self._found[text] = first, count + 1
 
 
-def fit(study: Study, without: Study, part: GivenPart) -> Fit:
+def fit(study: Study, without: Study, part: UserPlugin) -> Fit:
     """Return how a law of the user's fits among those of a study; nothing is stored.
 
     Args:
@@ -114,7 +114,7 @@ def fit(study: Study, without: Study, part: GivenPart) -> Fit:
     return found
 
 
-def _validated(composed: Composed, part: GivenPart) -> RunConfig:
+def _validated(composed: Composed, part: UserPlugin) -> RunConfig:
     """Return a checked config.
 
     Raises:
@@ -153,7 +153,7 @@ def _first_ticks(config: RunConfig) -> Tick:
     return Tick(config.timing.tick, float(np.median(trace.tick_seconds)), None if failure is None else failure.time)
 
 
-def _check_ends(tuning: Tuning, composed: Composed, part: GivenPart, found: Fit) -> None:
+def _check_ends(tuning: Tuning, composed: Composed, part: UserPlugin, found: Fit) -> None:
     """Note what is wrong with a law at both ends of each of its ranges."""
     for name, factors in tuning.ranges.items():
         try:

@@ -34,7 +34,7 @@ class LeftOutError(MissingError):
     """A run or calibration that the profile leaves out."""
 
 
-class Made(dict[str, Thing]):
+class Results(dict[str, Thing]):
     """The runs or calibrations of a study by name; asking for one that was not made raises MissingError.
 
     One that is not of the study is refused with the nearest name, so that no condition is left without its runs.

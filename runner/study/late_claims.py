@@ -27,7 +27,7 @@ def late_claims(outputs: Path, study: Study, runs: Mapping[str, Run], date: str 
     path, late = outputs / "claims" / f"{study.name}.json", []
     known = read_json(path, "remove it to forget what claims were judged by").get("claims", {}) if path.exists() else {}
     for claim in load_claims(study.folder) if (study.folder / CLAIMS).is_file() else ():
-        names = [run_name(simulated_by(claim)[0], preset) for preset in study.about.presets or ("",)]
+        names = [run_name(simulated_by(claim)[0], preset) for preset in study.manifest.presets or ("",)]
         if all(name in runs for name in names):
             value = claim.model_dump(mode="json", include=_JUDGED_BY)
             key = " ".join([str(claim.number), *(runs[name].hash for name in names)])

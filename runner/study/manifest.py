@@ -43,7 +43,7 @@ class CoverRun(StrictModel):
     end: Annotated[float, Field(gt=0.0)] | None = None
 
 
-class About(StrictModel):
+class Manifest(StrictModel):
     """All that `study.yaml` says.
 
     Attributes:
@@ -80,20 +80,20 @@ class About(StrictModel):
             yield from (chapter,) if isinstance(chapter, str) else chapter.sections
 
 
-def read_about(folder: Path) -> About:
+def read_manifest(folder: Path) -> Manifest:
     """Return what a study's folder says of it.
 
     Raises:
         RunnerError: if `study.yaml` cannot be read or does not fit, or names a file that is not there.
     """
     path = folder / STUDY_FILE
-    about = read_data(path, About)
+    manifest = read_data(path, Manifest)
     there = sorted(each.name for each in folder.iterdir() if each.suffix in _SUFFIXES)
     problems = [
         f"chapters: {name}: must be a file of this folder, {' or '.join(_SUFFIXES)}{nearest(name, there)}"
-        for name in about.files()
+        for name in manifest.files()
         if name not in there
     ]
     if problems:
         raise RunnerError("\n".join(f"{path}: {problem}" for problem in problems))
-    return about
+    return manifest

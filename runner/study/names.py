@@ -15,7 +15,7 @@ GROUP = "runner.studies"
 
 
 @dataclass(frozen=True)
-class Place:
+class Location:
     """Where a study is.
 
     Attributes:
@@ -39,7 +39,7 @@ def study_names() -> tuple[str, ...]:
     return tuple(sorted({*studies_with(STUDY_FILE), *(point.name for point in _installed())}))
 
 
-def find_study(text: str, others: Sequence[str] = ()) -> Place:
+def find_study(text: str, others: Sequence[str] = ()) -> Location:
     """Return where a study is, by its name or its folder.
 
     Args:
@@ -50,15 +50,15 @@ def find_study(text: str, others: Sequence[str] = ()) -> Place:
         RunnerError: if there is none.
     """
     if (studies_dir() / text / STUDY_FILE).is_file() and "/" not in text:
-        return Place(text, studies_dir() / text, f"runner.studies.{text}")
+        return Location(text, studies_dir() / text, f"runner.studies.{text}")
     for point in _installed():
         if point.name == text:
-            return Place(text, _folder_of(point), point.value)
+            return Location(text, _folder_of(point), point.value)
     folder = Path(text).resolve()
     if (folder / STUDY_FILE).is_file():
         if folder.name in study_names():
             raise RunnerError(f"{text}: {folder.name} is the name of an installed study; rename the folder")
-        return Place(folder.name, folder)
+        return Location(folder.name, folder)
     for former, present in FILES.items():
         if (folder / former).is_file():
             raise RunnerError(f"{former} is now called {present}.")

@@ -11,7 +11,7 @@ from runner.store import Calibration, Run
 from runner.study.checklist import Checklist
 from runner.study.citing import citing_section
 from runner.study.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
-from runner.study.job import LeftOutError, Made, MissingError, distinct
+from runner.study.job import LeftOutError, MissingError, Results, distinct
 
 
 def study_document(
@@ -42,7 +42,7 @@ def study_document(
         cover: The picture of the first screen.
         bibtex: BibTeX entry of the source; empty where there is none.
     """
-    missing = [_missing(runs.missing)] if isinstance(runs, Made) and runs.missing else []
+    missing = [_missing(runs.missing)] if isinstance(runs, Results) and runs.missing else []
     sections = [*missing, *chapters, caveats_section(runs, expected), _where_from(runs, calibrations, code)]
     date = max((str(run.provenance["date"]) for run in runs.values()), default="")
     listed = [checklist.section(sections)] if checklist else []

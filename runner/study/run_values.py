@@ -68,7 +68,7 @@ def delay_of(run: Run) -> int:
     return int(list(delay.values())[-1] if isinstance(delay, Mapping) else delay)
 
 
-def apart(first: Run, second: Run, signal: str) -> FloatArray:
+def distance(first: Run, second: Run, signal: str) -> FloatArray:
     """Return the distance between a tip signal of two runs at their common ticks, shape (T,), in m."""
     rows = min(len(first.trace), len(second.trace))
     difference = columns(first.trace[:rows], signal) - columns(second.trace[:rows], signal)

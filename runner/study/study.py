@@ -19,9 +19,9 @@ from runner.study.grid import Overrides
 from runner.study.grids import FILE as RUNS
 from runner.study.grids import Grids
 from runner.study.job import Job, Jobs, distinct
-from runner.study.manifest import read_about
-from runner.study.names import Place, find_study
-from runner.study.plugins import GivenPart
+from runner.study.manifest import read_manifest
+from runner.study.names import Location, find_study
+from runner.study.plugins import UserPlugin
 from runner.study.profiles import Profile
 from runner.study.tunings import Tuning
 
@@ -39,7 +39,7 @@ class Study:
     """A study, read from its folder; docs/paper.md describes the format.
 
     Args:
-        place: Where it is.
+        location: Location of its folder.
         allow_code: Whether Python of a folder that is no installed package may run.
         profile: Name of the profile by which it is made; empty for the one that study.yaml names, or the whole study.
         parts: Parts of the user's that stand beside its own.
@@ -47,7 +47,7 @@ class Study:
     Attributes:
         name: What it is called.
         folder: Its folder.
-        about: What study.yaml says.
+        manifest: Content of study.yaml.
         installed: Whether it is an installed package.
         profile: The profile by which it is made; empty for the whole study.
         expected: The caveats that its runs are to have.
@@ -58,29 +58,29 @@ class Study:
     """
 
     def __init__(
-        self, place: Place, allow_code: bool = False, profile: str = "", parts: Sequence[GivenPart] = ()
+        self, location: Location, allow_code: bool = False, profile: str = "", parts: Sequence[UserPlugin] = ()
     ) -> None:
-        self.name, self.folder = place.name, place.folder
-        for path in () if place.package else place.folder.rglob("*"):
+        self.name, self.folder = location.name, location.folder
+        for path in () if location.package else location.folder.rglob("*"):
             if path.is_symlink():
-                check_inside(path, [place.folder])
-        self.about = read_about(place.folder)
-        self.installed = place.package is not None
-        self._ours = place.ours
-        self.profile = profile or self.about.default_profile
+                check_inside(path, [location.folder])
+        self.manifest = read_manifest(location.folder)
+        self.installed = location.package is not None
+        self._ours = location.ours
+        self.profile = profile or self.manifest.default_profile
         self._profile = self._chosen(self.profile)
-        self._code = Code(place.folder, place.package, allow_code)
+        self._code = Code(location.folder, location.package, allow_code)
         self._given = tuple(parts)
-        self._gains: Gains = {} if self._profile and self._profile.tuned_anew else read_gains(place.folder)
+        self._gains: Gains = {} if self._profile and self._profile.tuned_anew else read_gains(location.folder)
         self.tuned: Gains = {}
-        self._grids = Grids(place.folder / RUNS, self._profile, parts)
+        self._grids = Grids(location.folder / RUNS, self._profile, parts)
         self._check_given()
-        self.expected: tuple[ExpectedCaveat, ...] = read_expected(place.folder)
-        if (place.folder / CLAIMS).is_file():
-            load_claims(place.folder)  # told before anything is simulated
+        self.expected: tuple[ExpectedCaveat, ...] = read_expected(location.folder)
+        if (location.folder / CLAIMS).is_file():
+            load_claims(location.folder)  # told before anything is simulated
         self._plugins = self._parts()
         if self._plugins and not self._code.runs:
-            named = ", ".join(self.about.plugins)
+            named = ", ".join(self.manifest.plugins)
             raise RunnerError(f"{self.name}: its runs need {named}: code in a folder runs with --code alone")
         if self._plugins:
             use_plugins(self._plugins)
@@ -154,7 +154,7 @@ class Study:
         from runner.study.chapters import Chapters
 
         command = self.name if self.installed else os.path.relpath(self.folder)
-        return Chapters(self.folder, self.about, self._code, self._grids, command, runs, calibrations)
+        return Chapters(self.folder, self.manifest, self._code, self._grids, command, runs, calibrations)
 
     def measure(self, outputs: Path) -> None:
         """Measure what no run does, such as computing times, into an outputs folder, where the study does so."""
@@ -176,9 +176,9 @@ class Study:
         from runner.study.report import study_document
 
         made = study_document(
-            title=self.about.title,
-            subtitle=self.about.source,
-            abstract=self.about.abstract,
+            title=self.manifest.title,
+            subtitle=self.manifest.source,
+            abstract=self.manifest.abstract,
             chapters=(chapters or self.chapters(runs, calibrations)).sections(),
             runs=runs,
             calibrations=calibrations,
@@ -186,7 +186,7 @@ class Study:
             checklist=load_checklist(self.folder),
             code=self._code.about(),
             cover=self._cover(runs),
-            bibtex=self.about.bibtex,
+            bibtex=self.manifest.bibtex,
         )
         return replace(made, sections=[*self._by_profile(runs), *made.sections])
 
@@ -206,14 +206,14 @@ class Study:
         """Return the picture of the first screen; None where there is none, or its run was not made."""
         from runner.reporting.cover import cover
 
-        wanted = self.about.cover
+        wanted = self.manifest.cover
         if wanted is None or wanted.run not in runs or runs[wanted.run].status == "failed":
             return None
         return cover(runs[wanted.run], wanted.caption, wanted.end)
 
     def _parts(self) -> list[str]:
         """Return its plug-ins, GROUP=FILE each, files by their whole paths."""
-        named = [text.partition("=") for text in self.about.plugins]
+        named = [text.partition("=") for text in self.manifest.plugins]
         for _, _, file in named:
             check_inside(self.folder / file, [self.folder])
         return [f"{group}={self.folder / file}" for group, _, file in named]
@@ -230,7 +230,7 @@ class Study:
         return self._code.functions(_PLAN).get(name, otherwise)(*given)
 
     def _chosen(self, profile: str) -> Profile | None:
-        profiles = self.about.profiles
+        profiles = self.manifest.profiles
         if profile and profile not in profiles:
             there = f"; profiles: {', '.join(profiles)}" if profiles else "; it has none"
             raise RunnerError(f"{self.name}: no profile '{profile}'{nearest(profile, profiles)}{there}")
@@ -242,7 +242,7 @@ def load_study(
     allow_code: bool = False,
     profile: str = "",
     others: Sequence[str] = (),
-    parts: Sequence[GivenPart] = (),
+    parts: Sequence[UserPlugin] = (),
 ) -> Study:
     """Return a study by its name, or by its folder; see Study and find_study.
 

@@ -146,4 +146,4 @@ def recorded_jobs(study: str) -> dict[str, Overrides]:
 
 def chapter_files(study: str) -> list[str]:
     """Return the files of a study's chapters."""
-    return list(load_study(study).about.files())
+    return list(load_study(study).manifest.files())

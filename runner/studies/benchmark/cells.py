@@ -10,7 +10,7 @@ from runner.base.errors import RunnerError
 from runner.store import Run
 from runner.studies.benchmark.leads import Entry, Lead, leads
 from runner.study.alike import difference, setting
-from runner.study.job import Made
+from runner.study.job import Results
 from runner.study.prose.patterns import found
 
 UNTUNED = ("untuned",)
@@ -58,7 +58,7 @@ class Cell:
 
 def tuned(runs: Mapping[str, Run]) -> tuple[str, ...]:
     """Return the gains of the tunings that the runs are to have, in order: "1", "2" and so on."""
-    names = [*runs, *(runs.missing if isinstance(runs, Made) else ())]
+    names = [*runs, *(runs.missing if isinstance(runs, Results) else ())]
     last = {name.rpartition("/")[2] for name in names if name.startswith("first/")}
     return tuple(sorted(own for own in last if own.isdecimal()))
 

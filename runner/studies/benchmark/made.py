@@ -6,7 +6,7 @@ from runner.reporting.answers import SHARE
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import ALL_SEEDS, ROUND, Cell, cells
-from runner.study.job import LeftOutError, Made
+from runner.study.job import LeftOutError, Results
 from runner.study.prose.patterns import found
 
 ARMS = {
@@ -109,7 +109,7 @@ def turned(runs: Mapping[str, Run], arm: str, condition: str) -> str:
 
 def arms_of(runs: Mapping[str, Run]) -> list[str]:
     """Return the arms of the runs, in one order."""
-    names = [*runs, *(runs.missing if isinstance(runs, Made) else ())]
+    names = [*runs, *(runs.missing if isinstance(runs, Results) else ())]
     there = {name.split("/")[1] for name in names if name.startswith("first/")}
     return [arm for arm in ARMS if arm in there]
 

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from runner.base.quantities import number
 from runner.store import Run
 from runner.study.measured import Measured
-from runner.study.run_values import apart, median
+from runner.study.run_values import distance, median
 
 Told = Callable[..., float | None]
 
@@ -38,7 +38,7 @@ def tracking_error(run: Run) -> float | None:
 
 def tip_distance(run: Run, reference: Run) -> float:
     """Return the largest distance of the tips of two runs at their common times, in m."""
-    return float(apart(run, reference, "tip").max())
+    return float(distance(run, reference, "tip").max())
 
 
 def measured(words: str, what: Told, unit: str, *runs: Run) -> Measured:

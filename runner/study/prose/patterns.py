@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from runner.base.errors import RunnerError, nearest
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.study.job import Made
+from runner.study.job import Results
 
 _BRACES = re.compile(r"\{(\w+)(?:=([^{}]+))?\}")
 _WHOLE = re.compile(r"^(-?\d+)\.0$")
@@ -53,7 +53,7 @@ def found(runs: Mapping[str, Run], pattern: str, by: Sequence[str] = ()) -> list
     for axis in by:
         if axis not in axes:
             raise RunnerError(f"the pattern {pattern} has no axis '{axis}'{nearest(axis, axes)}")
-    names = [*runs, *(runs.missing if isinstance(runs, Made) else ())]
+    names = [*runs, *(runs.missing if isinstance(runs, Results) else ())]
     levels = dict(_matches(names, pattern))
     if not levels:
         raise RunnerError(f"no run is named like '{pattern}'{nearest(pattern, names)}")

@@ -22,9 +22,9 @@ def norm(name: str) -> Callable[[Run], FloatArray]:
     return signal
 
 
-def apart(name: str = "tip") -> Callable[[Run, Run], FloatArray]:
+def distance(name: str = "tip") -> Callable[[Run, Run], FloatArray]:
     """Return the distance between such a vector of two runs at their common times."""
-    return lambda run, twin: run_values.apart(run, twin, name)
+    return lambda run, twin: run_values.distance(run, twin, name)
 
 
 def moved(name: str) -> Callable[[Run], FloatArray]:

@@ -9,7 +9,7 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.cli.benchmark import check_law
-from runner.study.plugins import given_parts
+from runner.study.plugins import read_user_plugins
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
 LAW = "gravity_pd"
@@ -55,7 +55,7 @@ def mine(tmp_path, monkeypatch):
 
 
 def told(mine):
-    (part,) = given_parts([f"controller={mine / LAW}.py"])
+    (part,) = read_user_plugins([f"controller={mine / LAW}.py"])
     return [*check_law(str(mine.parent / "paper"), "", part, 2)]
 
 
@@ -129,7 +129,7 @@ def test_a_law_called_as_one_of_ours_is_refused(mine):
     (mine / f"{LAW}.py").rename(mine / "impedance.py")
     (mine / "controller" / f"{LAW}.yaml").rename(mine / "controller" / "impedance.yaml")
     changed(mine / "controller" / "impedance.yaml", "kind: gravity_pd", "kind: impedance")
-    (part,) = given_parts([f"controller={mine}/impedance.py"])
+    (part,) = read_user_plugins([f"controller={mine}/impedance.py"])
     with pytest.raises(RunnerError, match=r"is one of ours|no name of a law of ours"):
         [*check_law(str(mine.parent / "paper"), "", part, 2)]
 

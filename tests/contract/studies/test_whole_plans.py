@@ -36,7 +36,7 @@ def whole(study: str, folder: Path, jobs: Mapping[str, tuple[str, ...]]) -> Made
 
 
 def never_failing_in(made: Made) -> list[str]:
-    files = [file for file in made.study.about.files() if file.endswith(".md")]
+    files = [file for file in made.study.manifest.files() if file.endswith(".md")]
     return [told for file in files for told in never_failing(file, made.chapters.reading(file.removesuffix(".md")))]
 
 

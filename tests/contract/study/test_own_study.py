@@ -166,9 +166,11 @@ def test_code_that_cannot_be_imported_is_told(tmp_path, made):
 
 
 def test_a_run_that_was_not_made_leaves_its_chapter_out(tmp_path, made):
-    from runner.study.job import Made
+    from runner.study.job import Results
 
-    runs = Made({name: each for name, each in made.items() if name != "goal/slow/0.1"}, {"goal/slow/0.1": "cut short"})
+    runs = Results(
+        {name: each for name, each in made.items() if name != "goal/slow/0.1"}, {"goal/slow/0.1": "cut short"}
+    )
     _, (section,) = read(a_study(tmp_path / "paper"), runs)
     assert section.title == "Left out: One"
     assert "goal/slow/0.1: cut short" in section.blocks[0].text

@@ -145,11 +145,11 @@ def test_the_gains_of_a_tuning_have_numbers():
 
 
 def test_a_law_of_the_reader_s_has_its_ranges_beside_its_module(paper, tmp_path):
-    from runner.study.plugins import GivenPart
+    from runner.study.plugins import UserPlugin
 
     mine = tmp_path / "mine"
     (mine / "controller").mkdir(parents=True)
-    part = GivenPart("controller", "spring", str(mine / "spring.py"), mine)
+    part = UserPlugin("controller", "spring", str(mine / "spring.py"), mine)
     study = paper(("over: {law: *laws}\n", "over: {law: *laws}\n    plugins: {law: controller}\n"))
     path = study.folder / "runs.yaml"
     assert Grids(path, None, [part]).tunings["planar/spring"].ranges == {}

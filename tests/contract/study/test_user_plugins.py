@@ -8,7 +8,7 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.study.grids import Grids
-from runner.study.plugins import given_parts
+from runner.study.plugins import read_user_plugins
 from runner.study.study import load_study
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
@@ -45,7 +45,7 @@ def mine(tmp_path, monkeypatch):
 
 @pytest.fixture
 def part(mine):
-    return given_parts([f"controller={mine / LAW}.py"])
+    return read_user_plugins([f"controller={mine / LAW}.py"])
 
 
 def grids(tmp_path, text, parts):

@@ -16,7 +16,7 @@ from runner.study.expected_caveats import (
     caveats_section,
     unexpected_caveats,
 )
-from runner.study.job import Made
+from runner.study.job import Results
 from runner.study.run_values import cell, measured
 from runner.study.study import load_study
 
@@ -82,7 +82,7 @@ def test_what_a_study_expects_is_of_known_rules_and_of_runs_that_it_has(study):
 
 
 def test_a_run_that_a_study_does_not_have_is_refused_with_the_nearest_name():
-    made = Made({"figure_3_5/full_equations": run_with()}, {"figure_3_6/full_equations": "not begun"})
+    made = Results({"figure_3_5/full_equations": run_with()}, {"figure_3_6/full_equations": "not begun"})
     with pytest.raises(
         RunnerError,
         match=r"no run or calibration 'figure_3_5/full_equation' \(did you mean figure_3_5/full_equations\?\)",

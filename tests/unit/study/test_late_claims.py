@@ -21,7 +21,7 @@ def judge(tmp_path):
 
     def judged(date, runs=RUNS, **changes):
         (tmp_path / "claims.yaml").write_text(yaml.safe_dump([CLAIM | changes]))
-        study = SimpleNamespace(name="mine", folder=tmp_path, about=SimpleNamespace(presets=dict.fromkeys("ab", "")))
+        study = SimpleNamespace(name="mine", folder=tmp_path, manifest=SimpleNamespace(presets=dict.fromkeys("ab", "")))
         return late_claims(tmp_path / "outputs", study, runs, date)
 
     return judged

@@ -4,10 +4,10 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.reporting.document import Section, Text
-from runner.study.job import Made, MissingError
+from runner.study.job import MissingError, Results
 from runner.study.report import parts
 
-RUNS = Made({"a": 1, "b": 2}, {"c": "cut short: killed for $5"})
+RUNS = Results({"a": 1, "b": 2}, {"c": "cut short: killed for $5"})
 
 
 def section(name):
