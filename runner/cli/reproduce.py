@@ -171,8 +171,8 @@ def _reproduce_study(study: "Study", way: _Way) -> _Reproduced:
     """Make what a study needs, and its document."""
     from runner.reporting.markup import literal
     from runner.study.check import formulas_at
+    from runner.study.claims import late_claims
     from runner.study.execute import make_all
-    from runner.study.late_claims import late_claims
 
     progress.plan(of_study(len(study.jobs()) + len(study.calibrations())))
     study.measure(way.outputs)

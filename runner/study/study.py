@@ -11,9 +11,8 @@ from runner.base.paths import check_inside
 from runner.plugins.discovery import use_plugins
 from runner.reporting.claims import CLAIMS, load_claims
 from runner.store import Calibration, Run
-from runner.study.caveats import read_expected
 from runner.study.code import Code
-from runner.study.expected_caveats import ExpectedCaveat
+from runner.study.expected_caveats import ExpectedCaveat, read_expected
 from runner.study.gains import Gains, named, put_in, read_gains
 from runner.study.grid import Overrides
 from runner.study.grids import FILE as RUNS

@@ -3,7 +3,9 @@
 from collections.abc import Callable
 
 from runner.base.quantities import number
+from runner.reporting.figures import model_of
 from runner.store import Run
+from runner.studies.engines.side_by_side import difference, mujoco_of
 from runner.study.measured import Measured
 from runner.study.run_values import distance, median
 
@@ -50,3 +52,13 @@ def measured(words: str, what: Told, unit: str, *runs: Run) -> Measured:
 def share_of(run: Run, other: Run, reference: Run) -> float:
     """Return how far a run is from another one, as a share of how far it is from a reference."""
     return tip_distance(run, other) / tip_distance(run, reference)
+
+
+def cost(run: Run) -> float:
+    """Return the median time that a tick took, over the time that it simulates."""
+    return float(run.record["timing"]["tick_time_median"]) / float(run.config["controller"]["period"])
+
+
+def acceleration_off(run: Run) -> float:
+    """Return how far a MuJoCo run's accelerations are from Pinocchio's at random states at most, as a share."""
+    return difference(model_of(run), mujoco_of(run)).acceleration

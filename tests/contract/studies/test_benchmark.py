@@ -16,8 +16,7 @@ from runner.cli.reproduce import _chosen, _Way
 from runner.reporting.formulas import faulty
 from runner.studies.benchmark import engines
 from runner.studies.benchmark.cells import cells
-from runner.studies.benchmark.figures import said
-from runner.studies.benchmark.halves import halves
+from runner.studies.benchmark.figures import halves, said
 from runner.studies.benchmark.horizon import grown
 from runner.studies.benchmark.how_tuned import ends_of
 from runner.studies.benchmark.late_and_limited import bearable

@@ -6,11 +6,18 @@ from support.thin_plans import make_runs
 
 from runner.controllers.force.admittance_stability import stiffest_wall
 from runner.studies.meca500.admittance_response import sampled_frequency_response
-from runner.studies.meca500.at_the_tip import filtered_turn
-from runner.studies.meca500.contact import forces
-from runner.studies.meca500.figures import bounces, displacement, law_of, servo_compliance, turned, wrenches
+from runner.studies.meca500.figures import (
+    bounces,
+    displacement,
+    filtered_turn,
+    forces,
+    law_of,
+    limits,
+    servo_compliance,
+    turned,
+    wrenches,
+)
 from runner.studies.meca500.frequency_response import fitted_response
-from runner.studies.meca500.limits import limits
 from runner.studies.meca500.plan import REPORTED, law
 from runner.studies.meca500.step_response import step
 from runner.study.study import load_study
