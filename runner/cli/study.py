@@ -44,7 +44,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _new(options: Namespace) -> int:
-    from runner.study.new import write_new
+    from runner.study.names import write_new
 
     for path in write_new(options.folder):
         print(path)

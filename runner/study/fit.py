@@ -1,9 +1,10 @@
-"""Compatibility check of a user-supplied controller with a study."""
+"""Compatibility check of a user-supplied controller with a study, and comparison of settings of runs."""
 
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from runner.controllers import CONTROLLERS
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_sensors
-from runner.study.alike import difference, setting
+from runner.store import simulated_part
 from runner.study.estimate import Amount, counted, estimate_all, planned
 from runner.study.gains import without_gains
 from runner.study.grid import Overrides
@@ -24,6 +25,7 @@ from runner.study.plugins import UserPlugin
 from runner.study.study import Study
 from runner.study.tune import read_number
 from runner.study.tunings import Tuning, key_of
+from runner.sweeps.differing import entries
 from runner.sweeps.job import PROBED_TICKS
 
 
@@ -172,3 +174,29 @@ def _check_ends(tuning: Tuning, composed: Composed, part: UserPlugin, found: Fit
                 found.add(tuning.name, _unlike((f"{part.name} with {text}", end), composed))
             except ConfigError as error:
                 found.add(f"{tuning.name} with {text}", error.problems)
+
+
+_LAW = ("controller", "disturbance_observer")
+
+
+def setting(config: Mapping[str, Any]) -> dict[str, str]:
+    """Return all that decides about a run but its law, with what the law carries; of the law the period stays.
+
+    Args:
+        config: The resolved config of the run.
+    """
+    part = simulated_part(config)
+    period = {"controller.period": part["controller"].get("period")}
+    return dict(entries({key: value for key, value in part.items() if key not in _LAW} | period))
+
+
+def difference(one: tuple[str, Mapping[str, str]], other: tuple[str, Mapping[str, str]]) -> str:
+    """Return in which key the settings of two laws differ, each given with the law's name; empty where in none."""
+    (law, ours), (their_law, theirs) = one, other
+    if ours == theirs:
+        return ""
+    key = next(key for key in dict.fromkeys([*ours, *theirs]) if ours.get(key) != theirs.get(key))
+    return (
+        f"{key} is {ours.get(key, 'none')} for {law} and {theirs.get(key, 'none')} for {their_law}; laws are compared "
+        "where nothing but they and their gains differ"
+    )

@@ -39,8 +39,8 @@ from runner.schema.model import StrictModel
 from runner.study.arithmetic import Level
 from runner.study.gains import check_named
 from runner.study.grid import Grid, Overrides
+from runner.study.manifest import Profile
 from runner.study.plugins import UserPlugin
-from runner.study.profiles import Profile
 from runner.study.tunings import TunedGrid, Tuning, all_tunings
 
 FILE = "runs.yaml"

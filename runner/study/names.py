@@ -1,4 +1,4 @@
-"""Names and folders of the installed studies, found without importing them."""
+"""Names and folders of the installed studies, found without importing them, and a new study from the template."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,7 +8,8 @@ from pathlib import Path
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.former_names import FILES
-from runner.base.paths import STUDY_FILE, studies_dir, studies_with
+from runner.base.paths import STUDY_FILE, example_study_dir, studies_dir, studies_with
+from runner.store.atomic import write_atomically
 
 GROUP = "runner.studies"
 """The group of entry points by which an installed package says that it is a study."""
@@ -85,3 +86,24 @@ def _folder_of(point: EntryPoint) -> Path:
     if not folders or not (Path(folders[0]) / STUDY_FILE).is_file():
         raise RunnerError(f"study {point.name}: package {point.value} has no {STUDY_FILE}")
     return Path(folders[0])
+
+
+def write_new(folder: Path) -> list[Path]:
+    """Write a small study that runs at once; return its files.
+
+    Args:
+        folder: Where; made if it is not there.
+
+    Raises:
+        RunnerError: if there is something in the folder already, or it cannot be written.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise RunnerError(f"{folder}: is there already, and not empty; name a new folder")
+    sources = sorted(path for path in example_study_dir().iterdir() if path.suffix in (".yaml", ".md"))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in sources:
+            write_atomically(folder / path.name, path.read_bytes())
+    except OSError as error:
+        raise RunnerError(f"{folder}: cannot be written: {error.strerror}") from error
+    return [folder / path.name for path in sources]

@@ -18,10 +18,9 @@ from runner.study.grid import Overrides
 from runner.study.grids import FILE as RUNS
 from runner.study.grids import Grids
 from runner.study.job import Job, Jobs, distinct
-from runner.study.manifest import read_manifest
+from runner.study.manifest import Profile, read_manifest
 from runner.study.names import Location, find_study
 from runner.study.plugins import UserPlugin
-from runner.study.profiles import Profile
 from runner.study.tunings import Tuning
 
 if TYPE_CHECKING:  # drawing comes with these

@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from runner.study.prose.typed import levels_in, typed_in
+from runner.study.check import levels_in, typed_in
 
 
 def typed_in_module(path: Path, names: Iterable[str]) -> Iterator[str]:

@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.store import Run
 from runner.studies.benchmark.leads import Entry, Lead, leads
-from runner.study.alike import difference, setting
+from runner.study.fit import difference, setting
 from runner.study.job import Results
 from runner.study.prose.patterns import found
 

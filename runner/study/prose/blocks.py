@@ -17,7 +17,7 @@ from runner.store import Run
 from runner.study import run_values
 from runner.study.measured import Measured
 from runner.study.prose.patterns import axes_of, called, found
-from runner.study.prose.reading import Signal, config_value, number_of
+from runner.study.run_values import Signal, config_value, number_of
 
 
 def metric(runs: Mapping[str, Run], run: str, name: str, words: str = "", end: str = "median") -> Measured:

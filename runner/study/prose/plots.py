@@ -12,7 +12,7 @@ from runner.reporting.document import Curves, Map, Maps, Panel, Series
 from runner.reporting.figures import AXES, joint_columns, origin
 from runner.store import Run
 from runner.study.prose.patterns import axes_of, called, found, other
-from runner.study.prose.reading import Signal, number_of, times_of, trace_of
+from runner.study.run_values import Signal, number_of, times_of, trace_of
 
 Style = Literal["line", "dashed", "dotted", "points", "points_line"]
 _POINTS = 100  # of the curve of a closed form

@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study import run_values
-from runner.study.prose.reading import Signal, check_signal, config_value, trace_of
+from runner.study.run_values import Signal, check_signal, config_value, trace_of
 
 
 def norm(name: str) -> Callable[[Run], FloatArray]:

@@ -11,8 +11,7 @@ from runner.reporting.metric_titles import title
 from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.prose.patterns import Found, axes_of, called, found, other
-from runner.study.prose.reading import Signal
-from runner.study.run_values import cell, median
+from runner.study.run_values import Signal, cell, median
 
 _DASH, _NEVER = "–", "never"
 

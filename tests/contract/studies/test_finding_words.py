@@ -4,7 +4,7 @@ import pytest
 from support.finding_words import typed_in_module
 
 from runner.base.paths import package_dir
-from runner.study.prose.typed import levels_in, typed_numbers
+from runner.study.check import levels_in, typed_numbers
 from runner.study.study import load_study
 
 

@@ -11,8 +11,7 @@ from runner.base.paths import example_study_dir
 from runner.cli.main import dispatch
 from runner.reporting.document import Table
 from runner.study.check import problems
-from runner.study.names import find_study, study_names
-from runner.study.new import write_new
+from runner.study.names import find_study, study_names, write_new
 from runner.study.study import load_study
 from runner.sweeps.execution import run
 
