@@ -11,8 +11,7 @@ from runner.reporting.document import Curves, Maps, Origin, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, tuned
-from runner.studies.benchmark.leads import Entry, Lead
+from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, Entry, Lead, tuned
 from runner.studies.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell, turned
 from runner.study.measured import Measured
 from runner.study.prose.patterns import found

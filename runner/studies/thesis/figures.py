@@ -15,8 +15,7 @@ from runner.reporting.figures import AXES, columns, joint_columns, model_of, ori
 from runner.reporting.words import PRESET, in_words
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
-from runner.studies.thesis.compared import Compared, takeaway
-from runner.studies.thesis.engines import parting, step_of_both
+from runner.studies.thesis.compared import Compared, parting, step_of_both, takeaway
 from runner.studies.thesis.equations.truths.thesis_printed import compare
 from runner.study.job import PRESETS
 from runner.study.measured import Measured

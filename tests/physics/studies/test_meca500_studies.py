@@ -5,7 +5,6 @@ import pytest
 from support.thin_plans import make_runs
 
 from runner.controllers.force.admittance_stability import stiffest_wall
-from runner.studies.meca500.admittance_response import sampled_frequency_response
 from runner.studies.meca500.figures import (
     bounces,
     displacement,
@@ -17,7 +16,7 @@ from runner.studies.meca500.figures import (
     turned,
     wrenches,
 )
-from runner.studies.meca500.frequency_response import fitted_response
+from runner.studies.meca500.frequency_response import fitted_response, sampled_frequency_response
 from runner.studies.meca500.plan import REPORTED, law
 from runner.studies.meca500.step_response import step
 from runner.study.study import load_study
