@@ -28,7 +28,7 @@ def main(arguments: Sequence[str]) -> int:
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=ActionParser)
     check = actions.add_parser("check", help="does a law of yours fit?")
     check.add_argument("law", metavar="FILE", help="your law, a Python file")
-    check.add_argument("--profile", default="", metavar="P", help="a smaller or larger making of the benchmark")
+    check.add_argument("--profile", default="", metavar="P", help="a smaller or larger version of the benchmark")
     return _check(parser.parse_args(arguments))
 
 

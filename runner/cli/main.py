@@ -41,7 +41,7 @@ runner: config-driven experiments for robot-arm control, with reports
   runner sensitivity RUN [--metrics A,B] [--parameters gains,masses,...] [--finite-differences]
                                                  which parameter a run's metrics depend on most, by exact derivatives
   runner study new FOLDER                        write a first study of your own, to reproduce another paper;
-                                                 check FOLDER looks through it, diff OLD NEW compares two makings
+                                                 check FOLDER looks through it, diff OLD NEW compares two versions
   runner benchmark check LAW.py [--profile P]    does a law of yours fit in the benchmark, and how long will it take?
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,

@@ -72,7 +72,9 @@ def main(arguments: Sequence[str]) -> int:
     )
     parser.add_argument("--check", action="store_true", help="exit 1 where a finding fell or a caveat is unexpected")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings, caveats, numbers")
-    parser.add_argument("--profile", default="", metavar="P", help="a smaller or larger making that study.yaml names")
+    parser.add_argument(
+        "--profile", default="", metavar="P", help="a smaller or larger version, by its name in study.yaml"
+    )
     parser.add_argument("--code", action="store_true", help="run the Python of FOLDER")
     options = parser.parse_intermixed_args(arguments)
     others = [text for text in options.overrides if not text.startswith(_FREE) or text.startswith("sweep.trace")]

@@ -61,11 +61,11 @@ def read_conclusions(path: Path) -> Mapping[str, Any]:
 
 
 def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Change]:
-    """Return what is not the same in two makings, by kind, numbers that moved most first.
+    """Return what is not the same in two versions, by kind, numbers that moved most first.
 
     Args:
         old: Conclusions by the studies' names, also those of an earlier version of this package.
-        new: The same of another making.
+        new: The same of another version.
     """
     before, after = dict(_flat(old, new)), dict(_flat(new, old))
     found = [

@@ -1,4 +1,4 @@
-"""What moved between two makings of a study."""
+"""What moved between two versions of a study."""
 
 import copy
 import json
