@@ -1,4 +1,4 @@
-"""Kills workers and the command itself at random moments of a sweep, a work or a tuning; then counts what is stored."""
+"""Kills workers and the command itself at random times in a sweep, a study or a tuning; then counts the stored runs."""
 
 import contextlib
 import os
@@ -41,7 +41,7 @@ def torture(folder: Path, arguments: list[str], workers: int, commands: int, see
 
 
 def torture_command(folder: Path, command: list[str], workers: int, commands: int, seed: int, pause: float) -> Tally:
-    """Do the same to any command that makes runs, of a sweep, a work or a tuning, in `outputs` of a folder."""
+    """Do the same to any command that makes runs, of a sweep, a study or a tuning, in `outputs` of a folder."""
     outputs = folder / "outputs"
     draw = random.Random(seed)  # noqa: S311
     victims = ["worker"] * workers + ["command"] * commands
@@ -160,7 +160,7 @@ def _is_as_undisturbed(name: str, command: list[str], kills: tuple[int, int], pa
 
 
 def main() -> bool:
-    """Kill 25 times in each of two sweeps, ten times in a work and in a tuning; return whether all is as it should."""
+    """Kill 25 times in each of two sweeps, ten times in a study and in a tuning; return whether all is as it should."""
     arguments = ["robot=macro", "trajectory=quintic", "noise=thesis", "seed=range(0,2000)", "repetitions=4"]
     met = True
     for trace in ("all", "never"):
@@ -170,7 +170,7 @@ def main() -> bool:
         met = met and tally.lost == 0 and tally.doubled == 0 and not tally.leftovers
     tuned = "controller.natural_frequency=interval(5,40)"
     tuning = ["tune", *arguments[:3], tuned, "--minimize=max_tracking_error", "--trials=200"]
-    works = (("reproduce", ["reproduce", "xarm7"]), ("tune", tuning))
-    for name, command in works:
+    studies = (("reproduce", ["reproduce", "xarm7"]), ("tune", tuning))
+    for name, command in studies:
         met = _is_as_undisturbed(name, command, (5, 5), 1.0) and met
     return met

@@ -224,7 +224,7 @@ def _bullets(docstring: str) -> dict[str, str]:
 
 
 def _chapters() -> Iterator[str]:
-    yield "What a chapter of a [work](paper.md) may call. `runs` is filled in.\n\n| Call | Gives |\n|---|---|\n"
+    yield "What a chapter of a [study](paper.md) may call. `runs` is filled in.\n\n| Call | Gives |\n|---|---|\n"
     for module in SHARED:
         for name, function in public_functions(module).items():
             call = f"{name}{_signature(function)}"

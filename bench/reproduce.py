@@ -1,4 +1,4 @@
-"""Wall time of `runner reproduce WORK` in an empty folder: its runs, then its report."""
+"""Wall time of `runner reproduce STUDY` in an empty folder: its runs, then its report."""
 
 import os
 import subprocess
@@ -21,12 +21,12 @@ _BORDER = b"writing the report"  # said on standard error when the last run is s
 
 def main() -> bool:
     """Measure and print; return whether every target is met."""
-    met = [_measure(work, target) for work, target in TARGETS.items()]
+    met = [_measure(study, target) for study, target in TARGETS.items()]
     return all(met)
 
 
-def _measure(work: str, target: float) -> bool:
-    command = [str(Path(sys.executable).parent / "runner"), "reproduce", work]
+def _measure(study: str, target: float) -> bool:
+    command = [str(Path(sys.executable).parent / "runner"), "reproduce", study]
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
         with subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
@@ -40,8 +40,8 @@ def _measure(work: str, target: float) -> bool:
         if process.returncode != 0:
             raise subprocess.CalledProcessError(process.returncode, command, stderr=said)
         runs = len(list(Path(folder, "outputs", "runs").glob("*/metrics.json")))
-        sizes = {path.name: path.stat().st_size for path in Path(folder).glob(f"outputs/reports/{work}/*")}
-    print(f"runner reproduce {work}, wall time in an empty folder")
+        sizes = {path.name: path.stat().st_size for path in Path(folder).glob(f"outputs/reports/{study}/*")}
+    print(f"runner reproduce {study}, wall time in an empty folder")
     print(f"  {runs} runs simulated and stored  {simulated:5.1f} s")
     print(f"  figures and report         {whole - simulated:5.1f} s")
     print(f"  whole                      {whole:5.1f} s  target {target:g}: {'met' if whole <= target else 'MISSED'}")

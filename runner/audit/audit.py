@@ -17,7 +17,7 @@ def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:
     """Return the verdict on every equation of a source, in the order of the text.
 
     Args:
-        where: Name of a work of ours, or a folder, as in audit(Path("my_paper")); see `sources.py`.
+        where: Name of a study of ours, or a folder, as in audit(Path("my_paper")); see `sources.py`.
         samples: How many configurations each is tried at.
 
     Raises:
@@ -28,7 +28,7 @@ def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:
 
 
 def audit_all(samples: int = SAMPLES) -> dict[str, list[Judged]]:
-    """Return the same for every work of ours, by its name."""
+    """Return the same for every study of ours, by its name."""
     found = {source: parts(source) for source in sources()}
     progress.begin(AUDITING, None, sum(len(part.entries) for each in found.values() for part in each), "equations")
     judged: dict[str, list[Judged]] = {source: [] for source in found}

@@ -148,7 +148,7 @@ class Part(Content):
     """A data file of a source.
 
     Attributes:
-        source: The work's folder.
+        source: The study's folder.
         path: The file.
     """
 

@@ -62,7 +62,7 @@ class Words(StrictModel):
 
 
 def run_rollout(where: Where, name: str) -> tuple[Words, Run]:
-    """Run the rollout of a work that "module.name" stands for, and put its numbers into its words."""
+    """Run the rollout of a study that "module.name" stands for, and put its numbers into its words."""
     module, _, own = name.partition(".")
     run: Run = rollout_of(where, name)()
     path = source_of(where).equations / "rollouts" / f"{module}.yaml"

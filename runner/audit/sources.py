@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.paths import works_dir, works_with
+from runner.base.paths import studies_dir, studies_with
 from runner.plugins.folder_code import folder_module
 
 _FOLDER = "equations"
@@ -18,7 +18,7 @@ _FOLDER = "equations"
 
 @dataclass(frozen=True)
 class Source:
-    """The folder of a work.
+    """The folder of a study.
 
     Attributes:
         folder: The folder.
@@ -30,7 +30,7 @@ class Source:
 
     @property
     def name(self) -> str:
-        """Name of the work, that of its folder."""
+        """Name of the study, that of its folder."""
         return self.folder.resolve().name
 
     @property
@@ -40,23 +40,25 @@ class Source:
 
 
 Where = str | Path | Source
-"""A work of ours by name; a folder by its path, whose Python does not run; or a Source, which says whether it may."""
+"""A study of ours by name; a folder by its path, whose Python does not run; or a Source, which says whether it may."""
 
 
 def sources() -> tuple[str, ...]:
-    """Return the names of our works whose equations are audited."""
-    return tuple(works_with(f"{_FOLDER}/inventory.yaml"))
+    """Return the names of our studies whose equations are audited."""
+    return tuple(studies_with(f"{_FOLDER}/inventory.yaml"))
 
 
 def source_of(where: Where) -> Source:
     """Return the folder that is meant.
 
     Raises:
-        RunnerError: If no work has this name, or the folder has no equations.
+        RunnerError: If no study has this name, or the folder has no equations.
     """
     if isinstance(where, str) and where not in sources():
-        raise RunnerError(f"no work '{where}'{nearest(where, sources())}; works: {', '.join(sources())}, or a folder")
-    given = Source(works_dir() / where, code=True) if isinstance(where, str) else where
+        raise RunnerError(
+            f"no study '{where}'{nearest(where, sources())}; studies: {', '.join(sources())}, or a folder"
+        )
+    given = Source(studies_dir() / where, code=True) if isinstance(where, str) else where
     source = given if isinstance(given, Source) else Source(given)
     if not source.equations.is_dir():
         raise RunnerError(f"{source.folder}: no folder 'equations' in it")
@@ -64,12 +66,12 @@ def source_of(where: Where) -> Source:
 
 
 def truth_of(where: Where, name: str) -> Any:
-    """Return the function or Truth that "module.name" stands for, of a module of the work's `equations/truths`."""
+    """Return the function or Truth that "module.name" stands for, of a module of the study's `equations/truths`."""
     return _resolve(source_of(where), "truths", name)
 
 
 def rollout_of(where: Where, name: str) -> Any:
-    """Return the function that "module.name" stands for, of a module of the work's `equations/rollouts`."""
+    """Return the function that "module.name" stands for, of a module of the study's `equations/rollouts`."""
     return _resolve(source_of(where), "rollouts", name)
 
 

@@ -46,7 +46,7 @@ class Judged:
     """An entry with its verdict.
 
     Attributes:
-        source: Name of the work.
+        source: Name of the study.
         entry: The equation.
         verdict: What the samples say.
         measured: Error of the form as printed (after repair where there is one); None where it has none.

@@ -31,8 +31,20 @@ VALUES: dict[str, dict[str, str]] = {
 
 COMMANDS: dict[str, str] = {
     "diff": "compare",
+    "work": "study",
 }
 """Present name of each former command."""
+
+TOPICS: dict[str, str] = {
+    "references": "baselines",
+    "works": "studies",
+}
+"""Present name of each former topic of `runner list`."""
+
+FILES: dict[str, str] = {
+    "work.yaml": "study.yaml",
+}
+"""Present name of each former file of a study."""
 
 OPTIONS: dict[str, str] = {
     "--at-most": "--max-failure-probability",

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from runner.base.errors import ConfigError
 
-WORK_FILE = "work.yaml"
-"""The file that makes a folder a work."""
+STUDY_FILE = "study.yaml"
+"""The file that makes a folder a study."""
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -39,14 +39,14 @@ def robots_dir() -> Path:
     return _root() / "robots"
 
 
-def works_dir() -> Path:
-    """Return the folder of the published works, a folder each."""
+def studies_dir() -> Path:
+    """Return the folder of the built-in studies, one folder each."""
     return _PACKAGE / "studies"
 
 
-def works_with(file: str) -> list[str]:
-    """Return the names of our works that have a file, such as "claims.yaml", sorted."""
-    return sorted(folder.name for folder in works_dir().iterdir() if (folder / file).is_file())
+def studies_with(file: str) -> list[str]:
+    """Return the names of our studies that have a file, such as "claims.yaml", sorted."""
+    return sorted(folder.name for folder in studies_dir().iterdir() if (folder / file).is_file())
 
 
 def examples_dir() -> Path:
@@ -54,8 +54,8 @@ def examples_dir() -> Path:
     return _root() / "examples"
 
 
-def example_work_dir() -> Path:
-    """Return the folder of the work that `runner work new` starts from."""
+def example_study_dir() -> Path:
+    """Return the folder of the study that `runner study new` starts from."""
     return examples_dir() / "own_paper"
 
 
@@ -67,14 +67,14 @@ def templates_dir() -> Path:
 def check_inside(path: Path, folders: Sequence[Path]) -> None:
     """Check that a file found in a config folder lies there, whatever links lead to it; nothing is read before.
 
-    A file that is found elsewhere, by its whole path, may lie anywhere, unless one of the folders is that of a work:
+    A file that is found elsewhere, by its whole path, may lie anywhere, unless one of the folders is that of a study:
     the files of its runs are its own, or ours.
 
     Raises:
         ConfigError: if the file lies elsewhere.
     """
     own = [folder for folder in folders if path.is_relative_to(folder)]
-    if not own and any((folder / WORK_FILE).is_file() for folder in folders):
+    if not own and any((folder / STUDY_FILE).is_file() for folder in folders):
         own = [*folders, robots_dir()]
     place = Path(os.path.realpath(path))
     if own and not any(place.is_relative_to(os.path.realpath(folder)) for folder in own):

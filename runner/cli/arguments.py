@@ -82,7 +82,7 @@ class Parser(argparse.ArgumentParser):
 
 
 class ActionParser(Parser):
-    """The parser of one action of a command, such as `work new`."""
+    """The parser of one action of a command, such as `study new`."""
 
     def __init__(self, prog: str, help: str = "", **_: object) -> None:
         super().__init__(prog.removeprefix("runner "), help)

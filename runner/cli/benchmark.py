@@ -17,9 +17,9 @@ from runner.cli.arguments import ActionParser, Parser
 from runner.plugins.discovery import in_use, use_plugins
 
 if TYPE_CHECKING:
-    from runner.study.given import GivenPart
+    from runner.study.plugins import UserPlugin
 
-WORK = "benchmark"
+STUDY = "benchmark"
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -28,30 +28,30 @@ def main(arguments: Sequence[str]) -> int:
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=ActionParser)
     check = actions.add_parser("check", help="does a law of yours fit?")
     check.add_argument("law", metavar="FILE", help="your law, a Python file")
-    check.add_argument("--profile", default="", metavar="P", help="a smaller or larger making of the benchmark")
+    check.add_argument("--profile", default="", metavar="P", help="a smaller or larger version of the benchmark")
     return _check(parser.parse_args(arguments))
 
 
 def _check(options: Namespace) -> int:
     quiet_environment()
     use_plugins([f"controller={options.law}"])
-    from runner.study.given import given_parts
+    from runner.study.plugins import read_user_plugins
     from runner.sweeps.loading import Loader
 
-    (part,) = given_parts(in_use()[-1:])
+    (part,) = read_user_plugins(in_use()[-1:])
     workers = Loader().sweeper([]).workers
-    for line in check_law(WORK, options.profile, part, workers):
+    for line in check_law(STUDY, options.profile, part, workers):
         print(one_line(line))
     profile = ("--profile", options.profile) if options.profile else ()
-    print(shlex.join(["runner", "reproduce", WORK, *profile, "--plugin", f"controller={options.law}"]))
+    print(shlex.join(["runner", "reproduce", STUDY, *profile, "--plugin", f"controller={options.law}"]))
     return 0
 
 
-def check_law(name: str, profile: str, part: "GivenPart", workers: int) -> Iterator[str]:
-    """Yield how a law fits in a work that takes such: a line for each arm, and what all takes.
+def check_law(name: str, profile: str, part: "UserPlugin", workers: int) -> Iterator[str]:
+    """Yield how a law fits in a study that takes such: a line for each arm, and what all takes.
 
     Args:
-        name: The work.
+        name: The study.
         profile: Its profile; empty for the one that it makes otherwise.
         part: The law.
         workers: Number of processes that are to make its runs.
@@ -61,10 +61,10 @@ def check_law(name: str, profile: str, part: "GivenPart", workers: int) -> Itera
     """
     from runner.study.estimate import told
     from runner.study.fit import fit
-    from runner.study.work import load_work
+    from runner.study.study import load_study
 
-    without = load_work(name, profile=profile)
-    found = fit(load_work(name, profile=profile, parts=(part,)), without, part)
+    without = load_study(name, profile=profile)
+    found = fit(load_study(name, profile=profile, parts=(part,)), without, part)
     if found.problems:
         raise RunnerError("\n".join([f"{part.name} does not fit:", *(f"  - {text}" for text in found.problems)]))
     for robot, tick in found.ticks.items():

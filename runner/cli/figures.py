@@ -13,7 +13,7 @@ from runner.base.errors import RunnerError
 from runner.base.quiet import quiet_environment
 from runner.cli.arguments import Parser, Stored
 from runner.config.compose.user_settings import outputs_dir
-from runner.study.names import work_names
+from runner.study.names import study_names
 
 if TYPE_CHECKING:
     from runner.reporting.document import Document
@@ -24,11 +24,11 @@ _NARROWEST, _WIDEST = 60.0, 400.0  # mm
 
 
 class _Drawn(Stored):
-    """The type of an argument that is the folder of something stored, or a work: its name, or its report's folder."""
+    """The type of an argument that is the folder of something stored, or a study: its name, or its report's folder."""
 
     def __call__(self, text: str) -> Path:
         path = Path(text)
-        return path if _work_of(path) else super().__call__(text)
+        return path if _study_of(path) else super().__call__(text)
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -38,7 +38,7 @@ def main(arguments: Sequence[str]) -> int:
         "folder",
         type=_Drawn(("run", "sweep", "tuning")),
         metavar="DIR",
-        help="a run, sweep or tuning; a work; or latest",
+        help="a run, sweep or tuning; a study; or latest",
     )
     parser.add_argument(
         "-o", "--output", type=Path, metavar="DIR", help="where to write; default: figures/ in the report's folder"
@@ -72,9 +72,9 @@ def _millimetres(text: str) -> float:
     return width
 
 
-def _work_of(path: Path) -> tuple[str, Path] | None:
-    """Return the work that a name, or the folder of a report, is of, and its outputs folder; None where it is none."""
-    if path.name not in work_names():
+def _study_of(path: Path) -> tuple[str, Path] | None:
+    """Return the study that a name, or the folder of a report, is of, and its outputs folder; None where it is none."""
+    if path.name not in study_names():
         return None
     if not path.is_dir() and path == Path(path.name):
         return path.name, outputs_dir()
@@ -83,9 +83,9 @@ def _work_of(path: Path) -> tuple[str, Path] | None:
 
 def _document(path: Path) -> "tuple[Document, Path]":
     """Return a report and the folder that it is written to."""
-    work = _work_of(path)
-    if work is not None:
-        return _of_work(*work)
+    study = _study_of(path)
+    if study is not None:
+        return _of_study(*study)
     from runner import store
     from runner.reporting.stored import compose_report
 
@@ -94,20 +94,20 @@ def _document(path: Path) -> "tuple[Document, Path]":
     return compose_report([path])
 
 
-def _of_work(name: str, outputs: Path) -> "tuple[Document, Path]":
+def _of_study(name: str, outputs: Path) -> "tuple[Document, Path]":
     folder, mend = outputs / "reports" / name, f"`runner reproduce {name} --output {outputs}` makes"
     if not folder.is_dir():
         raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
-    from runner.study.making import count_missing, make_all
-    from runner.study.work import load_work
+    from runner.study.execute import count_missing, make_all
+    from runner.study.study import load_study
 
     print(f"looking for the runs of {name} ...", file=sys.stderr)
-    work = load_work(name)
-    missing = count_missing(work, outputs)
+    study = load_study(name)
+    missing = count_missing(study, outputs)
     if missing:
         raise RunnerError(f"{missing} runs of {name} are not stored in {outputs} as they are made today; {mend} them")
-    work.measure(outputs)
-    return work.document(*make_all(work, outputs)), folder
+    study.measure(outputs)
+    return study.document(*make_all(study, outputs)), folder
 
 
 def _tell_failure(run: "Run") -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from runner.base import engines
 from runner.base.errors import RunnerError, nearest
+from runner.base.former_names import TOPICS as FORMER_TOPICS
 from runner.base.texts import escaped, one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.options import group_options
@@ -49,6 +50,8 @@ def main(arguments: Sequence[str]) -> int:
         _print_overview(own)
     elif options.topic in TOPICS:
         _print_table(TOPICS[options.topic](own))
+    elif options.topic in FORMER_TOPICS:
+        raise RunnerError(f"{options.topic} is now called {FORMER_TOPICS[options.topic]}.")
     else:
         raise RunnerError(
             f"list: no topic '{options.topic}'{nearest(options.topic, TOPICS)}; topics: {', '.join(TOPICS)}"
@@ -85,16 +88,16 @@ def _read_bullets(docstring: str) -> dict[str, str]:
 
 
 def _list_claims(_: Sequence[Path]) -> dict[str, str]:
-    from runner.reporting.claims import load_claims, load_statements, works_with_claims, works_with_statements
+    from runner.reporting.claims import load_claims, load_statements, studies_with_claims, studies_with_statements
 
     claims = {
         f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
-        for source in works_with_claims()
+        for source in studies_with_claims()
         for claim in load_claims(source)
     }
     statements = {
         f"{source} {number}": f"{each.statement} ({each.place})"
-        for source in works_with_statements()
+        for source in studies_with_statements()
         for number, each in enumerate(load_statements(source), start=1)
     }
     return claims | statements
@@ -111,13 +114,15 @@ def _list_baselines(_: Sequence[Path]) -> dict[str, str]:
     return described_references()
 
 
-def _list_works(_: Sequence[Path]) -> dict[str, str]:
-    from runner.study.about import read_about
-    from runner.study.names import find_work, work_names
+def _list_studies(_: Sequence[Path]) -> dict[str, str]:
+    from runner.study.manifest import read_manifest
+    from runner.study.names import find_study, study_names
 
-    found = {name: read_about(find_work(name).folder) for name in work_names()}
-    apart = {name: "" if about.in_all else " (not made by `runner reproduce all`)" for name, about in found.items()}
-    return {name: f"{about.title}. {about.source}{apart[name]}" for name, about in found.items()}
+    found = {name: read_manifest(find_study(name).folder) for name in study_names()}
+    apart = {
+        name: "" if manifest.in_all else " (not made by `runner reproduce all`)" for name, manifest in found.items()
+    }
+    return {name: f"{manifest.title}. {manifest.source}{apart[name]}" for name, manifest in found.items()}
 
 
 TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
@@ -126,7 +131,7 @@ TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
     "metrics": _list_metrics,
     "claims": _list_claims,
     "baselines": _list_baselines,
-    "works": _list_works,
+    "studies": _list_studies,
 }
 """What can be listed: each gives names and one-line descriptions."""
 

@@ -28,7 +28,7 @@ runner: config-driven experiments for robot-arm control, with reports
   runner status DIR                              how far a sweep is
   runner tune OVERRIDES --minimize METRIC        choose numbers, as in controller.period="interval(0.005,0.05)"
   runner reproduce [thesis|xarm7|meca500|audit|all|FOLDER]
-                                                 run what is missing and write the report of a published work
+                                                 run what is missing and write the report of a study
   runner report DIR... [--html] [--pdf]          a report from stored runs or sweeps
   runner table DIR [--format latex|markdown|csv|parquet] [--metrics A,B] [--by KEY,KEY]
                                                  a sweep as one table, or a table for a paper
@@ -40,8 +40,8 @@ runner: config-driven experiments for robot-arm control, with reports
                                                  compare SWEEP --by controller: the levels of an axis
   runner sensitivity RUN [--metrics A,B] [--parameters gains,masses,...] [--finite-differences]
                                                  which parameter a run's metrics depend on most, by exact derivatives
-  runner work new FOLDER                         write a first work of your own, to reproduce another paper;
-                                                 check FOLDER looks through it, diff OLD NEW compares two makings
+  runner study new FOLDER                        write a first study of your own, to reproduce another paper;
+                                                 check FOLDER looks through it, diff OLD NEW compares two versions
   runner benchmark check LAW.py [--profile P]    does a law of yours fit in the benchmark, and how long will it take?
   runner calibrate [OVERRIDES]                   calibrate tool or sensor against the truth: calibration=gravity
   runner audit URDF --tip FRAME --jacobian FILE  your own formulas against a robot; also --position, --mass-matrix,
@@ -51,7 +51,7 @@ runner: config-driven experiments for robot-arm control, with reports
   runner example DIR                             copy the examples: an arm, a controller, a paper, a notebook
   latest                                         in place of a DIR: the run, sweep, tuning or report made or found last
   runner list [robots|controllers|trajectories|experiments|plants|environments|wrist_sensors|mismatch|noise|presets|
-               torque_limits|calibrations|metrics|claims|baselines|works]
+               torque_limits|calibrations|metrics|claims|baselines|studies]
 
   runner --cfg job [OVERRIDES]                   show the composed config without running it
   runner --config-dir DIR OVERRIDES              take YAML and URDFs from your own folder, too
@@ -71,7 +71,7 @@ runner: experiments on the control of robot arms; a line of text makes a run, a 
   runner report latest                           a report on it, HTML and PDF
   runner -m robot=macro controller.period=5ms,10ms
                                                  a sweep over every combination
-  runner list                                    robots, controllers, trajectories, metrics and works there are
+  runner list                                    robots, controllers, trajectories, metrics and studies there are
   runner doctor FILE                             does a URDF or MJCF of yours fit?
 
 All commands: runner --help. All keys of a run: runner --cfg job. The pages are in docs/ of the source, docs/tutorial.md
@@ -80,7 +80,7 @@ first.
 COMMANDS = (
     "reproduce", "report", "table", "figures", "status", "tune", "verify", "check", "compare", "sensitivity",
     "calibrate", "audit", "benchmark",
-    "doctor", "list", "work", "example",
+    "doctor", "list", "study", "example",
 )  # fmt: skip
 SPELLED_OUT: Mapping[str, Sequence[str]] = {"run": (), "sweep": ("-m",)}
 """Words before overrides that name what overrides make, with the flags that each stands for."""

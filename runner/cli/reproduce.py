@@ -1,6 +1,6 @@
 """`runner reproduce [NAME|FOLDER] [OVERRIDES]`: simulate the missing runs of a study and write its report.
 
-FOLDER is your own study: `runner work new FOLDER` writes a template. OVERRIDES configure the execution:
+FOLDER is your own study: `runner study new FOLDER` writes a template. OVERRIDES configure the execution:
 hydra.sweeper.workers and .address, sweep.time_limit, .attempts, .retry and .on_failure, limits.cpu_hours and .memory;
 caveats.RULE.KEY configures the caveats. The study defines its simulations; --plugin adds levels to an axis of the
 study that takes them.
@@ -16,21 +16,21 @@ from typing import TYPE_CHECKING
 
 from runner.base import progress
 from runner.base.errors import RunnerError
-from runner.base.progress.stages import of_audit, of_work
+from runner.base.progress.stages import of_audit, of_study
 from runner.base.quiet import quiet_environment
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
 from runner.plugins.discovery import in_use, named_parts
 from runner.store.latest import note
 from runner.study.changes import FILE
-from runner.study.names import find_work, work_names
+from runner.study.names import find_study, study_names
 
 if TYPE_CHECKING:
     from runner.reporting.document import Document
     from runner.store import Calibration, Run
     from runner.study.expected_caveats import ExpectedCaveat
-    from runner.study.given import GivenPart
-    from runner.study.work import Work
+    from runner.study.plugins import UserPlugin
+    from runner.study.study import Study
 
 AUDIT = "audit"
 _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
@@ -38,19 +38,19 @@ _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
 
 @dataclass(frozen=True)
 class _Way:
-    """How a work is made: folder of runs and reports, overrides of the engine, command, profile, code, user's parts."""
+    """Options of a study: folder of runs and reports, overrides of the engine, command, profile, code, plug-ins."""
 
     outputs: Path
     overrides: Sequence[str]
     command: str
     profile: str = ""
     code: bool = False
-    parts: "Sequence[GivenPart]" = ()
+    parts: "Sequence[UserPlugin]" = ()
 
 
 @dataclass(frozen=True)
 class _Reproduced:
-    """What came of a work: its report, the runs behind it by name, why others are missing, and caveats it expects."""
+    """What came of a study: its report, the runs behind it by name, why others are missing, and caveats it expects."""
 
     document: "Document"
     runs: "Mapping[str, Run]"
@@ -60,76 +60,82 @@ class _Reproduced:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Reproduce one work or all; print the report's folder as the last line."""
-    works = (*work_names(), AUDIT)
+    """Reproduce one study or all; print the report's folder as the last line."""
+    studies = (*study_names(), AUDIT)
     parser = Parser("reproduce", __doc__)
-    parser.add_argument("work", nargs="?", default="all", metavar="NAME", help=f"{', '.join(works)}, all or a folder")
+    parser.add_argument(
+        "study", nargs="?", default="all", metavar="NAME", help=f"{', '.join(studies)}, all or a folder"
+    )
     parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as hydra.sweeper.workers=1")
     parser.add_argument(
         "-o", "--output", type=Path, default=outputs_dir(), metavar="DIR", help="where to write runs and reports"
     )
     parser.add_argument("--check", action="store_true", help="exit 1 where a finding fell or a caveat is unexpected")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings, caveats, numbers")
-    parser.add_argument("--profile", default="", metavar="P", help="a smaller or larger making that work.yaml names")
+    parser.add_argument(
+        "--profile", default="", metavar="P", help="a smaller or larger version, by its name in study.yaml"
+    )
     parser.add_argument("--code", action="store_true", help="run the Python of FOLDER")
     options = parser.parse_intermixed_args(arguments)
     others = [text for text in options.overrides if not text.startswith(_FREE) or text.startswith("sweep.trace")]
     if others:
-        raise RunnerError(f"reproduce: {others[0]}: the work decides what it simulates; you may set {', '.join(_FREE)}")
-    if options.work not in (AUDIT, "all"):
-        find_work(options.work, (AUDIT, "all"))  # one that is not there is told at once
+        raise RunnerError(
+            f"reproduce: {others[0]}: the study decides what it simulates; you may set {', '.join(_FREE)}"
+        )
+    if options.study not in (AUDIT, "all"):
+        find_study(options.study, (AUDIT, "all"))  # one that is not there is told at once
     quiet_environment()
     plugins = [word for text in named_parts() for word in ("--plugin", text)]
     command = shlex.join(["runner", *plugins, "reproduce", *arguments])
-    way = _Way(options.output, options.overrides, command, options.profile, options.code, _parts(options.work))
-    made = dict(_reproduce(work, way) for work in _chosen(options.work, way))
+    way = _Way(options.output, options.overrides, command, options.profile, options.code, _parts(options.study))
+    made = dict(_reproduce(study, way) for study in _chosen(options.study, way))
     if options.json is not None:
         _write_conclusions(made, options.json)
     fallen = _tell_fallen(made) if options.check else False
     return 1 if fallen or any(each.missing for each in made.values()) else 0
 
 
-def _parts(work: str) -> "tuple[GivenPart, ...]":
-    """Return the parts that --plugin names, for one work that may take them."""
-    from runner.study.given import given_parts
+def _parts(study: str) -> "tuple[UserPlugin, ...]":
+    """Return the parts that --plugin names, for one study that may take them."""
+    from runner.study.plugins import read_user_plugins
 
-    if in_use() and work in (AUDIT, "all"):
-        raise RunnerError(f"reproduce {work}: --plugin gives a part to one work; name it")
-    return given_parts(in_use())
+    if in_use() and study in (AUDIT, "all"):
+        raise RunnerError(f"reproduce {study}: --plugin gives a part to one study; name it")
+    return read_user_plugins(in_use())
 
 
-def _chosen(text: str, way: _Way) -> "list[Work | None]":
-    """Return the work that is meant, or all in the order of the number of their runs; None stands for the audit.
+def _chosen(text: str, way: _Way) -> "list[Study | None]":
+    """Return the study that is meant, or all in the order of the number of their runs; None stands for the audit.
 
     So there is something to read soon.
 
     Raises:
-        RunnerError: if there is no such work; names what there is.
+        RunnerError: if there is no such study; names what there is.
     """
-    from runner.study.work import load_work
+    from runner.study.study import load_study
 
     if text == AUDIT:
         return [None]
     if text != "all":
-        return [load_work(text, way.code, way.profile, (AUDIT, "all"), way.parts)]
-    works = [work for name in work_names() if (work := load_work(name, way.code, way.profile)).about.in_all]
-    return [None, *sorted(works, key=lambda work: len(work.jobs()))]
+        return [load_study(text, way.code, way.profile, (AUDIT, "all"), way.parts)]
+    studies = [study for name in study_names() if (study := load_study(name, way.code, way.profile)).manifest.in_all]
+    return [None, *sorted(studies, key=lambda study: len(study.jobs()))]
 
 
-def _reproduce(work: "Work | None", way: _Way) -> "tuple[str, _Reproduced]":
+def _reproduce(study: "Study | None", way: _Way) -> "tuple[str, _Reproduced]":
     from runner import store
     from runner.reporting.render import write_report
     from runner.study.gains import write_gains
 
-    name = AUDIT if work is None else work.name
+    name = AUDIT if study is None else study.name
     progress.named(name)
     folder = way.outputs / "reports" / name
     store.prepare(way.outputs)
-    made = _audit(folder) if work is None else _reproduce_work(work, way)
+    made = _audit(folder) if study is None else _reproduce_study(study, way)
     print("writing the report ...", file=sys.stderr)
     write_report(made.document, folder)
-    if work is not None and work.tuned:
-        write_gains(folder, work.tuned)
+    if study is not None and study.tuned:
+        write_gains(folder, study.tuned)
     _write_conclusions({name: made}, folder / FILE)
     note(folder)
     for run, why in made.missing.items():
@@ -144,8 +150,8 @@ def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
     from runner.study.expected_caveats import unexpected_caveats
 
     lines = [
-        f"{work}: {line}"
-        for work, each in made.items()
+        f"{study}: {line}"
+        for study, each in made.items()
         for line in (*list_failed_findings(each.document), *unexpected_caveats(each.runs, each.expected))
     ]
     for line in lines:
@@ -158,34 +164,34 @@ def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
     from runner.study.conclusions import conclusions
 
     content = {
-        work: conclusions(each.document, each.runs, each.calibrations, each.expected) for work, each in made.items()
+        study: conclusions(each.document, each.runs, each.calibrations, each.expected) for study, each in made.items()
     }
     write_atomically(path, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
 
 
-def _reproduce_work(work: "Work", way: _Way) -> _Reproduced:
-    """Make what a work needs, and its document."""
+def _reproduce_study(study: "Study", way: _Way) -> _Reproduced:
+    """Make what a study needs, and its document."""
     from runner.reporting.markup import literal
     from runner.study.check import formulas_at
-    from runner.study.late_claims import late_claims
-    from runner.study.making import make_all
+    from runner.study.claims import late_claims
+    from runner.study.execute import make_all
 
-    progress.plan(of_work(len(work.jobs()) + len(work.calibrations())))
-    work.measure(way.outputs)
-    runs, calibrations = make_all(work, way.outputs, way.overrides, way.command)
+    progress.plan(of_study(len(study.jobs()) + len(study.calibrations())))
+    study.measure(way.outputs)
+    runs, calibrations = make_all(study, way.outputs, way.overrides, way.command)
     missing = runs.missing | calibrations.missing
-    document = work.document(runs, calibrations)
-    late = late_claims(way.outputs, work, runs)
+    document = study.document(runs, calibrations)
+    late = late_claims(way.outputs, study, runs)
     document = replace(document, notes=[*document.notes, *map(literal, late)])
     for line in late:
-        print(f"runner: {work.name}: {line}", file=sys.stderr)
-    for line in formulas_at(work, document):
+        print(f"runner: {study.name}: {line}", file=sys.stderr)
+    for line in formulas_at(study, document):
         print(f"runner: {line}", file=sys.stderr)
-    return _Reproduced(document, runs, missing, work.expected, calibrations)
+    return _Reproduced(document, runs, missing, study.expected, calibrations)
 
 
 def _audit(folder: Path) -> _Reproduced:
-    """Judge the equations of all works; write their table, and return the report."""
+    """Judge the equations of all studies; write their table, and return the report."""
     from runner.audit.audit import as_csv, audit_all
     from runner.reporting.audit.report import audit_document
     from runner.store.atomic import write_atomically

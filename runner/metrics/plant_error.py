@@ -17,7 +17,7 @@ PLANT = "rk4"
 """The plant that others are held against."""
 COMPARED = ("bullet", "mujoco")
 PARTED = 4.0
-"""Settling bands between the tips beyond which two motions have parted. In the works' runs the tips come up to 3 bands
+"""Settling bands between the tips beyond which two motions have parted. In runs of studies the tips come up to 3 bands
 apart where no torque is at its limit, and 4.9 or more, mostly 10 to 55, where the motion takes another way."""
 _WALL = "it is of fourth order in smooth motion alone, and here the tip may meet a wall"
 _NOT_OF_RK4 = ("integrator", "min_inertia", "in_place_of")

@@ -89,7 +89,7 @@ def added_parts(group: str) -> tuple[EntryPoint, ...]:
 
 
 def has_users_parts() -> bool:
-    """Tell whether there are parts of the user's; those of our own works are none."""
+    """Tell whether there are parts of the user's; those of our own studies are none."""
     return any(not point.value.startswith("runner.") for group in GROUPS for point in added_parts(group))
 
 
@@ -112,7 +112,7 @@ def load(group: str, name: str, module: str) -> ModuleType:
 def source_files(module: str) -> list[Path]:
     """Return the source that a part is made of: its module's file, or all of the package that this lies in.
 
-    Of a part of our works it is the folder `parts` of the work.
+    Of a part of our studies it is the folder `parts` of the study.
     """
     package, _, rest = module.rpartition(".") if module.startswith("runner.") else module.partition(".")
     spec = find_spec(package if rest else module)

@@ -3,7 +3,7 @@
 import re
 
 PRESET = {"as_reported": "as the thesis ran it", "full_equations": "with its full equations"}
-"""The presets of the works, in the order of their columns."""
+"""The presets of the studies, in the order of their columns."""
 
 PLANT = {
     "bullet": "PyBullet",

@@ -10,9 +10,9 @@ from runner.base.errors import RunnerError
 from runner.base.limits import RECORD, read_text
 
 FILE = "conclusions.json"
-"""Name of the file with a work's conclusions in the folder of its report."""
+"""Name of the file with a study's conclusions in the folder of its report."""
 
-KINDS = ("work", "verdict", "finding", "equation", "caveat", "measured", "words", "number")
+KINDS = ("study", "verdict", "finding", "equation", "caveat", "measured", "words", "number")
 """Kinds of changes, those that matter most first."""
 
 Value = str | float | None
@@ -24,7 +24,7 @@ class Change:
 
     Attributes:
         kind: One of KINDS.
-        name: What it is, with the name of its work.
+        name: What it is, with the name of its study.
         old: What it was; None where there was none.
         new: What it is; None where there is none.
     """
@@ -54,18 +54,18 @@ def read_conclusions(path: Path) -> Mapping[str, Any]:
     except (OSError, ValueError) as error:
         raise RunnerError(f"cannot read {file}: {error}; `runner reproduce NAME --json FILE` writes one") from None
     if not isinstance(content, dict) or not all(
-        isinstance(work, dict) and "title" in work for work in content.values()
+        isinstance(study, dict) and "title" in study for study in content.values()
     ):
-        raise RunnerError(f"{file} does not hold the conclusions of works; `runner reproduce NAME --json FILE` does")
+        raise RunnerError(f"{file} does not hold the conclusions of studies; `runner reproduce NAME --json FILE` does")
     return content
 
 
 def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Change]:
-    """Return what is not the same in two makings, by kind, numbers that moved most first.
+    """Return what is not the same in two versions, by kind, numbers that moved most first.
 
     Args:
-        old: Conclusions by the works' names, also those of an earlier version of this package.
-        new: The same of another making.
+        old: Conclusions by the studies' names, also those of an earlier version of this package.
+        new: The same of another version.
     """
     before, after = dict(_flat(old, new)), dict(_flat(new, old))
     found = [
@@ -78,18 +78,18 @@ def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Change]:
     )
 
 
-def _flat(works: Mapping[str, Any], others: Mapping[str, Any]) -> Iterator[tuple[tuple[str, str], Value]]:
+def _flat(studies: Mapping[str, Any], others: Mapping[str, Any]) -> Iterator[tuple[tuple[str, str], Value]]:
     """Yield everything that is compared, by kind and name; of what the others do not have only that it is there."""
-    for work, content in works.items():
-        yield ("work", work), str(content["title"])
+    for study, content in studies.items():
+        yield ("study", study), str(content["title"])
         for part, tell in _PARTS.items():
-            if part not in content or work not in others:
+            if part not in content or study not in others:
                 continue
-            if part not in others[work]:
-                yield ("work", f"{work}: {part}"), "there"
+            if part not in others[study]:
+                yield ("study", f"{study}: {part}"), "there"
                 continue
             for kind, name, value in tell(content[part]):
-                yield (kind, f"{work}: {name}"), value
+                yield (kind, f"{study}: {name}"), value
 
 
 _Told = Iterator[tuple[str, str, Value]]

@@ -20,20 +20,20 @@ from runner.reporting.claims import CLAIMS, FACTOR, Verdict, load_claims
 from runner.reporting.document import Equations, Origin, Section, Verdicts
 from runner.reporting.outline import number_sections
 from runner.store import Calibration, Run
-from runner.study.about import About, Part
 from runner.study.claims import judged_claims, legend
 from runner.study.code import Code, public_functions
 from runner.study.findings import Finding
 from runner.study.grids import Grids
-from runner.study.job import Made
+from runner.study.job import Results
+from runner.study.manifest import Manifest, Part
 from runner.study.measured import Measured
 from runner.study.prose import blocks, plots, read_chapter, signals, tables
 from runner.study.prose.reader import Reading
-from runner.study.work_report import parts
+from runner.study.report import parts
 
 SHARED = (blocks, signals, tables, plots)
 """The modules whose functions every chapter may call."""
-_FIGURES = "figures"  # the module whose functions all chapters of a work may call
+_FIGURES = "figures"  # the module whose functions all chapters of a study may call
 _SECTION = "section"  # the function of a chapter that is Python
 
 Concluded = Callable[[str], tuple[list[Finding], Mapping[str, Any]]]
@@ -41,11 +41,11 @@ Concluded = Callable[[str], tuple[list[Finding], Mapping[str, Any]]]
 
 
 class Chapters:
-    """The chapters of a work, made from its stored runs and calibrations; each file is read once.
+    """The chapters of a study, made from its stored runs and calibrations; each file is read once.
 
     Args:
-        folder: The work's folder.
-        about: What work.yaml says.
+        folder: The study's folder.
+        manifest: Content of study.yaml.
         code: Its Python.
         grids: Its runs.yaml.
         command: What `runner reproduce` takes for it: its name or its folder.
@@ -56,22 +56,22 @@ class Chapters:
     def __init__(
         self,
         folder: Path,
-        about: About,
+        manifest: Manifest,
         code: Code,
         grids: Grids,
         command: str,
         runs: Mapping[str, Run],
         calibrations: Mapping[str, Calibration],
     ) -> None:
-        self._folder, self._about, self._code, self._grids = folder, about, code, grids
+        self._folder, self._manifest, self._code, self._grids = folder, manifest, code, grids
         self._command = shlex.join(["runner", "reproduce", command])
         self._runs, self._calibrations = runs, calibrations
         self._readings: dict[str, Reading] = {}
 
     def sections(self) -> list[Section]:
         """Return all chapters; one that needs what was not made says so in its place."""
-        progress.begin(CHAPTERS, None, _count(self._about.chapters), "chapters")
-        return self._each(self._about.chapters)
+        progress.begin(CHAPTERS, None, _count(self._manifest.chapters), "chapters")
+        return self._each(self._manifest.chapters)
 
     def concluded(self, name: str) -> tuple[list[Finding], Mapping[str, Any]]:
         """Return the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
@@ -101,10 +101,10 @@ class Chapters:
         """Return what a chapter in Markdown may call and read, by name.
 
         These are the shared blocks, which find calibrations among the runs; the public functions of `figures.py` and of
-        the module that bears the chapter's name; and what work.yaml, runs.yaml and claims.yaml hold. A function whose
+        the module that bears the chapter's name; and what study.yaml, runs.yaml and claims.yaml hold. A function whose
         first argument is `runs`, `calibrations` or `concluded` gets the runs, the calibrations, or the method above.
         """
-        presets, tunings = self._about.presets, self._grids.tunings
+        presets, tunings = self._manifest.presets, self._grids.tunings
         found: dict[str, Any] = {
             "level_of": self._grids.level,
             "value": self._grids.value,
@@ -124,15 +124,15 @@ class Chapters:
             found |= _filled(self._code.functions(name), own)
         return found
 
-    def _stored(self) -> Made[Run | Calibration]:
+    def _stored(self) -> Results[Run | Calibration]:
         """Return runs and calibrations in one."""
-        made = [each for each in (self._runs, self._calibrations) if isinstance(each, Made)]
+        made = [each for each in (self._runs, self._calibrations) if isinstance(each, Results)]
         missing = ChainMap(*(each.missing for each in made))
         dropped = ChainMap(*(each.dropped for each in made))
-        return Made({**self._runs, **self._calibrations}, missing, dropped)
+        return Results({**self._runs, **self._calibrations}, missing, dropped)
 
     def _claims(self) -> list[Claim]:
-        return judged_claims(load_claims(self._folder), self._runs, self._about.presets)
+        return judged_claims(load_claims(self._folder), self._runs, self._manifest.presets)
 
     def _legend(self) -> str:
         """Return what the words of its verdicts mean; nothing where it has no claims."""
@@ -144,7 +144,7 @@ class Chapters:
         return Measured(words, float(given.count({verdict})))
 
     def _equations(self, caption: str) -> Equations:
-        """Return the printed equations of the work with their verdicts."""
+        """Return the printed equations of the study with their verdicts."""
         judged = audit(Source(self._folder, self._code.runs))
         return Equations(caption, rows(judged), Origin(command=self._command), self._folder.name)
 

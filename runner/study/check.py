@@ -1,10 +1,12 @@
-"""Checks of a study: conditions that cannot fail, typed numbers, faulty formulas, unexpected caveats."""
+"""Checks of a study: conditions that cannot fail, literal numbers, faulty formulas, unexpected caveats."""
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping, Set
 from fnmatch import fnmatchcase
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.paths import WORK_FILE
+from runner.base.expressions.insertions import insertions
+from runner.base.paths import STUDY_FILE
 from runner.reporting.document import Document
 from runner.reporting.formulas import faulty
 from runner.store import Calibration, Run
@@ -12,52 +14,51 @@ from runner.study.chapters import Chapters, chapter_text
 from runner.study.conclusions import list_failed_findings
 from runner.study.expected_caveats import unexpected_caveats
 from runner.study.job import LeftOutError, MissingError
-from runner.study.prose.trying import never_failing
-from runner.study.prose.typed import levels_in, typed_numbers
-from runner.study.work import Work
+from runner.study.prose.condition_tests import never_failing
+from runner.study.study import Study
 
 
-def problems(work: Work, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> Iterator[str]:
-    """Yield what is wrong with a work, a line each.
+def problems(study: Study, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> Iterator[str]:
+    """Yield what is wrong with a study, a line each.
 
     Every chapter is read, so that each expression is evaluated; every condition is tried with changed values.
 
     Args:
-        work: The work.
+        study: The study.
         runs: Its stored runs by name.
         calibrations: Its stored calibrations by name.
     """
-    levels, chapters = levels_in([*runs, *calibrations]), work.chapters(runs, calibrations)
+    levels, chapters = levels_in([*runs, *calibrations]), study.chapters(runs, calibrations)
     faults = 0
-    for file in work.about.files():
-        for line in _of_chapter(work, file, chapters, levels):
+    for file in study.manifest.files():
+        for line in _of_chapter(study, file, chapters, levels):
             faults += 1
             yield line
-    yield from (f"{work.name}: {name}: expected caveats: no run of it is named so" for name in _unused(work, runs))
-    yield from unexpected_caveats(runs, work.expected)
-    cover = work.about.cover
-    if cover is not None and cover.run not in {**runs, **work.dropped()}:
-        yield f"{work.folder.name}/{WORK_FILE}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
+    yield from (f"{study.name}: {name}: expected caveats: no run of it is named so" for name in _unused(study, runs))
+    yield from unexpected_caveats(runs, study.expected)
+    cover = study.manifest.cover
+    if cover is not None and cover.run not in {**runs, **study.dropped()}:
+        yield f"{study.folder.name}/{STUDY_FILE}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
     if not faults:
-        document = work.document(runs, calibrations, chapters)
+        document = study.document(runs, calibrations, chapters)
         yield from list_failed_findings(document)
-        yield from formulas_at(work, document)
+        yield from formulas_at(study, document)
 
 
-def formulas_at(work: Work, document: Document) -> Iterator[str]:
-    """Yield each formula of a work's report that cannot be read, with file and line where a chapter has it."""
-    texts = [(file, chapter_text(work.folder / file)) for file in work.about.files()]
+def formulas_at(study: Study, document: Document) -> Iterator[str]:
+    """Yield each formula of a study's report that cannot be read, with file and line where a chapter has it."""
+    texts = [(file, chapter_text(study.folder / file)) for file in study.manifest.files()]
     for formula in faulty(document):
         found = ((file, text.count("\n", 0, text.index(formula)) + 1) for file, text in texts if formula in text)
-        file, line = next(found, (WORK_FILE, 1))
-        yield f"{work.folder.name}/{file}:{line}: {formula}: no formula in Typst's notation"
+        file, line = next(found, (STUDY_FILE, 1))
+        yield f"{study.folder.name}/{file}:{line}: {formula}: no formula in Typst's notation"
 
 
-def _of_chapter(work: Work, file: str, chapters: Chapters, levels: set[str]) -> Iterator[str]:
-    path = work.folder / file
+def _of_chapter(study: Study, file: str, chapters: Chapters, levels: set[str]) -> Iterator[str]:
+    path = study.folder / file
     if path.suffix != ".md":
         return
-    text, name = chapter_text(path), f"{work.folder.name}/{file}"
+    text, name = chapter_text(path), f"{study.folder.name}/{file}"
     try:
         yield from never_failing(name, chapters.reading(path.stem))
     except LeftOutError:
@@ -71,6 +72,51 @@ def _of_chapter(work: Work, file: str, chapters: Chapters, levels: set[str]) -> 
     yield from typed_numbers(name, text, levels)
 
 
-def _unused(work: Work, runs: Mapping[str, Run]) -> Iterator[str]:
-    patterns, names = dict.fromkeys(each.runs for each in work.expected), (*runs, *work.dropped())
+def _unused(study: Study, runs: Mapping[str, Run]) -> Iterator[str]:
+    patterns, names = dict.fromkeys(each.runs for each in study.expected), (*runs, *study.dropped())
     yield from (pattern for pattern in patterns if not any(fnmatchcase(name, pattern) for name in names))
+
+
+_BOX = re.compile(r"^::: finding (.*?)^:::$", re.MULTILINE | re.DOTALL)
+_MATHEMATICS = re.compile(r"\$[^$]*\$")
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?: [a-zA-Z%]+)?")
+_PARTS = re.compile(r"[/,] ?")
+# Names that hold a digit: parts of the source, of the arm, and of what the studies number.
+_NAMED = re.compile(
+    r"\b(?:[Ff]igures?|[Ss]ections?|[Tt]ables?|[Cc]laims?|[Cc]hapters?|[Ee]quations?|[Mm]ethods?|[Jj]oints?|[Ll]inks?|"
+    r"[Ff]rames?|[Pp]oses?|Mini|xArm|Meca|rk|RK|q)"
+    r"[ -]?\(?\d+(?:\.\d+)*(?:(?:, | and | or | to )\d+(?:\.\d+)*)*|^\d[a-c]?\. "
+)
+
+
+def typed_numbers(file: str, text: str, levels: Set[str]) -> Iterator[str]:
+    """Yield each number that stands typed in a finding of a chapter, with file and line.
+
+    Args:
+        file: Name of the chapter's file.
+        text: Its content.
+        levels: Levels of axes, as the names of the study's runs have them; these may be typed.
+    """
+    for box in _BOX.finditer(text):
+        words = "\n".join("" if line.startswith("holds:") else line for line in _blank(box[1]).splitlines())
+        for number in sorted(typed_in(words, levels)):
+            place = words.index(number)
+            line = text.count("\n", 0, box.start()) + words.count("\n", 0, place) + 1
+            yield f"{file}:{line}: {number}: a number typed in a finding goes stale; insert {{{{ metric(...) }}}}"
+
+
+def levels_in(names: Iterable[str]) -> set[str]:
+    """Return the levels of axes that the names of runs have."""
+    return {part for name in names for part in _PARTS.split(name)}
+
+
+def typed_in(words: str, levels: Set[str]) -> set[str]:
+    """Return the numbers, with their units, that stand in some words and are neither a name nor a level."""
+    return set(_NUMBER.findall(_NAMED.sub("", _MATHEMATICS.sub("", words)))) - levels
+
+
+def _blank(box: str) -> str:
+    """Return a box with each insertion in it left out, its lines kept."""
+    for start, stop in reversed(list(insertions(box))):
+        box = box[:start] + "…" + "\n" * box.count("\n", start, stop) + box[stop:]
+    return box

@@ -10,7 +10,7 @@ from runner.base.data_file import read_data
 from runner.base.expressions.evaluator import Budget, Scope
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.insertions import fill
-from runner.base.paths import works_dir
+from runner.base.paths import studies_dir
 from runner.reporting import outline
 from runner.reporting.document import Code, Formula, Items, Notice, Provenance, Section, Table, Text
 from runner.schema.model import StrictModel
@@ -100,16 +100,16 @@ def _filled(text: str, **values: str | int) -> str:
     return fill(text, Scope({}, values), Budget())
 
 
-def load_checklist(work: str | Path) -> Checklist | None:
-    """Return the checklist of a work; None where it has none.
+def load_checklist(study: str | Path) -> Checklist | None:
+    """Return the checklist of a study; None where it has none.
 
     Args:
-        work: One of ours by its name, such as "thesis", or the whole path of a work's folder.
+        study: One of ours by its name, such as "thesis", or the whole path of a study's folder.
 
     Raises:
         RunnerError: if its file cannot be read or does not fit; names the file, and the items and keys.
     """
-    path = works_dir() / work / _FILE
+    path = studies_dir() / study / _FILE
     return read_data(path, Checklist) if path.is_file() else None
 
 

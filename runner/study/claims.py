@@ -1,27 +1,41 @@
-"""Claims and statements of a study compared with stored runs, with verdicts."""
+"""Claims and statements of a study compared with stored runs, with verdicts, and claims changed after the result."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
 from runner.base.quantities import format_range, quantity, spread
 from runner.metrics.positioning import STEADY_WINDOW
 from runner.reporting.claim import Claim, ClaimResult, EquationVerdict
-from runner.reporting.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
+from runner.reporting.claims import (
+    CLAIMS,
+    CONTRADICTION,
+    FACTOR,
+    PublishedClaim,
+    PublishedStatement,
+    Verdict,
+    judge_motion,
+    load_claims,
+)
 from runner.reporting.claims.judging import Simulated, scale_bound, simulated_by, verdict_on
 from runner.reporting.figures import columns
 from runner.reporting.words import PLANT
+from runner.statistics.spec.history import merge_histories, set_after, today
 from runner.store import Run
+from runner.store.atomic import write_atomically
+from runner.store.seal import read_json, sealed_json
 from runner.study.job import MissingError
 from runner.study.run_values import median
+from runner.study.study import Study
 
 _DIGITS = 4  # at least as many as a source prints
 
 
 def legend(claims: Sequence[PublishedClaim]) -> str:
-    """Return what the words of the verdicts on a work's claims mean: of the kinds of claims that it has."""
+    """Return what the words of the verdicts on a study's claims mean: of the kinds of claims that it has."""
     numbers, motions = [claim for claim in claims if claim.metric], [claim for claim in claims if claim.extents]
     told = []
     if numbers:
@@ -48,8 +62,8 @@ def judged_claims(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], pre
     """Return each claim with what the runs say of it, under each preset.
 
     Args:
-        claims: All claims of a work: a bound of one names another.
-        runs: The stored runs of the work, by names such as "figure_3_5/full_equations"; see `run_name`.
+        claims: All claims of a study: a bound of one names another.
+        runs: The stored runs of the study, by names such as "figure_3_5/full_equations"; see `run_name`.
         presets: Names of the presets under which they are judged, with their words; where there are none, once.
 
     Raises:
@@ -64,7 +78,7 @@ def judged_statements(
     """Return each statement with its verdict, numbered in order.
 
     Args:
-        statements: All statements of a work.
+        statements: All statements of a study.
         judged: Verdict on each by its name, and what was measured.
 
     Raises:
@@ -80,7 +94,7 @@ def judged_statements(
 
 
 def run_name(experiment: str, preset: str) -> str:
-    """Return the name that the run of an experiment has among the runs of a work: "sources/name" is "name/preset"."""
+    """Return the name that the run of an experiment has among the runs of a study: "sources/name" is "name/preset"."""
     name = experiment.rpartition("/")[2]
     return f"{name}/{preset}" if preset else name
 
@@ -90,8 +104,8 @@ class _Claimed:
 
     Args:
         claim: The claim.
-        claims: All claims of its work.
-        runs: The stored runs of its work, by name.
+        claims: All claims of its study.
+        runs: The stored runs of its study, by name.
         presets: Names of the presets with their words.
     """
 
@@ -235,3 +249,34 @@ def _printed(claim: PublishedClaim) -> str:
         return "in words"
     low, high = claim.printed[0], claim.printed[-1]
     return quantity(high, claim.unit, _DIGITS) if low == high else format_range(low, high, claim.unit)
+
+
+_JUDGED_BY = {"printed", "metric", "extents", "fails", "bound", "like"}
+
+
+def late_claims(outputs: Path, study: Study, runs: Mapping[str, Run], date: str = "") -> list[str]:
+    """Return for each claim that was changed since these runs were first judged when that was, and what stood before.
+
+    What claims are judged by is kept in `claims/NAME.json` of the outputs folder, on this date, or where it is empty
+    today; a claim whose run is missing is not judged.
+
+    Raises:
+        StoreError: if the file is damaged, or the disk does not take it.
+    """
+    path, late = outputs / "claims" / f"{study.name}.json", []
+    known = read_json(path, "remove it to forget what claims were judged by").get("claims", {}) if path.exists() else {}
+    for claim in load_claims(study.folder) if (study.folder / CLAIMS).is_file() else ():
+        names = [run_name(simulated_by(claim)[0], preset) for preset in study.manifest.presets or ("",)]
+        if all(name in runs for name in names):
+            value = claim.model_dump(mode="json", include=_JUDGED_BY)
+            key = " ".join([str(claim.number), *(runs[name].hash for name in names)])
+            known = merge_histories(known, {key: [[date or today(), value]]})
+            when, before = set_after(known[key], value)
+            changed = {name: old for name, old in (before[-1] if before else {}).items() if old != value[name]}
+            told = ", ".join(f"{name}: {old}" for name, old in changed.items())
+            late += (
+                [f"claim {claim.number} was set after the result was known ({when}; before: {told})"] if when else []
+            )
+    if known:
+        write_atomically(path, sealed_json({"claims": known}))
+    return late

@@ -15,7 +15,7 @@ from runner.study.job import MissingError
 
 
 class Code:
-    """The modules of a work's folder.
+    """The modules of a study's folder.
 
     Args:
         folder: The folder.

@@ -11,9 +11,9 @@ import numpy as np
 from runner.study.gains import named, without_gains
 from runner.study.grid import Overrides
 from runner.study.items import Way, listed
+from runner.study.study import Study
 from runner.study.tune import ROUNDS
 from runner.study.tunings import Tuning
-from runner.study.work import Work
 from runner.sweeps.listed import Item, Listed
 from runner.sweeps.loading import Loader
 from runner.sweeps.pace import START_UP, Estimate, estimate
@@ -58,13 +58,13 @@ class Amount:
         return f"{tuned}{self.runs:,} runs: {time} for all"
 
 
-def counted(work: Work, tunings: Sequence[Tuning], chosen: Collection[str]) -> dict[Overrides, Counts]:
+def counted(study: Study, tunings: Sequence[Tuning], chosen: Collection[str]) -> dict[Overrides, Counts]:
     """Return how many trials, long runs and runs that follow have some overrides.
 
     The gains are left out, as they are not known yet. What is stored counts as what is not.
 
     Args:
-        work: The work.
+        study: The study.
         tunings: The tunings.
         chosen: Overrides by which laws are chosen; the runs are those that have one of them.
     """
@@ -74,7 +74,7 @@ def counted(work: Work, tunings: Sequence[Tuning], chosen: Collection[str]) -> d
         trials[each.overrides] += each.trials * each.times
         for own in each.longer:
             longer[own] += ROUNDS * each.times
-    runs = Counter(map(without_gains, _runs(work, tunings, chosen)))
+    runs = Counter(map(without_gains, _runs(study, tunings, chosen)))
     return {own: (trials[own], longer[own], runs[own]) for own in dict.fromkeys([*trials, *longer, *runs])}
 
 
@@ -101,10 +101,10 @@ def estimate_all(plan: Plan, counts: Sequence[Counts]) -> dict[str, Amount]:
     return found
 
 
-def _runs(work: Work, tunings: Sequence[Tuning], chosen: Collection[str]) -> Iterable[Overrides]:
+def _runs(study: Study, tunings: Sequence[Tuning], chosen: Collection[str]) -> Iterable[Overrides]:
     """Return the runs of some laws; where no key is tuned, all gains of a law are the same."""
     same = {each.name for each in tunings if not each.ranges}
-    runs = (job.overrides for job in work.jobs().values() if not set(chosen).isdisjoint(job.overrides))
+    runs = (job.overrides for job in study.jobs().values() if not set(chosen).isdisjoint(job.overrides))
     return dict.fromkeys(without_gains(own) if any(name in same for name, _ in named(own)) else own for own in runs)
 
 

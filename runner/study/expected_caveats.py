@@ -1,12 +1,20 @@
-"""Expected caveats of a study with reasons, and unexpected caveats of its runs."""
+"""Expected caveats of a study from `caveats.yaml`, with reasons, and unexpected caveats of its runs."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from typing import Any
+from pathlib import Path
+from typing import Annotated, Any
 
+from pydantic import Field
+
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError, nearest
+from runner.metrics.caveats.default_plant import DEFAULT_PLANT
+from runner.metrics.caveats.registry import KEYS
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.markup import literal
+from runner.schema.model import StrictModel
 from runner.store import Run
 from runner.study.job import distinct
 
@@ -15,12 +23,12 @@ _TOLD = 20  # unexpected caveats that the report names one by one
 
 @dataclass(frozen=True)
 class ExpectedCaveat:
-    """A caveat that some runs of a work are to have.
+    """A caveat that some runs of a study are to have.
 
     Attributes:
         rule: Name of the rule that finds it.
         runs: Pattern of the names of the runs, such as "figure_5_*/as_reported".
-        why: Why it is there, and why the work's conclusions stand; a sentence.
+        why: Why it is there, and why the study's conclusions stand; a sentence.
     """
 
     rule: str
@@ -33,9 +41,9 @@ class ExpectedCaveat:
 
 
 def unexpected_caveats(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[str]:
-    """Return the caveats that a work does not expect, a line for each."""
+    """Return the caveats that a study does not expect, a line for each."""
     return [
-        f"{name}: caveat {caveat['rule']}, which the work does not expect: {caveat['text']}"
+        f"{name}: caveat {caveat['rule']}, which the study does not expect: {caveat['text']}"
         for name, run in runs.items()
         for caveat in run.caveats
         if not any(each.covers(name, caveat) for each in expected)
@@ -43,7 +51,7 @@ def unexpected_caveats(runs: Mapping[str, Run], expected: Sequence[ExpectedCavea
 
 
 def caveats_as_data(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[dict[str, object]]:
-    """Return every caveat of a work's runs, with why it is expected, or None, as plain data."""
+    """Return every caveat of a study's runs, with why it is expected, or None, as plain data."""
     return [
         {
             "run": name,
@@ -56,7 +64,7 @@ def caveats_as_data(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat])
 
 
 def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> Section:
-    """Return which caveats a work's runs have, and why; a warning on top where one is not expected."""
+    """Return which caveats a study's runs have, and why; a warning on top where one is not expected."""
     lines = unexpected_caveats(runs, expected)
     blocks: list[Block] = []
     if lines:
@@ -64,7 +72,7 @@ def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat])
         text = literal(f"{'; '.join(lines[:_TOLD])}{more}.")
         blocks.append(
             Notice(
-                "warning", f"{len(lines)} caveat{'s' if len(lines) > 1 else ''} that this work does not expect", text
+                "warning", f"{len(lines)} caveat{'s' if len(lines) > 1 else ''} that this study does not expect", text
             )
         )
     reasons = dict.fromkeys((each.rule, each.why) for each in expected)
@@ -96,3 +104,41 @@ def _row(rule: str, why: str, expected: Sequence[ExpectedCaveat], runs: Mapping[
     _, worst, text = max(found)
     count = len(distinct({name: runs[name] for _, name, _ in found}))
     return [literal(rule.replace("_", " ")), str(count), literal(f"{worst}: {text}"), why]
+
+
+FILE = "caveats.yaml"
+_OF_THE_MACHINE = ExpectedCaveat(
+    DEFAULT_PLANT.name, "*", "PyBullet was not installed; conclusions and verdicts are stated for it, and may differ."
+)
+_Texts = Annotated[list[Annotated[str, Field(min_length=1)]], Field(min_length=1)]
+
+
+class Entry(StrictModel):
+    """Some caveats of some runs that are expected for one reason.
+
+    Attributes:
+        rules: Names of the rules that find them.
+        runs: Patterns of the names of the runs, such as "figure_5_*/as_reported".
+        why: Why they are there, and why the study's conclusions stand; a sentence.
+    """
+
+    rules: _Texts
+    runs: _Texts
+    why: Annotated[str, Field(min_length=1)]
+
+
+def read_expected(folder: Path) -> tuple[ExpectedCaveat, ...]:
+    """Return the caveats that a study expects: those of its file, if it has one, and one that is the machine's.
+
+    Raises:
+        RunnerError: if the file does not fit, or names a rule that does not exist; tells entry and key.
+    """
+    path = folder / FILE
+    if not path.is_file():
+        return (_OF_THE_MACHINE,)
+    entries = read_data(path, list[Entry])
+    for rule in (rule for entry in entries for rule in entry.rules):
+        if rule not in KEYS:
+            raise RunnerError(f"{path}: there is no rule '{rule}'{nearest(rule, KEYS)}; rules: {', '.join(KEYS)}")
+    listed = (ExpectedCaveat(rule, runs, entry.why) for entry in entries for runs in entry.runs for rule in entry.rules)
+    return (*listed, _OF_THE_MACHINE)

@@ -1,9 +1,10 @@
-"""Compatibility check of a user-supplied controller with a study."""
+"""Compatibility check of a user-supplied controller with a study, and comparison of settings of runs."""
 
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,15 +16,16 @@ from runner.controllers import CONTROLLERS
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_sensors
-from runner.study.alike import difference, setting
+from runner.store import simulated_part
 from runner.study.estimate import Amount, counted, estimate_all, planned
 from runner.study.gains import without_gains
-from runner.study.given import GivenPart
 from runner.study.grid import Overrides
 from runner.study.items import Way
+from runner.study.plugins import UserPlugin
+from runner.study.study import Study
 from runner.study.tune import read_number
 from runner.study.tunings import Tuning, key_of
-from runner.study.work import Work
+from runner.sweeps.differing import entries
 from runner.sweeps.job import PROBED_TICKS
 
 
@@ -73,23 +75,23 @@ class Fit:
             self._found[text] = first, count + 1
 
 
-def fit(work: Work, without: Work, part: GivenPart) -> Fit:
-    """Return how a law of the user's fits among those of a work; nothing is stored.
+def fit(study: Study, without: Study, part: UserPlugin) -> Fit:
+    """Return how a law of the user's fits among those of a study; nothing is stored.
 
     Args:
-        work: The work with the law.
-        without: The same work without it.
+        study: The study with the controller.
+        without: The same study without it.
         part: The law.
     """
-    tunings = [each for each in work.untuned() if each.law == part.name]
+    tunings = [each for each in study.untuned() if each.law == part.name]
     ranged = {each.overrides: each for each in tunings if each.ranges}
     found = Fit(bool(ranged))
-    counts = counted(work, tunings, {part.override})
+    counts = counted(study, tunings, {part.override})
     compared: dict[Overrides, tuple[str, Overrides]] = {}
-    for name, own, other in work.compared():
+    for name, own, other in study.compared():
         compared.setdefault(without_gains(own), (name, without_gains(other)))
     cells = [*dict.fromkeys([*compared, *counts])]
-    plan = planned(cells, Way(Path("outputs"), config_dirs=work.config_dirs))
+    plan = planned(cells, Way(Path("outputs"), config_dirs=study.config_dirs))
     seen: set[str] = set()
     begun: set[str] = set()
     ended: set[str] = set()
@@ -114,7 +116,7 @@ def fit(work: Work, without: Work, part: GivenPart) -> Fit:
     return found
 
 
-def _validated(composed: Composed, part: GivenPart) -> RunConfig:
+def _validated(composed: Composed, part: UserPlugin) -> RunConfig:
     """Return a checked config.
 
     Raises:
@@ -153,7 +155,7 @@ def _first_ticks(config: RunConfig) -> Tick:
     return Tick(config.timing.tick, float(np.median(trace.tick_seconds)), None if failure is None else failure.time)
 
 
-def _check_ends(tuning: Tuning, composed: Composed, part: GivenPart, found: Fit) -> None:
+def _check_ends(tuning: Tuning, composed: Composed, part: UserPlugin, found: Fit) -> None:
     """Note what is wrong with a law at both ends of each of its ranges."""
     for name, factors in tuning.ranges.items():
         try:
@@ -172,3 +174,29 @@ def _check_ends(tuning: Tuning, composed: Composed, part: GivenPart, found: Fit)
                 found.add(tuning.name, _unlike((f"{part.name} with {text}", end), composed))
             except ConfigError as error:
                 found.add(f"{tuning.name} with {text}", error.problems)
+
+
+_LAW = ("controller", "disturbance_observer")
+
+
+def setting(config: Mapping[str, Any]) -> dict[str, str]:
+    """Return all that decides about a run but its law, with what the law carries; of the law the period stays.
+
+    Args:
+        config: The resolved config of the run.
+    """
+    part = simulated_part(config)
+    period = {"controller.period": part["controller"].get("period")}
+    return dict(entries({key: value for key, value in part.items() if key not in _LAW} | period))
+
+
+def difference(one: tuple[str, Mapping[str, str]], other: tuple[str, Mapping[str, str]]) -> str:
+    """Return in which key the settings of two laws differ, each given with the law's name; empty where in none."""
+    (law, ours), (their_law, theirs) = one, other
+    if ours == theirs:
+        return ""
+    key = next(key for key in dict.fromkeys([*ours, *theirs]) if ours.get(key) != theirs.get(key))
+    return (
+        f"{key} is {ours.get(key, 'none')} for {law} and {theirs.get(key, 'none')} for {their_law}; laws are compared "
+        "where nothing but they and their gains differ"
+    )

@@ -19,7 +19,7 @@ _KEY = "gains="
 
 
 def read_gains(folder: Path) -> Gains:
-    """Return the gains that are kept in the folder of a work; none where there is no such file.
+    """Return the gains that are kept in the folder of a study; none where there is no such file.
 
     Raises:
         RunnerError: if the file cannot be read or does not fit.
@@ -38,7 +38,7 @@ def write_gains(folder: Path, gains: Gains) -> None:
     """
     content = {name: [dict(own) for own in each] for name, each in gains.items()}
     text = yaml.safe_dump(content, sort_keys=False, width=200, default_flow_style=None)
-    write_atomically(folder / FILE, f"# Made by the tunings of the work; see docs/paper.md.\n{text}".encode())
+    write_atomically(folder / FILE, f"# Made by the tunings of the study; see docs/paper.md.\n{text}".encode())
 
 
 def put_in(overrides: Overrides, gains: Gains) -> Overrides:

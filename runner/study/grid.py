@@ -11,7 +11,7 @@ from runner.base.errors import RunnerError, nearest
 from runner.base.limits import GRID
 from runner.schema.model import StrictModel
 from runner.study.arithmetic import Level, alone, fill, names_in
-from runner.study.given import GivenPart
+from runner.study.plugins import UserPlugin
 
 Overrides = tuple[str, ...]
 
@@ -75,7 +75,7 @@ class Grid(StrictModel):
                 raise ValueError(f"plugins: there is no axis '{axis}'{nearest(axis, self.over)}")
         return self
 
-    def with_parts(self, parts: Sequence[GivenPart]) -> Self:
+    def with_parts(self, parts: Sequence[UserPlugin]) -> Self:
         """Return the grid with parts of the user's as further levels of the axes that take parts of their group.
 
         Raises:
@@ -84,7 +84,7 @@ class Grid(StrictModel):
         over = {axis: {**levels, **self._added(axis, parts)} for axis, levels in self.over.items()}
         return self.model_copy(update={"over": over})
 
-    def _added(self, axis: str, parts: Sequence[GivenPart]) -> dict[Level, Overrides | None]:
+    def _added(self, axis: str, parts: Sequence[UserPlugin]) -> dict[Level, Overrides | None]:
         levels = self.over[axis]
         own = [part for part in parts if part.group == self.plugins.get(axis)]
         for part in own:

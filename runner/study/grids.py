@@ -38,9 +38,9 @@ from runner.config.compose.user_settings import refuse_settings
 from runner.schema.model import StrictModel
 from runner.study.arithmetic import Level
 from runner.study.gains import check_named
-from runner.study.given import GivenPart
 from runner.study.grid import Grid, Overrides
-from runner.study.profiles import Profile
+from runner.study.manifest import Profile
+from runner.study.plugins import UserPlugin
 from runner.study.tunings import TunedGrid, Tuning, all_tunings
 
 FILE = "runs.yaml"
@@ -53,7 +53,7 @@ class _Values(StrictModel):
 
 
 class Grids:
-    """The grids of a work.
+    """The grids of a study.
 
     Args:
         path: Its runs.yaml.
@@ -69,7 +69,7 @@ class Grids:
         RunnerError: with file, grid and every problem found.
     """
 
-    def __init__(self, path: Path, profile: Profile | None = None, parts: Sequence[GivenPart] = ()) -> None:
+    def __init__(self, path: Path, profile: Profile | None = None, parts: Sequence[UserPlugin] = ()) -> None:
         self._path = path
         try:
             text = read_text(path, STORED.size)
@@ -118,7 +118,7 @@ class Grids:
         """The groups of which its axes take parts of the user's."""
         return frozenset(group for grid in self._grids.values() for group in grid.plugins.values())
 
-    def compared(self, part: GivenPart) -> Iterator[tuple[str, Overrides, Overrides]]:
+    def compared(self, part: UserPlugin) -> Iterator[tuple[str, Overrides, Overrides]]:
         """Yield name and overrides of each run and tuning of a part, and the overrides with our first level instead."""
         for key, grid in chain(self._grids.items(), self._tuned.items()):
             for axis in (axis for axis, group in grid.plugins.items() if group == part.group):
@@ -185,7 +185,7 @@ def _parse(root: str, kind: type[G], content: object, problems: list[str]) -> di
     return grids
 
 
-def _with_parts(root: str, grids: Mapping[str, G], parts: Sequence[GivenPart], problems: list[str]) -> dict[str, G]:
+def _with_parts(root: str, grids: Mapping[str, G], parts: Sequence[UserPlugin], problems: list[str]) -> dict[str, G]:
     found = {}
     for key, grid in grids.items():
         try:

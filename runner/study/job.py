@@ -34,10 +34,10 @@ class LeftOutError(MissingError):
     """A run or calibration that the profile leaves out."""
 
 
-class Made(dict[str, Thing]):
-    """The runs or calibrations of a work by name; asking for one that was not made raises MissingError.
+class Results(dict[str, Thing]):
+    """The runs or calibrations of a study by name; asking for one that was not made raises MissingError.
 
-    One that is not of the work is refused with the nearest name, so that no condition is left without its runs.
+    One that is not of the study is refused with the nearest name, so that no condition is left without its runs.
 
     Args:
         found: Those that were made.
@@ -57,7 +57,7 @@ class Made(dict[str, Thing]):
             raise MissingError(f"{name}: {self.missing[name]}")
         if name in self.dropped:
             raise LeftOutError(f"{name}: {self.dropped[name]}")
-        raise RunnerError(f"the work has no run or calibration '{name}'{nearest(name, [*self, *self.missing])}")
+        raise RunnerError(f"the study has no run or calibration '{name}'{nearest(name, [*self, *self.missing])}")
 
 
 def distinct(named: Mapping[str, Stored]) -> list[Stored]:

@@ -1,4 +1,4 @@
-"""Names and folders of the installed studies, found without importing them."""
+"""Names and folders of the installed studies, found without importing them, and a new study from the template."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,15 +7,17 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.paths import WORK_FILE, works_dir, works_with
+from runner.base.former_names import FILES
+from runner.base.paths import STUDY_FILE, example_study_dir, studies_dir, studies_with
+from runner.store.atomic import write_atomically
 
 GROUP = "runner.studies"
-"""The group of entry points by which an installed package says that it is a work."""
+"""The group of entry points by which an installed package says that it is a study."""
 
 
 @dataclass(frozen=True)
-class Place:
-    """Where a work is.
+class Location:
+    """Where a study is.
 
     Attributes:
         name: What it is called.
@@ -30,41 +32,44 @@ class Place:
     @property
     def ours(self) -> bool:
         """Whether it is one of ours, whose configs are those of the runner, but for robots that it brings."""
-        return self.folder.parent == works_dir()
+        return self.folder.parent == studies_dir()
 
 
-def work_names() -> tuple[str, ...]:
-    """Return the names of the installed works, sorted."""
-    return tuple(sorted({*works_with(WORK_FILE), *(point.name for point in _installed())}))
+def study_names() -> tuple[str, ...]:
+    """Return the names of the installed studies, sorted."""
+    return tuple(sorted({*studies_with(STUDY_FILE), *(point.name for point in _installed())}))
 
 
-def find_work(text: str, others: Sequence[str] = ()) -> Place:
-    """Return where a work is, by its name or its folder.
+def find_study(text: str, others: Sequence[str] = ()) -> Location:
+    """Return where a study is, by its name or its folder.
 
     Args:
-        text: The name of an installed work, or a path to the folder of another.
+        text: The name of an installed study, or a path to the folder of another.
         others: What else the command takes in its place, for the message.
 
     Raises:
         RunnerError: if there is none.
     """
-    if (works_dir() / text / WORK_FILE).is_file() and "/" not in text:
-        return Place(text, works_dir() / text, f"runner.studies.{text}")
+    if (studies_dir() / text / STUDY_FILE).is_file() and "/" not in text:
+        return Location(text, studies_dir() / text, f"runner.studies.{text}")
     for point in _installed():
         if point.name == text:
-            return Place(text, _folder_of(point), point.value)
+            return Location(text, _folder_of(point), point.value)
     folder = Path(text).resolve()
-    if (folder / WORK_FILE).is_file():
-        if folder.name in work_names():
-            raise RunnerError(f"{text}: {folder.name} is the name of an installed work; rename the folder")
-        return Place(folder.name, folder)
+    if (folder / STUDY_FILE).is_file():
+        if folder.name in study_names():
+            raise RunnerError(f"{text}: {folder.name} is the name of an installed study; rename the folder")
+        return Location(folder.name, folder)
+    for former, present in FILES.items():
+        if (folder / former).is_file():
+            raise RunnerError(f"{former} is now called {present}.")
     if folder.is_dir() or "/" in text:
         raise RunnerError(
-            f"{text}: no work: there is no {WORK_FILE} in it; `runner work new {text}` writes a first one"
+            f"{text}: no study: there is no {STUDY_FILE} in it; `runner study new {text}` writes a first one"
         )
-    names = (*work_names(), *others)
+    names = (*study_names(), *others)
     raise RunnerError(
-        f"no work '{text}'{nearest(text, names)}; works: {', '.join(names)}, or a folder with a {WORK_FILE}"
+        f"no study '{text}'{nearest(text, names)}; studies: {', '.join(names)}, or a folder with a {STUDY_FILE}"
     )
 
 
@@ -76,8 +81,29 @@ def _folder_of(point: EntryPoint) -> Path:
     try:
         spec = find_spec(point.value)
     except ImportError as error:
-        raise RunnerError(f"work {point.name}: package {point.value} cannot be found: {error}") from error
+        raise RunnerError(f"study {point.name}: package {point.value} cannot be found: {error}") from error
     folders = list(spec.submodule_search_locations or ()) if spec is not None else []
-    if not folders or not (Path(folders[0]) / WORK_FILE).is_file():
-        raise RunnerError(f"work {point.name}: package {point.value} has no {WORK_FILE}")
+    if not folders or not (Path(folders[0]) / STUDY_FILE).is_file():
+        raise RunnerError(f"study {point.name}: package {point.value} has no {STUDY_FILE}")
     return Path(folders[0])
+
+
+def write_new(folder: Path) -> list[Path]:
+    """Write a small study that runs at once; return its files.
+
+    Args:
+        folder: Where; made if it is not there.
+
+    Raises:
+        RunnerError: if there is something in the folder already, or it cannot be written.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise RunnerError(f"{folder}: is there already, and not empty; name a new folder")
+    sources = sorted(path for path in example_study_dir().iterdir() if path.suffix in (".yaml", ".md"))
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in sources:
+            write_atomically(folder / path.name, path.read_bytes())
+    except OSError as error:
+        raise RunnerError(f"{folder}: cannot be written: {error.strerror}") from error
+    return [folder / path.name for path in sources]

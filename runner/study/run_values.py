@@ -1,6 +1,6 @@
-"""Medians, table cells and signals of stored runs, including failed runs."""
+"""Medians, table cells, config values and signals of stored runs, including failed runs."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -68,7 +68,7 @@ def delay_of(run: Run) -> int:
     return int(list(delay.values())[-1] if isinstance(delay, Mapping) else delay)
 
 
-def apart(first: Run, second: Run, signal: str) -> FloatArray:
+def distance(first: Run, second: Run, signal: str) -> FloatArray:
     """Return the distance between a tip signal of two runs at their common ticks, shape (T,), in m."""
     rows = min(len(first.trace), len(second.trace))
     difference = columns(first.trace[:rows], signal) - columns(second.trace[:rows], signal)
@@ -88,3 +88,57 @@ def failures(runs: Mapping[str, Run]) -> list[Block]:
     count = sum(map(len, reasons.values()))
     text = ". ".join(f"{reason}: {'; '.join(names)}" for reason, names in reasons.items())
     return [Notice("failure", f"{count} of {len(runs)} runs failed", f"{text[0].upper()}{text[1:]}.")]
+
+
+Signal = str | Callable[..., Any]
+"""Name of a column of the trace or of a metric, or a function of a run, or of a run and others."""
+
+
+def trace_of(signal: Signal, *runs: Run) -> FloatArray:
+    """Return a signal of a run, or of a run and another, shape (T,).
+
+    Raises:
+        RunnerError: if the run has no such column.
+    """
+    if callable(signal):
+        return np.asarray(signal(*runs), dtype=float)
+    check_signal(runs[0], signal)
+    return np.asarray(runs[0].trace[signal].to_numpy(), dtype=float)
+
+
+def times_of(run: Run, rows: int) -> FloatArray:
+    """Return the first times of a run's rows, in s."""
+    return clock(run)[:rows]
+
+
+def number_of(what: Signal, *runs: Run) -> float | None:
+    """Return a number of a run: the median of a metric by its name, or what a function of the run gives; or None."""
+    if isinstance(what, str):
+        return median(runs[0], what)
+    value = what(*runs)
+    return value.value if isinstance(value, Measured) else value if value is None else float(value)
+
+
+def config_value(run: Run, key: str) -> Any:
+    """Return a value of a run's config by its dotted key.
+
+    Raises:
+        RunnerError: if there is no such key.
+    """
+    value: Any = run.config
+    for part in key.split("."):
+        if not isinstance(value, Mapping) or part not in value:
+            raise RunnerError(f"no key {key} in a config{nearest(part, value if isinstance(value, Mapping) else ())}")
+        value = value[part]
+    return value
+
+
+def check_signal(run: Run, column: str) -> None:
+    """Refuse a signal that a run does not have.
+
+    Raises:
+        RunnerError: if its trace has no such column.
+    """
+    if column not in run.trace.columns:
+        near = nearest(column, [str(name) for name in run.trace.columns])
+        raise RunnerError(f"run {run.hash} has no signal '{column}'{near}")

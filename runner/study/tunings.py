@@ -36,8 +36,8 @@ from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.plugins.metric_units import unit_of, units
 from runner.study.arithmetic import Level
-from runner.study.given import GivenPart
 from runner.study.grid import FlatOverrides, Grid, Overrides
+from runner.study.plugins import UserPlugin
 from runner.sweeps.tuning.key import Key
 
 Factor = Annotated[float, Field(gt=0.0)]
@@ -108,7 +108,7 @@ class TunedGrid(Grid):
                 raise ValueError(f"there is no metric '{metric}'{nearest(metric, units())}")
         return self
 
-    def with_parts(self, parts: Sequence[GivenPart]) -> Self:
+    def with_parts(self, parts: Sequence[UserPlugin]) -> Self:
         """Return the grid with parts of the user's as further levels, with the ranges that stand beside them."""
         made = super().with_parts(parts)
         axis = self._axis
@@ -156,7 +156,7 @@ def key_of(name: str, value: float, factors: Range) -> Key:
     return Key(name, low, high, step=None, log=True, integer=False)
 
 
-def _ranges_of(part: GivenPart) -> Ranges:
+def _ranges_of(part: UserPlugin) -> Ranges:
     path = part.folder / f"{part.name}.ranges.yaml"
     if not path.is_file():
         return {}

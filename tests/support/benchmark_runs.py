@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
-from support.work_plans import benchmark_kind
+from support.study_plans import benchmark_kind
 
 from runner.store import Run
 

@@ -4,7 +4,7 @@ import ast
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from runner.study.prose.typed import levels_in, typed_in
+from runner.study.check import levels_in, typed_in
 
 
 def typed_in_module(path: Path, names: Iterable[str]) -> Iterator[str]:
@@ -12,7 +12,7 @@ def typed_in_module(path: Path, names: Iterable[str]) -> Iterator[str]:
 
     Args:
         path: The module.
-        names: Names of the work's runs; a number with its unit that stands in one is a level of an axis.
+        names: Names of the study's runs; a number with its unit that stands in one is a level of an axis.
     """
     levels = levels_in(names)
     tree = ast.parse(path.read_text(encoding="utf-8"))

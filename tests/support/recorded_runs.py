@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from support.study_plans import RECORDED, recorded_jobs
 from support.thin_plans import make_runs
-from support.work_plans import RECORDED, recorded_jobs
 
 from runner.store import Run
-from runner.study.work import load_work
+from runner.study.study import load_study
 
 FOLDER = Path(__file__).parents[1] / "recorded"
 OUTPUTS = "outputs"
@@ -108,7 +108,7 @@ def rounded(value: Any, digits: int = DIGITS) -> Any:
 def _main(studies: Iterable[str]) -> None:
     for study in studies:
         with tempfile.TemporaryDirectory() as folder:
-            runs = make_runs(Path(folder), recorded_jobs(study), None, load_work(study).config_dirs)
+            runs = make_runs(Path(folder), recorded_jobs(study), None, load_study(study).config_dirs)
             print(f"{study}: {len(runs)} runs, {record(study, runs):,} bytes")
 
 

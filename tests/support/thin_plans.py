@@ -1,4 +1,4 @@
-"""Plans of works made thin, and their runs, made once for all test processes.
+"""Plans of studies made thin, and their runs, made once for all test processes.
 
 A thin plan has the runs of the whole one by name. Runs that differ in numbers alone are of a kind: of each kind the
 first and the last are made, and stand in for the others. `make test-slow` runs whole plans.
@@ -63,7 +63,7 @@ def make_runs(
         folder: Shared by all test processes: each run is made by the first one that comes to it.
         jobs: Overrides by name.
         stands_for: Name of the run that stands for each; None lets each stand for itself.
-        config_dirs: Config folders of the work's own.
+        config_dirs: Config folders of the study's own.
     """
 
     def run_here(*overrides: str) -> Run:

@@ -15,7 +15,7 @@ REPORT_CODE = 2.0
 
 _USUAL = 10  # figures of a report that is not made yet
 # Times in s, as measured on two cores of a server; how long all takes here, the clock shows.
-_CHECKED, _TOLD = 0.05, 0.03  # of each cell or run of a work: to check it; to read it and to write of it
+_CHECKED, _TOLD = 0.05, 0.03  # of each cell or run of a study: to check it; to read it and to write of it
 _PAGE, _PLAYED = 0.4, 0.01  # of the HTML, and of each figure in it
 _DRAWN = 0.13  # of a figure for the PDF
 _SET, _PLACED = 0.1, 0.03  # of the PDF, and of each figure in it
@@ -29,12 +29,12 @@ def of_report(formats: Collection[str], figures: int = _USUAL) -> dict[str, floa
 
 
 def of_audit() -> dict[str, float]:
-    """Return the stages of the audit of all works, with its report, likewise."""
+    """Return the stages of the audit of all studies, with its report, likewise."""
     return {AUDITING: 8.0, BELIEVING: 10.0, **of_report(("html", "pdf"))}
 
 
-def of_work(runs: int) -> dict[str, float | None]:
-    """Return the stages of making a work of so many runs, with its report, likewise; None of what is not known yet."""
+def of_study(runs: int) -> dict[str, float | None]:
+    """Return the stages of making a study of so many runs, with its report, likewise; None of what is not known yet."""
     return {
         CHECKING: _CHECKED * runs,
         SIMULATING: None,

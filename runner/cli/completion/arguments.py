@@ -2,12 +2,13 @@
 
 import argparse
 import importlib
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from runner.cli.arguments import Parser, Stored, UsageError
 from runner.cli.completion.line import Line
 from runner.cli.completion.overrides import override_words
-from runner.cli.completion.places import files, stored_folders
+from runner.store.latest import WORD, Kind, folder_of
 from runner.store.recall.answers import keep, recall
 from runner.store.recall.basis import basis
 
@@ -41,7 +42,7 @@ def parser_of(command: str) -> Parser | None:
 
 
 def _awaited(parser: argparse.ArgumentParser, words: Sequence[str]) -> tuple[argparse.Action | None, Sequence[str]]:
-    """Return the argument that comes next after some words; of an action such as `work new` with the words from it."""
+    """Return the argument that comes next after some words; of an action such as `study new` with the words from it."""
     options, positionals = _options(parser), parser._get_positional_actions()
     place, rest = 0, list(words)
     while rest:
@@ -89,7 +90,7 @@ def _values(action: argparse.Action, line: Line, root: str, before: str = "") ->
         yield from override_words(line, root)
     elif names is not None:
         yield from _listed(word, before, names(line.words[0]))
-    if action.dest == "work" or (action.metavar in _FILES and not isinstance(action.type, Stored)):
+    if action.dest == "study" or (action.metavar in _FILES and not isinstance(action.type, Stored)):
         yield from files(line.word, before, folders_only=action.metavar not in ("FILE", "URDF"))
 
 
@@ -123,10 +124,10 @@ def metric_names() -> Iterable[str]:
     return known
 
 
-def _works(command: str) -> Iterable[str]:
-    from runner.study.names import work_names
+def _studies(command: str) -> Iterable[str]:
+    from runner.study.names import study_names
 
-    return (*work_names(), *(("audit", "all") if command == "reproduce" else ()))
+    return (*study_names(), *(("audit", "all") if command == "reproduce" else ()))
 
 
 _FILES = ("DIR", "FILE", "URDF")
@@ -135,5 +136,58 @@ _NAMED: Mapping[str, Callable[[str], Iterable[str]]] = {
     "topic": _topics,
     "metric": _metrics,
     "objectives": _metrics,
-    "work": _works,
+    "study": _studies,
 }
+
+
+_FEW = 50
+
+
+def stored_folders(word: str, kinds: Sequence[Kind]) -> Iterator[str]:
+    """Yield the folders in ./outputs that hold some kinds of things, and the word `latest`.
+
+    Of many, the folder that they lie in stands for them until it is typed.
+    """
+    yield WORD
+    for kind in kinds:
+        place = f"outputs/{folder_of(kind)}/"
+        found = [name for name in _names(place) if not name.startswith(".")]
+        if len(found) <= _FEW or word.startswith(place):
+            yield from (place + name for name in found)
+        else:
+            yield place
+    if "/" in word:
+        yield from files(word, folders_only=True)
+
+
+def files(word: str, before: str = "", suffix: str = "", folders_only: bool = False) -> Iterator[str]:
+    """Yield the paths that complete one, folders with a slash at their end.
+
+    Args:
+        word: What is typed.
+        before: What stands in it before the path, as `--config-dir=`.
+        suffix: What a file's name must end with.
+        folders_only: Whether to leave files out.
+    """
+    path = word.removeprefix(before)
+    name = path.rpartition("/")[2]
+    parent = path.removesuffix(name)
+    for entry in _entries(parent or "."):
+        if entry.name.startswith(".") and not name.startswith("."):
+            continue
+        if entry.is_dir():
+            yield f"{before}{parent}{entry.name}/"
+        elif not folders_only and entry.name.endswith(suffix):
+            yield f"{before}{parent}{entry.name}"
+
+
+def _entries(folder: str) -> Iterator[os.DirEntry[str]]:
+    try:
+        with os.scandir(folder) as entries:
+            yield from entries
+    except OSError:
+        return
+
+
+def _names(folder: str) -> list[str]:
+    return [entry.name for entry in _entries(folder) if entry.is_dir()]

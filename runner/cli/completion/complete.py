@@ -3,10 +3,9 @@
 import re
 from collections.abc import Iterator
 
-from runner.cli.completion.arguments import argument_words
+from runner.cli.completion.arguments import argument_words, files
 from runner.cli.completion.line import Line
 from runner.cli.completion.overrides import override_words
-from runner.cli.completion.places import files
 from runner.cli.main import COMMANDS, HELP, SPELLED_OUT
 
 _ROOTS = {"calibrate": "calibrate"}  # commands whose config hangs on another file of conf/ than that of a run

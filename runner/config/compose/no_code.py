@@ -24,8 +24,8 @@ from runner.base.limits import ExcessError, read_text
 from runner.base.memory import Memory
 from runner.base.paths import check_inside, conf_dir, ships
 from runner.base.texts import quoted
+from runner.config.compose.study_folder import place_in
 from runner.config.compose.user_settings import refuse_settings
-from runner.config.compose.work_folder import place_in
 
 _SWEEPER = (
     ("address", str, "that of a Dask scheduler, as tcp://127.0.0.1:8786"),
@@ -38,8 +38,8 @@ _READ = Memory(512)  # files as Hydra parses them, pickled
 def code_refused() -> Iterator[None]:
     """Let Hydra go on only with config files that name no code and lie in their folders, whatever package they take.
 
-    In a config folder that is a work's, experiments are found under its name; see work_folder. The one function that a
-    file calls, conf/plant/default.yaml, is ours.
+    In the folder of a study, experiments have the study's name; see study_folder. The one function that a file calls,
+    conf/plant/default.yaml, is ours.
     """
     Plugins.instance()  # registers what reads files, as a class of Hydra's own making
     OmegaConf.register_new_resolver("default_plant", lambda: f"/plant/{default_plant()}", replace=True)

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from runner.base.paths import conf_dir
-from runner.config.compose.work_folder import option_in
+from runner.config.compose.study_folder import option_in
 
 _HEAD = 10_000  # characters, in which the first comment of a file stands
 

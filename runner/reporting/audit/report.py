@@ -54,7 +54,7 @@ def audit_document(judged: Mapping[str, Sequence[Judged]]) -> Document:
     total = counts(everything)
     progress.begin(BELIEVING, None, sum(len(_rollouts(each)) for each in judged.values()), "wrong formulas")
     return Document(
-        title="Equations of three published works, checked by machine",
+        title="Equations of three published sources, checked by machine",
         subtitle="Every printed equation against the arm's true kinematics and dynamics",
         abstract=(
             f"{len(everything)} equations were transcribed as they are printed and tried at {SAMPLES} random "
@@ -89,7 +89,7 @@ def _counts(judged: Mapping[str, Sequence[Judged]]) -> Table:
 def _reading() -> str:
     return (
         "A form is judged as it stands wherever it can be read, even where the text is more likely to be at fault "
-        "than the author: we have the text of the three works as a machine read it, not their pages. It is repaired "
+        "than the author: we have the text of the three sources as a machine read it, not their pages. It is repaired "
         "only where it cannot be read, or where a line is plainly damaged, and then the repair is stated and keeps "
         "every other sign; a wrong label, too, is judged as it stands unless those around it are plainly "
         "misread. Verdicts are worked out, not written down: the printed form, the repaired and the "

@@ -1,8 +1,8 @@
 """Published claims: data, statements and verdicts."""
 
 from runner.reporting.claims.claim import FILE as CLAIMS
-from runner.reporting.claims.claim import Bound, Extent, PublishedClaim, load_claims, works_with_claims
-from runner.reporting.claims.statement import PublishedStatement, load_statements, works_with_statements
+from runner.reporting.claims.claim import Bound, Extent, PublishedClaim, load_claims, studies_with_claims
+from runner.reporting.claims.statement import PublishedStatement, load_statements, studies_with_statements
 from runner.reporting.claims.verdict import CONTRADICTION, FACTOR, Verdict, judge, judge_motion
 
 __all__ = [
@@ -18,6 +18,6 @@ __all__ = [
     "judge_motion",
     "load_claims",
     "load_statements",
-    "works_with_claims",
-    "works_with_statements",
+    "studies_with_claims",
+    "studies_with_statements",
 ]

@@ -9,7 +9,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError
-from runner.base.paths import works_dir, works_with
+from runner.base.paths import studies_dir, studies_with
 from runner.schema.model import StrictModel
 
 FILE = "claims.yaml"
@@ -76,7 +76,7 @@ class PublishedClaim(StrictModel):
         place: Where.
         printed: The printed value, or the two ends of the printed range; empty where the source compares in words.
         unit: Its unit.
-        experiment: The experiment that makes it: of "work/name" the run of the work is name/PRESET.
+        experiment: The experiment that makes it: of "study/name" the run of the study is name/PRESET.
         run: Where no experiment makes it: begin of the run's name, name for name/PRESET.
         metric: The metric that it is compared with; a range is compared by its upper end, the worst axis.
         extents: Where it says how the tip moves, in place of a metric.
@@ -117,21 +117,21 @@ class PublishedClaim(StrictModel):
         return self.printed[-1] if self.printed else None
 
 
-def works_with_claims() -> list[str]:
-    """Return the names of the works that have claims, sorted."""
-    return works_with(FILE)
+def studies_with_claims() -> list[str]:
+    """Return the names of the studies that have claims, sorted."""
+    return studies_with(FILE)
 
 
-def load_claims(work: str | Path) -> list[PublishedClaim]:
-    """Return the published numbers of a work in order.
+def load_claims(study: str | Path) -> list[PublishedClaim]:
+    """Return the published numbers of a study in order.
 
     Args:
-        work: One of ours by its name, such as "thesis", or the whole path of a work's folder.
+        study: One of ours by its name, such as "thesis", or the whole path of a study's folder.
 
     Raises:
         RunnerError: if its file does not fit, or a bound names no claim of it; names the file, the entries and keys.
     """
-    path = works_dir() / work / FILE
+    path = studies_dir() / study / FILE
     claims = read_data(path, list[PublishedClaim])
     numbers = [claim.number for claim in claims]
     for claim in claims:

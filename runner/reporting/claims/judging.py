@@ -46,7 +46,7 @@ def verdict_on(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulate
 
     Args:
         claim: The claim.
-        claims: All claims of its work: a bound names another.
+        claims: All claims of its study: a bound names another.
         simulated: Gives the simulated values.
     """
     printed = compared_with(claim, simulated)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from runner.base.data_file import read_data
-from runner.base.paths import works_dir, works_with
+from runner.base.paths import studies_dir, studies_with
 from runner.schema.model import StrictModel
 
 _FILE = "statements.yaml"
@@ -25,18 +25,18 @@ class PublishedStatement(StrictModel):
     reason: str = ""
 
 
-def works_with_statements() -> list[str]:
-    """Return the names of the works that have statements, sorted."""
-    return works_with(_FILE)
+def studies_with_statements() -> list[str]:
+    """Return the names of the studies that have statements, sorted."""
+    return studies_with(_FILE)
 
 
-def load_statements(work: str | Path) -> list[PublishedStatement]:
-    """Return the statements of a work in order.
+def load_statements(study: str | Path) -> list[PublishedStatement]:
+    """Return the statements of a study in order.
 
     Args:
-        work: One of ours by its name, such as "meca500", or the whole path of a work's folder.
+        study: One of ours by its name, such as "meca500", or the whole path of a study's folder.
 
     Raises:
         RunnerError: if its file does not fit; names the file, the entries and keys.
     """
-    return read_data(works_dir() / work / _FILE, list[PublishedStatement])
+    return read_data(studies_dir() / study / _FILE, list[PublishedStatement])

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.paths import works_dir
+from runner.base.paths import studies_dir
 from runner.config.compose.options import described_files
 from runner.store.references.reference import Reference, load_reference
 
@@ -23,7 +23,7 @@ def described_references() -> dict[str, str]:
     """Return their names, sorted, each with the first line of its comment."""
     return {
         f"{folder.parent.name}/{name}": description
-        for folder in sorted(works_dir().glob(f"*/{_FOLDER}"))
+        for folder in sorted(studies_dir().glob(f"*/{_FOLDER}"))
         for name, description in described_files(folder).items()
     }
 
@@ -48,5 +48,5 @@ def find_shipped(run: "Run") -> Reference:
 
 def reference_path(name: str) -> Path:
     """Return the file of a baseline, such as "thesis/figure_3_5.full_equations", whether it is there or not."""
-    work, _, file = name.partition("/")
-    return works_dir() / work / _FOLDER / f"{file}.yaml"
+    study, _, file = name.partition("/")
+    return studies_dir() / study / _FOLDER / f"{file}.yaml"

@@ -11,8 +11,7 @@ from runner.reporting.document import Curves, Maps, Origin, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, tuned
-from runner.studies.benchmark.leads import Entry, Lead
+from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, Entry, Lead, tuned
 from runner.studies.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell, turned
 from runner.study.measured import Measured
 from runner.study.prose.patterns import found
@@ -26,7 +25,7 @@ def best_laws(runs: Mapping[str, Run], question: str, caption: str) -> list[Tabl
     """Return the laws that none is shown to be ahead of, on each arm under each condition, and who is next.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         question: One of QUESTIONS.
         caption: What is seen.
     """
@@ -58,7 +57,7 @@ def troubles(runs: Mapping[str, Run], question: str, gains: str, caption: str) -
     """Return the share of repetitions of each law that failed as maps, an arm each; a sentence where none did.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         question: One of QUESTIONS.
         gains: "tuned" or "untuned".
         caption: What is seen.
@@ -78,7 +77,7 @@ def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: s
     """Return the error of each law in the first round against what another metric says of its torques, by arm.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         metric: The metric, such as "torque_chatter".
         label: Its axis, with unit.
         condition: The condition.
@@ -130,7 +129,7 @@ def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> l
     """Return the share of repetitions that failed of each law under a condition, in per cent.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         gains: "tuned" or "untuned".
         condition: The condition.
         arms: The arms; all where none is named.
@@ -212,3 +211,69 @@ def typical(runs: Mapping[str, Run], arm: str, law: str, condition: str, gains: 
 def _median(run: Run, metric: str) -> float:
     median = run.metrics[metric]["median"] if metric in run.metrics else None
     return np.nan if median is None else float(median)
+
+
+def said_again(runs: Mapping[str, Run]) -> Measured:
+    """Return of the leads that one half shows the share that the other half shows, too, in per cent."""
+    said, again, _ = halves(runs)
+    return Measured("leads that the other half shows, too", 100.0 * again / said if said else None, "%")
+
+
+def said_otherwise(runs: Mapping[str, Run]) -> Measured:
+    """Return how many leads of one half the other half shows the other way round."""
+    return Measured("leads that the other half turns round", float(halves(runs)[2]))
+
+
+def halves(runs: Mapping[str, Run]) -> tuple[int, int, int]:
+    """Return how many drawn leads the halves show, and of these the other one, too, or turned round.
+
+    They are those of the first question, which has seeds enough for two halves.
+    """
+    a, b = (_shown(runs, slice(start, None, 2)) for start in (0, 1))
+    turned = {(arm, name, (behind, law)) for arm, name, (law, behind) in a} & b
+    return len(a) + len(b), 2 * len(a & b), 2 * len(turned)
+
+
+def _shown(runs: Mapping[str, Run], seeds: slice) -> set[tuple[str, str, tuple[str, str]]]:
+    return {
+        (arm, name, key)
+        for arm in arms_of(runs)
+        for name, cell in all_cells(runs, arm, seeds=seeds).items()
+        for key, lead in cell.leads.items()
+        if lead.shown and lead.p_value is not None
+    }
+
+
+_METRIC = "rms_tracking_error_last_period"
+
+
+def last_periods(runs: Mapping[str, Run], caption: str) -> Table:
+    """Return the error of each law in the last period, by arm and condition."""
+    every = found(runs, "repeated/{arm}/{law}/{condition}")
+    columns = dict.fromkeys((one.levels["arm"], one.levels["condition"]) for one in every)
+    rows: dict[str, list[str]] = {}
+    for one in every:
+        error = _error(one.run)
+        told = quantity(error, "m") if np.isfinite(error) else "failed"
+        rows.setdefault(one.levels["law"], []).append(told)
+    header = ["law", *(f"{ARMS[arm]}, {CONDITIONS[condition]}" for arm, condition in columns)]
+    told_rows = [[in_words(law), *own] for law, own in rows.items()]
+    return Table(caption, header, told_rows, range(1, len(header)), origin(every[0].run))
+
+
+def over_learning(runs: Mapping[str, Run], condition: str, law: str, *arms: str) -> list[Measured]:
+    """Return the error of a law in the last period over that of iterative learning, on some arms, or on each."""
+    told = []
+    arm = f"{{arm={'|'.join(arms)}}}" if arms else "{arm}"
+    for one in found(runs, f"repeated/{arm}/{law}/{condition}"):
+        learned = _error(runs[f"repeated/{one.levels['arm']}/iterative_learning/{condition}"])
+        error = _error(one.run)
+        value = error / learned if np.isfinite(learned) else None
+        words = f"{in_words(law)} over iterative learning, {ARMS[one.levels['arm']]}, {CONDITIONS[condition]}"
+        told.append(Measured(f"error of {words}", value))
+    return told
+
+
+def _error(run: Run) -> float:
+    median = run.metrics[_METRIC]["median"] if _METRIC in run.metrics else None
+    return np.inf if median is None or run.status != "ok" else float(median)

@@ -27,7 +27,7 @@ def ends_of(runs: Mapping[str, Run], ranges: Mapping[str, Ranges]) -> list[list[
     """Return a row for each tuned value near an end of its range: law, arm, question, tuning, key, value, end.
 
     Args:
-        runs: The runs of the work.
+        runs: The runs of the study.
         ranges: The ranges of each tuning of its runs.yaml, by name.
     """
     rows = []

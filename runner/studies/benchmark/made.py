@@ -6,7 +6,7 @@ from runner.reporting.answers import SHARE
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import ALL_SEEDS, ROUND, Cell, cells
-from runner.study.job import LeftOutError, Made
+from runner.study.job import LeftOutError, Results
 from runner.study.prose.patterns import found
 
 ARMS = {
@@ -47,7 +47,7 @@ CONDITIONS = {
 
 
 class _Kept:
-    """What was worked out of the runs of one work, as every table and finding asks for it again."""
+    """What was worked out of the runs of one study, as every table and finding asks for it again."""
 
     runs: Mapping[str, Run]
     cells: dict[tuple[object, ...], dict[str, Cell]]
@@ -109,7 +109,7 @@ def turned(runs: Mapping[str, Run], arm: str, condition: str) -> str:
 
 def arms_of(runs: Mapping[str, Run]) -> list[str]:
     """Return the arms of the runs, in one order."""
-    names = [*runs, *(runs.missing if isinstance(runs, Made) else ())]
+    names = [*runs, *(runs.missing if isinstance(runs, Results) else ())]
     there = {name.split("/")[1] for name in names if name.startswith("first/")}
     return [arm for arm in ARMS if arm in there]
 

@@ -1,11 +1,17 @@
 """Arm names and unrounded numbers for the chapters of the engines study."""
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
 
 from runner.base.quantities import number
+from runner.reporting.figures import model_of
 from runner.store import Run
+from runner.studies.engines.side_by_side import difference, mujoco_of
 from runner.study.measured import Measured
-from runner.study.run_values import apart, median
+from runner.study.prose.patterns import found
+from runner.study.run_values import distance, median
 
 Told = Callable[..., float | None]
 
@@ -38,7 +44,7 @@ def tracking_error(run: Run) -> float | None:
 
 def tip_distance(run: Run, reference: Run) -> float:
     """Return the largest distance of the tips of two runs at their common times, in m."""
-    return float(apart(run, reference, "tip").max())
+    return float(distance(run, reference, "tip").max())
 
 
 def measured(words: str, what: Told, unit: str, *runs: Run) -> Measured:
@@ -50,3 +56,87 @@ def measured(words: str, what: Told, unit: str, *runs: Run) -> Measured:
 def share_of(run: Run, other: Run, reference: Run) -> float:
     """Return how far a run is from another one, as a share of how far it is from a reference."""
     return tip_distance(run, other) / tip_distance(run, reference)
+
+
+def cost(run: Run) -> float:
+    """Return the median time that a tick took, over the time that it simulates."""
+    return float(run.record["timing"]["tick_time_median"]) / float(run.config["controller"]["period"])
+
+
+def acceleration_off(run: Run) -> float:
+    """Return how far a MuJoCo run's accelerations are from Pinocchio's at random states at most, as a share."""
+    return difference(model_of(run), mujoco_of(run)).acceleration
+
+
+def order(coarse: Run, fine: Run, reference: Run) -> float:
+    """Return the power of its step with which a plant comes to a reference, from one step to half of it."""
+    return math.log2(tip_distance(coarse, reference) / tip_distance(fine, reference))
+
+
+def orders(runs: Mapping[str, Run], coarse: str, fine: str, *plants: str) -> list[Measured]:
+    """Return the order of some plants on each arm, from one step to half of it."""
+    found_orders = []
+    for plant in plants:
+        for arm, reference in _arms(runs):
+            first, second = (runs[f"open/{arm}/{plant}/{step}"] for step in (coarse, fine))
+            found_orders.append(measured(f"order of {plant}, {arm}", order, "1", first, second, reference))
+    return found_orders
+
+
+def apart_as_share(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
+    """Return how far a plant is from another one at 1 ms on each arm, as a share of its error."""
+    shares = []
+    for arm, reference in _arms(runs):
+        first, second = (runs[f"open/{arm}/{each}/0.001"] for each in (plant, other))
+        shares.append(measured(f"{plant} from {other}, {arm}", share_of, "1", first, second, reference))
+    return shares
+
+
+def _arms(runs: Mapping[str, Run]) -> list[tuple[str, Run]]:
+    """Return the name of each arm in the runs, and its reference."""
+    return [(one.levels["arm"], one.run) for one in found(runs, "reference/{arm}/rk4/5e-05")]
+
+
+def first_order(value: Measured, at: float) -> Callable[[float], float | None]:
+    """Return the law that goes with the step and has a value at one."""
+    return lambda step: None if value.value is None else value.value * step / at
+
+
+def fourth_order(value: Measured, at: float) -> Callable[[float], float | None]:
+    """Return the law that goes with the fourth power of the step and has a value at one."""
+    return lambda step: None if value.value is None else value.value * (step / at) ** 4
+
+
+def plant_step(run: Run) -> float:
+    """Return the step by which a run's plant was simulated, in ms."""
+    return 1000.0 * float(run.provenance["plant_step"])
+
+
+def tracking_error_apart(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
+    """Return the difference of the largest axis errors on two plants on each arm, as a share."""
+    return [
+        Measured(f"{plant} from {other}, {arm}", _apart(one.run, runs[f"closed/{arm}/{other}"]))
+        for one in found(runs, f"closed/{{arm}}/{plant}")
+        for arm in (one.levels["arm"],)
+    ]
+
+
+def distances(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
+    """Return the largest distance of the tips on two plants on each arm, in m."""
+    return [
+        measured(f"{plant} from {other}, {arm}", tip_distance, "m", one.run, runs[f"closed/{arm}/{other}"])
+        for one in found(runs, f"closed/{{arm}}/{plant}")
+        for arm in (one.levels["arm"],)
+    ]
+
+
+def common_digits(run: Run, other: Run) -> str:
+    """Return how many digits of the largest axis error two runs have in common, as a cell of a table."""
+    off = _apart(run, other)
+    return "all" if off == 0.0 else "–" if math.isnan(off) else str(max(math.floor(-math.log10(off)), 0))
+
+
+def _apart(run: Run, other: Run) -> float:
+    values = [tracking_error(each) for each in (run, other)]
+    first, second = (np.nan if value is None else value for value in values)
+    return abs(first / second - 1.0)

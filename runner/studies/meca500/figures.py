@@ -1,4 +1,4 @@
-"""Signals, admittance laws and calibration errors for the chapters of the Meca500 study."""
+"""Signals, forces, admittance laws, calibration errors and verdicts for the chapters of the Meca500 study."""
 
 from collections.abc import Callable, Mapping
 from functools import wraps
@@ -8,15 +8,23 @@ from typing import Any, TypeVar
 import numpy as np
 import pinocchio as pin
 
+from runner.audit.audit import audit
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.quantities import number, quantity, with_powers
-from runner.controllers.force.admittance_filter import Admittance
+from runner.calibration.tool_direction import alignment, alignment_angles
+from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
+from runner.reporting.claim import EquationVerdict
+from runner.reporting.claims import Verdict, load_statements
+from runner.reporting.document import Series, Verdicts
 from runner.reporting.figures import AXES, columns, joint_columns, model_of
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
+from runner.study.chapters import Concluded
+from runner.study.claims import judged_statements
 from runner.study.measured import ROUNDING, Measured
 from runner.study.prose.tables import Column
+from runner.study.run_values import clock
 
 Calibrations = Mapping[str, Any]  # of Calibration
 Runs = Mapping[str, Run]
@@ -198,3 +206,131 @@ def refusal(attempt: Callable[[], object]) -> str:
     except ConfigError as problem:
         return with_powers(problem.problems[0].partition(": ")[2])
     return "not refused"
+
+
+def felt_moment(run: Run) -> float:
+    """Return the largest moment felt along an axis, in N m."""
+    return float(np.abs(wrenches(run, "felt")[:, 3:]).max())
+
+
+def filtered_turn(run: Run) -> float:
+    """Return the largest rotation that the law makes of the wrenches felt in a run, in rad."""
+    law = AdmittanceFilter(law_of(run), float(run.config["controller"]["period"]))
+    largest = 0.0
+    for wrench in wrenches(run, "felt"):
+        law.step(wrench)
+        largest = max(largest, float(np.linalg.norm(law.displacement[3:])))
+    return largest
+
+
+def as_felt(run: Run) -> FloatArray:
+    """Return the wall's push as it is felt, shape (T,), in N; what is felt is the reading of a tick before."""
+    return np.append(-wrenches(run, "felt")[1:, 0], np.nan)
+
+
+def forces(run: Run) -> dict[str, float]:
+    """Return the forces against the way into a wall, in N, how far in the spring's rest is led, in m, and shares.
+
+    The force felt at the end is held against the wall's stiffness times the depth of the tip, and against the springs
+    of law, wall and servos in series: off_depth and off_series say by which share it is above them.
+    """
+    wall, trajectory = run.config["environment"], run.config["trajectory"]
+    begin = float(trajectory["start"][0] + wall["distance"])
+    way, stiffness = float(trajectory["goal"][0]) - begin, float(wall["stiffness"])
+    felt, peak = float(-wrenches(run, "felt")[-1, 0]), float(-wrenches(run, "external")[:, 0].min())
+    soft = float(servo_compliance(run)[0, 0]) if run.config["plant"]["kind"] != "kinematic" else 0.0
+    series = way / (1.0 / float(law_of(run).stiffness[0]) + 1.0 / stiffness + soft)
+    off_depth = felt / (stiffness * (float(columns(run.trace, "tip")[-1, 0]) - begin)) - 1.0
+    return {"way": way, "felt": felt, "peak": peak, "first": peak / felt, "series": series, "off_depth": off_depth,
+            "off_series": felt / series - 1.0}  # fmt: skip
+
+
+_PEAK_OVER_MEAN = 1.875  # speed of a quintic from rest to rest
+
+
+def guided(run: Run) -> dict[str, float]:
+    """Return the hand's way and how far from its end the tip is left, in m, and the damping at its peak speed, in N."""
+    hand, tip = run.config["environment"], columns(run.trace, "tip")
+    way = float(np.linalg.norm(hand["displacement"]))
+    damping = _PEAK_OVER_MEAN * way / float(hand["duration"]) * float(run.config["controller"]["damping"][0])
+    return {
+        "way": way,
+        "left": float(np.linalg.norm(tip[-1] - tip[0] - np.array(hand["displacement"]))),
+        "damping": damping,
+    }
+
+
+def joint_speeds(runs: Runs, run: str) -> list[Series]:
+    """Return the speeds of joints 1, 2, 3 and 5 as shares of their limits."""
+    shares = joint_columns(runs[run].trace, "dq") / model_of(runs[run]).velocity_limits
+    return [Series(f"joint {joint}", clock(runs[run]), shares[:, joint - 1]) for joint in (1, 2, 3, 5)]
+
+
+def limits(run: Run) -> dict[str, Any]:
+    """Return how close a run comes to limits, and what it says of itself.
+
+    margin to a position limit in rad, below zero beyond it; as shares of the speed limit the largest speed and change
+    of speed from tick to tick; the smallest singular value of the tip's Jacobian as a share of that at the start.
+    """
+    model, q = model_of(run), joint_columns(run.trace, "q")
+    speeds = joint_columns(run.trace, "dq") / model.velocity_limits
+    singular = [np.linalg.svd(model.tip_jacobian(own), compute_uv=False)[-1] for own in q[::10]]
+    said = "; ".join(map(str, run.provenance["warnings"]))
+    return {
+        "margin": float(model.limit_margins(q).min()),
+        "speed": float(np.abs(speeds).max()),
+        "change": float(np.abs(np.diff(speeds, axis=0)).max()),
+        "singular": float(min(singular) / singular[0]),
+        "said": said.replace("the posture, singular or nearly so", "a posture at or near a singularity").replace(
+            " has held the tool back, first at t =", " from"
+        ),
+        "told": "has held the tool back" in said,
+    }
+
+
+_INSERTED = 0.02  # m, about the length of a root canal file
+
+
+def direction(calibrations: Calibrations, worst: str) -> dict[str, Measured]:
+    """Return the example's true angles, the angles off its direction by equation 7, and insertions by the worst."""
+    base = calibrations["tool_direction/base"]
+    t = np.array(base.config["calibration"]["direction"])
+    t /= np.linalg.norm(t)
+    R = alignment(*alignment_angles(t))
+    off = [float(np.degrees(np.arccos(np.clip(along @ t, -1.0, 1.0)))) for along in (R.T[:, 2], R[:, 2])]
+    return {
+        "alpha": Measured("true alpha", float(np.degrees(base.truth["alpha"])), "°"),
+        "beta": Measured("true beta", float(np.degrees(base.truth["beta"])), "°"),
+        "printed": Measured("angle to the tool, read as printed", off[0], "°"),
+        "described": Measured("angle to the tool, read as described", off[1], "°"),
+        "inserted": Measured("way of insertion", 1e3 * _INSERTED, "mm"),
+        "aside": Measured("how far the insertion ends aside", 1e6 * _INSERTED * error()(calibrations[worst]), "µm"),
+    }
+
+
+_SAMPLES = 200
+_LEGEND = (
+    "A statement matches when every condition of the findings on it is met, and differs when one is not. It is "
+    "undecided when nothing here measures it. Equations are correct or wrong as printed by the audit."
+)
+
+
+def said(concluded: Concluded, chapter: str) -> Mapping[str, Any]:
+    """Return the values that a chapter gives a name, and as `holds` whether all of its findings do."""
+    findings, values = concluded(chapter)
+    return {**values, "holds": all(each.holds for each in findings)}
+
+
+def verdict(*holds: bool) -> Verdict:
+    """Return the verdict on a statement that is true where all of some findings hold."""
+    return "matches" if all(holds) else "differs"
+
+
+def audited(equation: str) -> EquationVerdict:
+    """Return the audit's verdict on an equation."""
+    return next(each.verdict for each in audit("meca500", _SAMPLES) if each.entry.id == equation)
+
+
+def statements(caption: str, judged: Mapping[str, tuple[Verdict | EquationVerdict, str]]) -> Verdicts:
+    """Return each statement with its verdict and what was measured, by its name."""
+    return Verdicts(caption, judged_statements(load_statements("meca500"), judged), _LEGEND)

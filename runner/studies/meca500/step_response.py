@@ -11,8 +11,8 @@ from runner.controllers.force.admittance_filter import AXES
 from runner.reporting.document import Panel, Series
 from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
-from runner.studies.meca500.admittance_response import step_response
 from runner.studies.meca500.figures import Runs, added_inertia, displacement, law_of, loads_of, once, servo_compliance
+from runner.studies.meca500.frequency_response import step_response
 from runner.study.run_values import clock
 
 _SHOWN = ("kinematic, 1 ms", "kinematic, 16.7 ms", "servo, 1 ms", "servo, 16.7 ms")

@@ -121,7 +121,7 @@ def recommended(runs: Mapping[str, Run], caption: str) -> Table:
     return Table(caption, ["arm", "moves", "error allowed", *PLANTS], rows, (), _origin(runs))
 
 
-def apart(runs: Mapping[str, Run], words: str, way: str) -> list[Measured]:
+def distances(runs: Mapping[str, Run], words: str, way: str) -> list[Measured]:
     """Return how far another way to the solution of each case and arm is from it, in rad."""
     return [Measured(f"{words}: {name}", float(own["apart"][way]), "rad") for name, own in solutions(runs).items()]
 

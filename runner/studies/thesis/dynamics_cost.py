@@ -18,7 +18,7 @@ def measured_cost(runs: Mapping[str, Run], fitted: int) -> dict[str, Any]:
     """Return measured times of chains of mounted arms, in µs, by what is measured, and how they grow.
 
     Args:
-        runs: The runs of the work, beside which the measurement lies.
+        runs: The runs of the study, beside which the measurement lies.
         fitted: The number of joints from which on the power of the number is fitted.
 
     Raises:

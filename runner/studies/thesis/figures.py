@@ -1,4 +1,4 @@
-"""Drawings and numbers shared by several chapters of the thesis study."""
+"""Drawings and numbers of the chapters of the thesis study."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -10,18 +10,17 @@ from runner.base.quantities import above_rounding
 from runner.controllers.operational_space.operational_space_graph import operational_space_graph
 from runner.reporting.charts import block_diagram, frame_assignment
 from runner.reporting.claims import load_claims
-from runner.reporting.document import Block, Curves, Picture, Table, Text
-from runner.reporting.figures import columns, joint_columns, model_of, origin
+from runner.reporting.document import Block, Curves, Picture, Series, Table, Text
+from runner.reporting.figures import AXES, columns, joint_columns, model_of, origin
 from runner.reporting.words import PRESET, in_words
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
-from runner.studies.thesis.compared import Compared
-from runner.studies.thesis.engines import parting, step_of_both
+from runner.studies.thesis.compared import Compared, parting, step_of_both, takeaway
 from runner.studies.thesis.equations.truths.thesis_printed import compare
-from runner.studies.thesis.takeaways import takeaway
+from runner.study.job import PRESETS
 from runner.study.measured import Measured
 from runner.study.prose.patterns import found
-from runner.study.run_values import median
+from runner.study.run_values import cell, clock, measured, median, values
 
 _MEANINGS = {
     "M": ("mass matrix, (3.17)", "kg m²"),
@@ -90,7 +89,7 @@ def reproduced(
     """Return one published figure, such as "3.5", with both presets in it, and what the plant's step is worth in it.
 
     Args:
-        runs: The runs of the work by name.
+        runs: The runs of the study by name.
         number: Number of the figure.
         what: What moves, in a few words.
         metrics: The metrics that its caption compares.
@@ -210,3 +209,149 @@ def excess(simulated: Callable[[Run], float | None], predicted: Callable[[Run], 
         return "below 0.01 %" if abs(more) < 0.01 else f"{more:+.2f} %"
 
     return text
+
+
+def sag(run: Run) -> float:
+    """Return |J M^-1 G| / omega_n^2 at the run's final true joint positions, in m."""
+    model = model_of(run)
+    q = joint_columns(run.trace, "q")[-1]
+    fall = model.tip_jacobian(q)[:3] @ np.linalg.solve(model.mass_matrix(q), model.gravity_torque(q))
+    return float(np.linalg.norm(fall / run.config["controller"]["natural_frequency"] ** 2))
+
+
+def growth(runs: Mapping[str, Run], name: str, words: str) -> Measured:
+    """Return the tip error at the end of a run, which may have diverged, over that at its start."""
+    error = np.linalg.norm(columns(runs[name].trace, "error"), axis=1)
+    return Measured(words, float(error[-1] / error[0]))
+
+
+def most_apart(stem: str, times: float) -> Callable[[Run, Run], float]:
+    """Return the largest difference of a signal of the Macro's joints and so many times the Mini's, at equal ticks."""
+
+    def largest(macro: Run, mini: Run) -> float:
+        rows = min(len(macro.trace), len(mini.trace))
+        a, b = (joint_columns(run.trace[:rows], stem) for run in (macro, mini))
+        return float(np.abs(a - times * b).max())
+
+    return largest
+
+
+def ten_times(column: str) -> Callable[[Run, Run], FloatArray]:
+    """Return a signal of the Mini ten times as large, at the ticks of the Macro."""
+    return lambda macro, mini: 10.0 * mini.trace[column].to_numpy()[: len(macro.trace)]
+
+
+def printed_range(claim: int, low: float, high: float) -> list[Series]:
+    """Return the range that a claim prints as a band between two durations."""
+    ends = [np.full(2, printed(claim, end, "").value) for end in (0, -1)]
+    return [Series("printed range", np.array([low, high]), ends[1], "dotted", low=ends[0], high=ends[1])]
+
+
+def duration_of(runs: Mapping[str, Run], pattern: str, error: Measured, words: str) -> Measured:
+    """Return at which duration, between those of a pattern's runs, the largest axis error is that given."""
+    tried = found(runs, pattern)
+    errors = values((one.run for one in tried), "max_axis_error")
+    times = [float(one.levels["t_f"]) for one in tried]
+    return Measured(words, float(np.interp(-float(error.value or 0.0), -errors, times)), "s")
+
+
+def mass_ratio(run: Run) -> float:
+    """Return the mass of a run's Mini over that of its Macro."""
+    mini, macro = (sum(run.config["robot"]["stages"][stage]["masses"].values()) for stage in ("mini", "macro"))
+    return float(mini / macro)
+
+
+def ratio_of(runs: Mapping[str, Run], name: str) -> float:
+    """Return the same by a run's name."""
+    return mass_ratio(runs[name])
+
+
+def heavier_than(runs: Mapping[str, Run], name: str, payload: str) -> list[Measured]:
+    """Return the tip error with each Mini that is heavier than that of a run."""
+    return [
+        measured(one.run, "max_axis_error", f"tip error, {one.levels['mass']} kg, payload {payload}")
+        for one in found(runs, f"mass/{{mass}}/{payload}")
+        if mass_ratio(one.run) > mass_ratio(runs[name])
+    ]
+
+
+def final_difference(run: Run, reference: Run) -> float:
+    """Return the distance of the joint positions at the end of two runs, in rad."""
+    last, final = (joint_columns(each.trace, "q")[-1] for each in (run, reference))
+    return float(np.linalg.norm(last - final))
+
+
+def to_step_before(runs: Mapping[str, Run]) -> Callable[[Run], str]:
+    """Return what gives the difference of a run over that of the one before it, with twice its step, for a table."""
+    reference = runs["plants/rk4"]
+    tried = [one.run for one in found(runs, "plants/{step}") if one.run is not reference]
+
+    def ratio(run: Run) -> str:
+        before = tried[tried.index(run) - 1]
+        return f"{final_difference(run, reference) / final_difference(before, reference):.3f}"
+
+    return ratio
+
+
+def proportional(value: Measured, at: float) -> Callable[[float], float | None]:
+    """Return the law that goes with its argument and has a value at one place."""
+    return lambda x: None if value.value is None else value.value * x / at
+
+
+_REST = 0.5  # s, at the end of a run
+
+
+def lag(run: Run) -> float:
+    """Return the norm of the largest lag, in m."""
+    return float(np.linalg.norm(_lag(run)))
+
+
+def lag_along(axis: str, signed: bool = False) -> Callable[[Run], float]:
+    """Return the largest lag along an axis, desired less true position, without its sign unless asked for, in m."""
+    along = AXES.index(axis)
+    return lambda run: float(_lag(run)[along] if signed else abs(_lag(run)[along]))
+
+
+def error_in_z_at_rest(run: Run) -> float:
+    """Return the mean error in z at the end of a run, in m."""
+    at_rest = clock(run) > clock(run)[-1] - _REST
+    return float(columns(run.trace, "error")[at_rest].mean(axis=0)[2])
+
+
+def _lag(run: Run) -> FloatArray:
+    """Return the largest lag along each axis, desired less true position, shape (3,), in m."""
+    controller, desired = run.config["controller"], columns(run.trace, "desired")
+    factor = 2.0 * float(controller["damping_ratio"]) / float(controller["natural_frequency"])
+    return np.asarray(factor * 1.875 * (desired[-1] - desired[0]) / float(run.config["trajectory"]["duration"]))
+
+
+_ARMS = (
+    ("Macro alone (its end point)", "macro_alone_goal", "macro_alone", "macro_"),
+    ("one-way", "figure_5_8", "figure_5_12", ""),
+    ("two-way", "figure_5_10", "figure_5_13", ""),
+)
+
+
+def effectiveness(runs: Mapping[str, Run]) -> list[list[str]]:
+    """Return goal and tracking of the Macro alone and of the pair, under each preset: a row for each."""
+    return [
+        [
+            PRESET[preset],
+            name,
+            *(cell(runs[f"{goal}/{preset}"], stage + metric) for metric in ("settling_time", "steady_state_error")),
+            *(cell(runs[f"{track}/{preset}"], stage + metric) for metric in ("max_axis_error", "steady_state_error")),
+        ]
+        for preset in PRESETS
+        for name, goal, track, stage in _ARMS
+    ]
+
+
+def encoder_bound(run: Run) -> float | None:
+    """Return the largest axis error of the Macro's end point as its encoders tell it at the last posture, in m."""
+    q, frame = joint_columns(run.trace, "q")[-1], run.provenance["stages"]["mini"]
+    if not np.isfinite(q).all():
+        return None
+    model, step = model_of(run), 1e-6
+    at_rest, *moved = (model.frame_poses(q + step * joint, (frame,))[0][:3, 3] for joint in np.eye(4, len(q), -1))
+    slopes = np.abs([each - at_rest for each in moved]).sum(axis=0) / step  # the first of four moves no joint
+    return float(slopes.max() * run.config["noise"]["position"]["macro"])

@@ -7,13 +7,13 @@ not.
 from collections.abc import Callable
 
 import numpy as np
+import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import format_range, number, quantity
 from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.thesis.figures import at_rest
-from runner.studies.thesis.left_out_gravity import missing_acceleration
 from runner.study.measured import ROUNDING
 from runner.study.run_values import clock
 
@@ -106,3 +106,37 @@ def _singular_values(run: Run) -> FloatArray:
     jacobians = [model.tip_jacobian(q)[:3, 3:] for q in positions[finite]]
     values[finite] = np.linalg.svd(np.reshape(jacobians, (-1, 3, 3)), compute_uv=False)
     return values
+
+
+def missing_acceleration(run: Run, row: int) -> float:
+    """Return the acceleration of the Macro's end point by the gravity that its law leaves out, in m/s^2."""
+    whole = model_of(run)
+    q = joint_columns(run.trace, "q")[row]
+    base = whole.pin_model.getFrameId(run.provenance["stages"]["mini"])
+    data = whole.pin_model.createData()
+    J = pin.computeFrameJacobian(whole.pin_model, data, q, base, pin.LOCAL_WORLD_ALIGNED)[:3, :3]
+    macro, known = _macro_alone(run, 0.0), _macro_alone(run, _known_payload(run))
+    M = np.triu(pin.crba(known, known.createData(), q))[:3, :3]
+    M += np.triu(M, 1).T
+    true = whole.pin_model if run.config["plant"]["dynamics"] == "coupled" else macro
+    G = pin.computeGeneralizedGravity(true, true.createData(), q)[:3]
+    if run.config["controller"]["gravity_compensation"]:
+        G = G - pin.computeGeneralizedGravity(known, known.createData(), q)[:3]
+    return float(np.linalg.norm(J @ np.linalg.solve(M, G)))
+
+
+def _known_payload(run: Run) -> float:
+    """Return the mass of the Mini that the Macro's model knows, in kg."""
+    if run.config["controller"]["payload"] != "known":
+        return 0.0
+    return float(sum(inertia.mass for inertia in list(model_of(run).pin_model.inertias)[4:]))
+
+
+def _macro_alone(run: Run, payload: float) -> pin.Model:
+    """Return the arm with a Mini without mass, and a point mass at the Macro's end point."""
+    model = pin.Model(model_of(run).pin_model)
+    for joint in range(4, model.njoints):
+        model.inertias[joint] = pin.Inertia.Zero()
+    frame = model.frames[model.getFrameId(run.provenance["stages"]["mini"])]
+    model.appendBodyToJoint(3, pin.Inertia(payload, np.zeros(3), np.zeros((3, 3))), frame.placement)
+    return model

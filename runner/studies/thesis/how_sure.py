@@ -34,7 +34,7 @@ def judged(runs: Mapping[str, Run]) -> list[Judged]:
 
 
 def distributions(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Table:
-    """Return median and quantiles of each claim, beside the work's own median and verdict."""
+    """Return median and quantiles of each claim, beside the study's own median and verdict."""
     header = ["claim", "under", "compared with", "median", "1 % to 99 %", "verdict", "own median", "own verdict"]
     return Table(caption, header, [_distribution(each) for each in given], (), origin(found(runs, _RUNS)[0].run))
 
@@ -86,7 +86,7 @@ def of_one_seed(given: Sequence[Judged], claim: int, preset: str, words: str) ->
 
 
 def of_groups(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
-    """Return which share of judgements by as many seeds as the work's would be another, in per cent."""
+    """Return which share of judgements by as many seeds as the study's would be another, in per cent."""
     each = _find(given, claim, preset)
     return Measured(words, each.share_otherwise(each.drawn), "%")
 
@@ -120,12 +120,12 @@ def turns_at(given: Sequence[Judged], claim: int, words: str) -> Measured:
 
 
 def other_by_plant(given: Sequence[Judged], words: str) -> Measured:
-    """Return how many of the work's own verdicts are not those of the seeds."""
+    """Return how many of the study's own verdicts are not those of the seeds."""
     return Measured(words, sum(each.verdict != each.own_verdict for each in given))
 
 
 def moved_by_plant(given: Sequence[Judged], words: str, claim: int = 0, preset: str = "") -> Measured:
-    """Return by which factor the work's own median and that of the seeds differ: of one claim, or the most of all."""
+    """Return by which factor the study's own median and that of the seeds differ: of one claim, or the most of all."""
     chosen = [_find(given, claim, preset)] if claim else given
     return _largest(words, "1", [each.moved_by_plant() for each in chosen])
 

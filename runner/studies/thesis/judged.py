@@ -33,9 +33,9 @@ class Judged:
         printed: What the median of all seeds is compared with; None where there is nothing.
         verdict: Verdict on that median.
         alone: Verdict on each seed alone.
-        drawn: Verdicts on the medians of groups that are as large as the work's own run, drawn with replacement.
+        drawn: Verdicts on the medians of groups that are as large as the study's own run, drawn with replacement.
         apart: Verdicts on the medians of such groups that share no seed.
-        own: Median of the work's own run, on the plant by which its claims are judged.
+        own: Median of the study's own run, on the plant by which its claims are judged.
         own_verdict: Verdict on that.
     """
 
@@ -63,7 +63,7 @@ class Judged:
         return np.quantile(self.values, (0.5, *_ENDS), method="inverted_cdf") if self.values.size else self.values
 
     def moved_by_plant(self) -> float | None:
-        """Return by which factor, 1 or more, the work's own median and that of the seeds differ."""
+        """Return by which factor, 1 or more, the study's own median and that of the seeds differ."""
         if self.own is None or not self.values.size or not np.isfinite(self.quantiles()[0]):
             return None
         ratio = self.own / float(self.quantiles()[0])
@@ -81,9 +81,9 @@ def judge_by_seeds(
 
     Args:
         claim: The claim.
-        claims: All claims of the work.
+        claims: All claims of the study.
         seeds: The runs of many seeds, by the end of the experiment's name.
-        own: The work's own runs likewise.
+        own: The study's own runs likewise.
         preset: The preset that both have.
     """
 
@@ -107,7 +107,7 @@ def judge_by_seeds(
 
         return [verdict_on(claim, claims, lambda *key, at=at: simulated(at, *key)) for at in range(len(groups))]
 
-    def of_work(experiment: str, metric: str) -> float | None:
+    def of_study(experiment: str, metric: str) -> float | None:
         return median(own[run_name(experiment, "")], metric)
 
     def of_seeds(experiment: str, metric: str) -> float | None:
@@ -127,8 +127,8 @@ def judge_by_seeds(
         alone=by(every[:, None]),
         drawn=by(drawn),
         apart=by(every[: count // size * size].reshape(-1, size)),
-        own=of_work(*simulated_by(claim)),
-        own_verdict=verdict_on(claim, claims, of_work),
+        own=of_study(*simulated_by(claim)),
+        own_verdict=verdict_on(claim, claims, of_study),
     )
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from runner.reporting.figures import columns
 from runner.store import Run
 from runner.studies.thesis.figures import rest_of_way
-from runner.studies.thesis.left_out_gravity import missing_acceleration
+from runner.studies.thesis.folding import missing_acceleration
 from runner.study.run_values import clock
 
 _SETTLED = 1e-3  # m, of the tip error, from where on the drift is measured

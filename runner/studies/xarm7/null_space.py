@@ -11,9 +11,8 @@ from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.prose.patterns import called, found
-from runner.study.prose.reading import Signal, trace_of
 from runner.study.prose.signals import manipulability
-from runner.study.run_values import clock
+from runner.study.run_values import Signal, clock, trace_of
 
 _ASIDE = [2, 4]  # the joints that lead the elbow out of the arm's vertical plane
 _ELBOW = 4  # the one of them that shows it

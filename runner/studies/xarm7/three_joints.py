@@ -9,7 +9,7 @@ from runner.reporting.charts import arm_motion
 from runner.reporting.document import Picture
 from runner.reporting.figures import columns, joint_columns, model_of, origin
 from runner.store import Run
-from runner.study.prose.reading import trace_of
+from runner.study.run_values import trace_of
 
 _STILLS = (0.0, 0.25, 0.5)  # of the period: at A, half way, at B
 

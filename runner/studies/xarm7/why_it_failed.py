@@ -13,8 +13,8 @@ from runner.reporting.figures import joint_columns, model_of
 from runner.robots import RobotModel
 from runner.store import Run
 from runner.studies.xarm7.figures import ROWS, line_length, smallest_margin
+from runner.studies.xarm7.kinematics import random_postures
 from runner.studies.xarm7.parts.xarm7_as_printed import PrintedJacobian
-from runner.studies.xarm7.printed_kinematics import random_postures
 from runner.study.prose.patterns import found
 from runner.study.run_values import cell, median
 

@@ -17,7 +17,7 @@ from runner.store import Run
 from runner.study import run_values
 from runner.study.measured import Measured
 from runner.study.prose.patterns import axes_of, called, found
-from runner.study.prose.reading import Signal, config_value, number_of
+from runner.study.run_values import Signal, config_value, number_of
 
 
 def metric(runs: Mapping[str, Run], run: str, name: str, words: str = "", end: str = "median") -> Measured:
@@ -34,7 +34,7 @@ def percent(share: Measured) -> Measured:
     return Measured(share.name, None if share.value is None else 100.0 * share.value, "%")
 
 
-def to_digits(value: Measured | float, digits: int) -> str:
+def round_to(value: Measured | float, digits: int) -> str:
     """Return a number, of a measured value with its unit, to so many digits."""
     return quantity(value.value, value.unit, digits) if isinstance(value, Measured) else number(value, digits)
 
@@ -67,7 +67,7 @@ def plant_of(runs: Mapping[str, Run], run: str) -> str:
     return PLANT.get(kind, kind)
 
 
-def step_worth(runs: Mapping[str, Run], run: str, *metrics: str) -> str:
+def integration_error(runs: Mapping[str, Run], run: str, *metrics: str) -> str:
     """Return a run's plant, its step, and what that is worth in some metrics, in two sentences at most."""
     return describe_plant(runs[run], metrics)
 

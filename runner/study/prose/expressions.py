@@ -21,7 +21,6 @@ from runner.reporting.claim import Claim
 from runner.reporting.document import Block, Panel, Section, Series
 from runner.study.job import MissingError
 from runner.study.measured import Condition, Measured
-from runner.study.prose.problem import ProseError
 from runner.study.prose.tables import Column
 
 OPEN, CLOSE = "\uf000", "\uf001"
@@ -131,3 +130,17 @@ class Values:
         except RunnerError as error:
             told = error.reason if isinstance(error, ExpressionError) else str(error)
             raise ProseError(self._file, line, f"{source}: {told}") from error
+
+
+class ProseError(RunnerError):
+    """A chapter that cannot be read.
+
+    Args:
+        file: Its name.
+        line: The line, counted from 1.
+        text: What is wrong, and what to write in its place.
+    """
+
+    def __init__(self, file: str, line: int, text: str) -> None:
+        super().__init__(f"{file}:{line}: {text}")
+        self.line = line

@@ -1,6 +1,7 @@
 """Blocks from Markdown headings, paragraphs and lists, parsed by markdown-it."""
 
 import dataclasses
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, get_args
@@ -9,11 +10,11 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
+from runner.base.quantities import number
 from runner.reporting.document import Block, Items, Section, Text
 from runner.reporting.markup import link_text, literal, mark_text
-from runner.study.prose.expressions import PLACEHOLDER, Values
-from runner.study.prose.problem import ProseError
-from runner.study.prose.shown import filled
+from runner.study.measured import Measured
+from runner.study.prose.expressions import PLACEHOLDER, PRIVATE, ProseError, Values
 
 _NAMES = {
     "blockquote_open": "quotations",
@@ -137,3 +138,36 @@ def _is_block(value: Any) -> bool:
     if isinstance(value, Sequence) and not isinstance(value, str):
         return all(_is_block(each) for each in value)  # of none, as where no run failed, nothing is shown
     return dataclasses.is_dataclass(value) and isinstance(value, (*get_args(Block), Section))
+
+
+def filled(text: str, values: Values, file: str, mathematics: bool = False) -> str:
+    """Return a text with its placeholders replaced by their values, none of which can become markup.
+
+    Args:
+        text: The text.
+        values: The values of the chapter.
+        file: Name of the chapter's file.
+        mathematics: Whether the text stands between dollar signs, where only numbers may be inserted.
+
+    Raises:
+        ProseError: if a value is nothing that a sentence shows.
+    """
+
+    def show(found: re.Match[str]) -> str:
+        value, line = values.found[int(found[1])]
+        shown = _shown(value)
+        if shown is None or (mathematics and not isinstance(value, int | float)):
+            what = "a formula takes numbers" if mathematics else "a sentence takes texts, numbers and measured values"
+            hint = "; a block stands in a paragraph of its own" if not mathematics else ""
+            raise ProseError(file, line, f"{what}, not {type(value).__name__}{hint}")
+        return PRIVATE.sub("\ufffd", shown).replace("$", "$$")
+
+    return PLACEHOLDER.sub(show, text)
+
+
+def _shown(value: Any) -> str | None:
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, str | Measured):
+        return str(value)
+    return number(value) if isinstance(value, int | float) else None

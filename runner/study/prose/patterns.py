@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from runner.base.errors import RunnerError, nearest
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.study.job import Made
+from runner.study.job import Results
 
 _BRACES = re.compile(r"\{(\w+)(?:=([^{}]+))?\}")
 _WHOLE = re.compile(r"^(-?\d+)\.0$")
@@ -41,7 +41,7 @@ def found(runs: Mapping[str, Run], pattern: str, by: Sequence[str] = ()) -> list
     """Return the runs that a pattern stands for, sorted by levels, each axis in the order of the plan.
 
     Args:
-        runs: The runs of a work by name, in the order of its plan.
+        runs: The runs of a study by name, in the order of its plan.
         pattern: A run's name in which an axis in braces stands for any of its levels.
         by: In which order the axes are gone through, the outermost first; the others follow as the pattern has them.
 
@@ -53,7 +53,7 @@ def found(runs: Mapping[str, Run], pattern: str, by: Sequence[str] = ()) -> list
     for axis in by:
         if axis not in axes:
             raise RunnerError(f"the pattern {pattern} has no axis '{axis}'{nearest(axis, axes)}")
-    names = [*runs, *(runs.missing if isinstance(runs, Made) else ())]
+    names = [*runs, *(runs.missing if isinstance(runs, Results) else ())]
     levels = dict(_matches(names, pattern))
     if not levels:
         raise RunnerError(f"no run is named like '{pattern}'{nearest(pattern, names)}")

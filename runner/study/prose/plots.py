@@ -12,7 +12,7 @@ from runner.reporting.document import Curves, Map, Maps, Panel, Series
 from runner.reporting.figures import AXES, joint_columns, origin
 from runner.store import Run
 from runner.study.prose.patterns import axes_of, called, found, other
-from runner.study.prose.reading import Signal, number_of, times_of, trace_of
+from runner.study.run_values import Signal, number_of, times_of, trace_of
 
 Style = Literal["line", "dashed", "dotted", "points", "points_line"]
 _POINTS = 100  # of the curve of a closed form
@@ -35,7 +35,7 @@ def line(
     """Return a signal over time, or over another signal, of each run that a pattern stands for.
 
     Args:
-        runs: The runs of the work by name.
+        runs: The runs of the study by name.
         pattern: Name of a run, with axes in braces.
         signal: A column of the trace, or a function of a run, or of a run and others.
         name: What the legend calls it, with axes in braces.
@@ -93,7 +93,7 @@ def over(
     A metric has a band from the least to the largest of its repetitions, where these differ and a line joins points.
 
     Args:
-        runs: The runs of the work by name.
+        runs: The runs of the study by name.
         pattern: Names of the runs, with axes in braces.
         axis: The axis, whose levels are numbers; others stand at the places 0, 1, ...
         what: Name of a metric, or a function of a run, or of others, that gives a number.
@@ -198,7 +198,7 @@ def curves(
     """Return a figure of some panels, side by side.
 
     Args:
-        runs: The runs of the work by name.
+        runs: The runs of the study by name.
         caption: What is seen; inline mathematics as in Text.
         run: The run whose command stands under the figure.
         panels: The axes in reading order, one by one or several in one, as `same_y` gives them.

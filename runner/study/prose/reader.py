@@ -9,10 +9,8 @@ from runner.base.errors import nearest
 from runner.reporting.document import Block, Section, Text
 from runner.study.findings import Finding, finding
 from runner.study.measured import Condition
-from runner.study.prose.expressions import Values
-from runner.study.prose.paragraphs import Heading, Paragraphs, Piece
-from runner.study.prose.problem import ProseError
-from runner.study.prose.shown import filled
+from runner.study.prose.expressions import ProseError, Values
+from runner.study.prose.paragraphs import Heading, Paragraphs, Piece, filled
 
 _CONTAINERS = ("finding",)
 _FENCE = ":::"

@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study import run_values
-from runner.study.prose.reading import Signal, check_signal, config_value, trace_of
+from runner.study.run_values import Signal, check_signal, config_value, trace_of
 
 
 def norm(name: str) -> Callable[[Run], FloatArray]:
@@ -22,9 +22,9 @@ def norm(name: str) -> Callable[[Run], FloatArray]:
     return signal
 
 
-def apart(name: str = "tip") -> Callable[[Run, Run], FloatArray]:
+def distance(name: str = "tip") -> Callable[[Run, Run], FloatArray]:
     """Return the distance between such a vector of two runs at their common times."""
-    return lambda run, twin: run_values.apart(run, twin, name)
+    return lambda run, twin: run_values.distance(run, twin, name)
 
 
 def moved(name: str) -> Callable[[Run], FloatArray]:

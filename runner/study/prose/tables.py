@@ -11,8 +11,7 @@ from runner.reporting.metric_titles import title
 from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.prose.patterns import Found, axes_of, called, found, other
-from runner.study.prose.reading import Signal
-from runner.study.run_values import cell, median
+from runner.study.run_values import Signal, cell, median
 
 _DASH, _NEVER = "–", "never"
 
@@ -23,7 +22,7 @@ class Column:
 
     Attributes:
         title: What stands above it.
-        cell: Gives its text for a run, from the work's runs and the run.
+        cell: Gives its text for a run, from the study's runs and the run.
         metric: The metric that it shows, whose unit its title takes.
         levels: Axes that it is about, with the levels that it names of them.
     """
@@ -92,7 +91,7 @@ def table(
     """Return a table with a row for each run that a pattern stands for.
 
     Args:
-        runs: The runs of the work by name.
+        runs: The runs of the study by name.
         caption: What it lists; inline mathematics as in Text.
         pattern: Names of the runs, with axes in braces, or several of them.
         columns: Its columns.

@@ -13,8 +13,9 @@ LINES = (
     "", "r", "robot", "robot=", "robot=macro,", "robot=nosuch ", "robot=nosuch controller.", "controller..", ".", "=",
     "==", "=,", "-", "--", "-m", "-m ", "-m robot=macro,mini", "--nosuch ", "nosuch ", "nosuch --", "report ",
     "report --metrics ", "report nosuch ", "table nosuch --", "status ", "list ", "list nosuch ", "tune ", "tune --min",
-    "tune --minimize", "tune --minimize ", "tune --trials x ", "tune --trials", "work ", "work nosuch ", "work new ",
-    "work check nosuch --", "check --baseline ", "run a", "sweep ", "reproduce ", "reproduce nosuch ", "doctor nosuch ",
+    "tune --minimize", "tune --minimize ", "tune --trials x ", "tune --trials", "study ", "study nosuch ", "study new ",
+    "study check nosuch --", "check --baseline ", "run a", "sweep ", "reproduce ", "reproduce nosuch ",
+    "doctor nosuch ",
     "audit --tip ", "calibrate calibration=", "calibrate nosuch=", "--plugin ", "--plugin nosuch=", "--plugin=",
     "--plugin controller=nosuch.py controller=", "--plugin controller ", "--config-dir ", "--config-dir nosuch robot=",
     "--config-dir bad robot=", "--config-dir bad robot=broken robot.", "--config-dir bad robot=code robot.",
@@ -87,7 +88,7 @@ def test_only_a_query_is_answered():
 
 def test_only_words_that_stand_for_configs_import_hydra(tmp_path):
     heavy = "{'hydra', 'omegaconf', 'numpy', 'pydantic', 'yaml', 'importlib.metadata'}"
-    for line in ("", "rep", "list ", "robot=m", "experiment=thesis/", "report ", "table --", "tune --min", "work c"):
+    for line in ("", "rep", "list ", "robot=m", "experiment=thesis/", "report ", "table --", "tune --min", "study c"):
         lines = (
             f"import sys; from runner.cli.main import dispatch; dispatch(['-sc', 'query=bash']); "
             f"assert not {heavy} & {{*sys.modules}}, {heavy} & {{*sys.modules}}"

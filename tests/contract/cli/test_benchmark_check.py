@@ -1,4 +1,4 @@
-"""`runner benchmark check`: laws that fit and laws that do not, against a small work with one law of ours."""
+"""`runner benchmark check`: laws that fit and laws that do not, against a small study with one law of ours."""
 
 import re
 import shutil
@@ -9,7 +9,7 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.cli.benchmark import check_law
-from runner.study.given import given_parts
+from runner.study.plugins import read_user_plugins
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
 LAW = "gravity_pd"
@@ -37,14 +37,14 @@ tunings:
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    """A folder with a law of one's own, which is in use, and a work that takes it."""
+    """A folder with a law of one's own, which is in use, and a study that takes it."""
     (tmp_path / "mine" / "controller").mkdir(parents=True)
     for file in (f"{LAW}.py", CONFIG):
         shutil.copy(EXAMPLE / file, tmp_path / "mine" / file)
     ranges = "controller.natural_frequency: [0.2, 1.5]\ncontroller.damping_ratio: [0.5, 1.5]\n"
     (tmp_path / "mine" / RANGES).write_text(ranges)
     (tmp_path / "paper").mkdir()
-    (tmp_path / "paper" / "work.yaml").write_text("{title: T, source: S, abstract: A, chapters: [a.md]}")
+    (tmp_path / "paper" / "study.yaml").write_text("{title: T, source: S, abstract: A, chapters: [a.md]}")
     (tmp_path / "paper" / "a.md").write_text("# A\n\nText.\n")
     (tmp_path / "paper" / "runs.yaml").write_text(RUNS)
     monkeypatch.setattr(sys, "path", [*sys.path])
@@ -55,7 +55,7 @@ def mine(tmp_path, monkeypatch):
 
 
 def told(mine):
-    (part,) = given_parts([f"controller={mine / LAW}.py"])
+    (part,) = read_user_plugins([f"controller={mine / LAW}.py"])
     return [*check_law(str(mine.parent / "paper"), "", part, 2)]
 
 
@@ -129,7 +129,7 @@ def test_a_law_called_as_one_of_ours_is_refused(mine):
     (mine / f"{LAW}.py").rename(mine / "impedance.py")
     (mine / "controller" / f"{LAW}.yaml").rename(mine / "controller" / "impedance.yaml")
     changed(mine / "controller" / "impedance.yaml", "kind: gravity_pd", "kind: impedance")
-    (part,) = given_parts([f"controller={mine}/impedance.py"])
+    (part,) = read_user_plugins([f"controller={mine}/impedance.py"])
     with pytest.raises(RunnerError, match=r"is one of ours|no name of a law of ours"):
         [*check_law(str(mine.parent / "paper"), "", part, 2)]
 

@@ -267,7 +267,7 @@ LIGHT = [
     ["--help"], ["list", "robots"], ["nosuch"], ["report", "nosuch"], ["table", "nosuch"], ["status", "nosuch"],
     ["check", "nosuch"], ["compare", "nosuch", "nosuch"], ["verify", "nosuch"], ["doctor", "nosuch"],
     ["report", "latest"], ["table", "--nosuch"], ["tune", "robot=macro"],
-    ["reproduce", "nosuch"], ["work", "check", "nosuch"],
+    ["reproduce", "nosuch"], ["study", "check", "nosuch"],
 ]  # fmt: skip
 IMPORTS = """\
 import sys

@@ -44,7 +44,7 @@ def test_topics():
 def test_options_are_those_of_the_command():
     assert words("report --") == ["--help", "--html", "--metrics", "--pdf"]
     assert words("tune robot=macro --min") == ["--minimize"]
-    assert words("work diff --") == ["--all", "--help", "--json"]
+    assert words("study diff --") == ["--all", "--help", "--json"]
 
 
 def test_every_command_tells_its_options():
@@ -70,11 +70,11 @@ def test_metrics_are_read_once(monkeypatch):
     assert words("tune --minimize ") == first
 
 
-def test_works():
+def test_studies():
     assert {"thesis", "all", "audit"} < set(words("reproduce "))
     assert words("reproduce xa") == ["xarm7"]
-    assert words("work ") == ["check", "diff", "new"]
-    assert "audit" not in words("work check ")
+    assert words("study ") == ["check", "diff", "new"]
+    assert "audit" not in words("study check ")
 
 
 @pytest.mark.usefixtures("stored")

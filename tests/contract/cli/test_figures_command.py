@@ -45,14 +45,14 @@ def test_a_failed_run_without_a_trace_has_no_figures(cli, copy_run):
     assert len(ending.err.splitlines()) == 1
 
 
-def test_a_work_that_was_not_made_is_told(cli):
+def test_a_study_that_was_not_made_is_told(cli):
     ending = cli("figures", "xarm7")
     assert ending.code == 2
     assert "no report on xarm7 in outputs; `runner reproduce xarm7 --output outputs` makes it" in ending.err
 
 
 @pytest.mark.slow
-def test_a_work_of_which_runs_are_missing_is_told_and_none_is_made(cli, tmp_path):
+def test_a_study_of_which_runs_are_missing_is_told_and_none_is_made(cli, tmp_path):
     folder = tmp_path / "o" / "reports" / "xarm7"
     folder.mkdir(parents=True)
     ending = cli("figures", folder)

@@ -1,10 +1,12 @@
-"""Former names of commands and options: one sentence with the new name, which exists."""
+"""Former names of commands, options, topics and files: one sentence with the new name, which exists."""
 
 import pytest
 
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
-from runner.base.former_names import OPTIONS
+from runner.base.former_names import FILES, OPTIONS
+from runner.base.former_names import TOPICS as FORMER_TOPICS
 from runner.cli.completion.arguments import parser_of
+from runner.cli.list import TOPICS
 from runner.cli.main import COMMANDS
 
 
@@ -28,9 +30,28 @@ def test_a_former_option_is_rejected_with_the_new_name(cli, former, new, value):
 
 
 def test_a_former_option_of_an_action_of_a_command(cli):
-    assert cli("work", "check", "thesis", "--outputs", "x").err == "runner: --outputs is now called --output.\n"
+    assert cli("study", "check", "thesis", "--outputs", "x").err == "runner: --outputs is now called --output.\n"
 
 
 def test_an_option_that_a_command_never_had_is_unknown(cli):
     assert "unrecognized arguments: --learn" in cli("verify", "--learn").err
     assert "unrecognized arguments: --check" in cli("verify", "--check").err
+
+
+@pytest.mark.parametrize(("former", "new"), FORMER_TOPICS.items())
+def test_a_former_topic_is_rejected_with_the_new_name(cli, former, new):
+    ending = cli("list", former)
+    assert (ending.code, ending.out, ending.err) == (2, "", f"runner: {former} is now called {new}.\n")
+    assert new in TOPICS
+    assert former not in TOPICS
+
+
+@pytest.mark.parametrize(("former", "new"), FILES.items())
+@pytest.mark.parametrize("command", ["reproduce", "study check"])
+def test_a_folder_with_a_former_file_is_rejected_with_the_new_name(cli, tmp_path, command, former, new):
+    (tmp_path / "paper").mkdir()
+    (tmp_path / "paper" / former).touch()
+    ending = cli(*command.split(), "paper")
+    assert (ending.code, ending.out, ending.err) == (2, "", f"runner: {former} is now called {new}.\n")
+    (tmp_path / "paper" / new).touch()
+    assert former not in cli(*command.split(), "paper").err

@@ -41,8 +41,8 @@ def test_claims_carry_printed_value_and_place(cli):
     assert any(line.startswith("xarm7 1    Three joints, X stays constant: 0.643 m (section") for line in lines)
 
 
-def test_works_that_are_not_made_with_all_say_so(cli):
-    lines = {line.split()[0]: line for line in cli("list", "works").out.splitlines()}
+def test_studies_that_are_not_made_with_all_say_so(cli):
+    lines = {line.split()[0]: line for line in cli("list", "studies").out.splitlines()}
     apart = [name for name, line in lines.items() if line.endswith("(not made by `runner reproduce all`)")]
     assert (apart, sorted(lines)) == (
         ["benchmark", "engines", "precision"],

@@ -1,4 +1,4 @@
-"""The work that `runner work new` writes, against the example, the page that shows it, and its own conditions."""
+"""The study that `runner study new` writes, against the example, the page that shows it, and its own conditions."""
 
 import re
 
@@ -9,8 +9,8 @@ EXAMPLE = ROOT / "examples" / "own_paper"
 
 
 @pytest.mark.costs(2)
-def test_the_work_that_is_written_is_the_example_and_stands(cli, tmp_path):
-    assert cli("work", "new", "mine").code == 0
+def test_the_study_that_is_written_is_the_example_and_stands(cli, tmp_path):
+    assert cli("study", "new", "mine").code == 0
     for path in EXAMPLE.iterdir():
         assert (tmp_path / "mine" / path.name).read_bytes() == path.read_bytes()
     ending = cli("reproduce", "mine", "--check", "hydra.sweeper.workers=0")

@@ -10,16 +10,16 @@ from runner.audit.audit import audit
 from runner.audit.verdict import VERDICTS
 from runner.cli import reproduce
 from runner.reporting.document import Document, Section
+from runner.study.execute import make_all
 from runner.study.expected_caveats import ExpectedCaveat
 from runner.study.findings import finding
-from runner.study.making import make_all
 from runner.study.measured import Measured
-from runner.study.work import load_work
+from runner.study.study import load_study
 from runner.sweeps import work as workers
 from runner.sweeps.lock import at_work
 
 FILES = {
-    "work.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md, two.md]\n",
+    "study.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md, two.md]\n",
     "runs.yaml": """\
 grids:
   goal: {with: [robot=macro, duration=0.1]}
@@ -32,8 +32,8 @@ grids:
 
 
 @pytest.fixture
-def small_work(tmp_path):
-    """A work of three short runs, one of which fails, in the folder `small`."""
+def small_study(tmp_path):
+    """A study of three short runs, one of which fails, in the folder `small`."""
     folder = tmp_path / "small"
     folder.mkdir()
     for name, text in FILES.items():
@@ -41,11 +41,11 @@ def small_work(tmp_path):
     return folder
 
 
-def test_an_unknown_work_names_the_nearest(cli, tmp_path):
+def test_an_unknown_study_names_the_nearest(cli, tmp_path):
     ending = cli("reproduce", "thesys")
     assert ending.code == 2
-    works = "benchmark, engines, meca500, precision, thesis, xarm7, audit, all, or a folder with a work.yaml"
-    assert ending.err == f"runner: no work 'thesys' (did you mean thesis?); works: {works}\n"
+    studies = "benchmark, engines, meca500, precision, thesis, xarm7, audit, all, or a folder with a study.yaml"
+    assert ending.err == f"runner: no study 'thesys' (did you mean thesis?); studies: {studies}\n"
     assert list(tmp_path.iterdir()) == []
 
 
@@ -58,7 +58,7 @@ def test_an_unknown_flag_is_bad_input(cli):
 HERE = "hydra.sweeper.workers=0"
 
 
-def test_a_second_time_nothing_is_simulated(cli, small_work, tmp_path):
+def test_a_second_time_nothing_is_simulated(cli, small_study, tmp_path):
     first = cli("reproduce", "small", HERE)
     assert first.code == 0
     assert first.folder == tmp_path / "outputs" / "reports" / "small"
@@ -75,7 +75,7 @@ def test_a_second_time_nothing_is_simulated(cli, small_work, tmp_path):
     assert first.folder.joinpath("report.pdf").read_bytes().startswith(b"%PDF")
 
 
-def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missing(cli, small_work, monkeypatch):
+def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missing(cli, small_study, monkeypatch):
     simulate = workers.simulate_job
 
     def breaks(config, composed):
@@ -95,30 +95,30 @@ def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missin
     assert cli("reproduce", "small", HERE).code == 0
 
 
-def test_only_how_runs_are_made_can_be_set(cli, small_work):
+def test_only_how_runs_are_made_can_be_set(cli, small_study):
     for text in ("seed=1", "sweep.trace=never", "hydra.searchpath=[]"):
         ending = cli("reproduce", "small", text)
         assert ending.code == 2
-        assert f"reproduce: {text}: the work decides what it simulates; you may set " in ending.err
+        assert f"reproduce: {text}: the study decides what it simulates; you may set " in ending.err
     ending = cli("reproduce", "small", HERE, "limits.cpu_hours=1e-9")
     assert ending.code == 2
     assert "limits.cpu_hours: 3 runs would take about" in ending.err
 
 
-def test_one_at_a_time_works_in_a_folder(cli, small_work, tmp_path):
+def test_one_at_a_time_works_in_a_folder(cli, small_study, tmp_path):
     (tmp_path / "outputs").mkdir()
     with at_work(tmp_path / "outputs"):
         assert "another sweep is at work in outputs" in cli("reproduce", "small", HERE).err
 
 
-def test_calibrations_are_made_by_the_same_engine(small_work, tmp_path):
-    (small_work / "runs.yaml").write_text(
+def test_calibrations_are_made_by_the_same_engine(small_study, tmp_path):
+    (small_study / "runs.yaml").write_text(
         "grids: {goal: {with: [robot=macro, duration=0.1]}}\n"
         "calibrations:\n  tool: {with: [calibration=tool_direction, repetitions=2]}\n"
         "  none: {with: [calibration.poses=3]}\n"
     )
-    work = load_work(str(small_work))
-    runs, found = make_all(work, tmp_path, (HERE,))
+    study = load_study(str(small_study))
+    runs, found = make_all(study, tmp_path, (HERE,))
     assert (list(runs), list(found), runs.missing, found.missing) == (["goal"], ["tool", "none"], {}, {})
     noted = tmp_path / "newest"
     written = {
@@ -128,7 +128,7 @@ def test_calibrations_are_made_by_the_same_engine(small_work, tmp_path):
     }
     path = found["tool"].folder / "robot.urdf"
     path.write_text(path.read_text().replace("1", "2", 1))
-    make_all(work, tmp_path, (HERE,))
+    make_all(study, tmp_path, (HERE,))
     again = [path for path, time in written.items() if path.stat().st_mtime_ns != time]
     assert again == [found["tool"].folder / "result.json"]
 
@@ -145,9 +145,9 @@ def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
     assert {row["verdict"] for row in table} <= set(VERDICTS)
 
 
-def test_all_reproduces_every_work_the_shortest_first(cli, monkeypatch, tmp_path):
+def test_all_reproduces_every_study_the_shortest_first(cli, monkeypatch, tmp_path):
     empty = reproduce._Reproduced(Document("", "", "", (), "2026-01-01"), {}, {})
-    monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: empty)
+    monkeypatch.setattr(reproduce, "_reproduce_study", lambda *_: empty)
     monkeypatch.setattr(reproduce, "_audit", lambda *_: empty)
     monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
     assert cli("reproduce").out.split() == [
@@ -155,7 +155,7 @@ def test_all_reproduces_every_work_the_shortest_first(cli, monkeypatch, tmp_path
     ]
 
 
-def test_outputs_that_cannot_be_written_are_told_before_anything_is_simulated(cli, small_work, tmp_path):
+def test_outputs_that_cannot_be_written_are_told_before_anything_is_simulated(cli, small_study, tmp_path):
     (tmp_path / "file").write_text("in the way")
     ending = cli("reproduce", "small", "--output", "file")
     assert ending.code == 2
@@ -168,7 +168,7 @@ def one_finding(monkeypatch):
     error = Measured("tip error", 2e-3, "m")
     section = Section("One", (finding("Small", f"It is {error}.", error < 1e-3), finding("Not zero", "-", error > 0.0)))
     made = reproduce._Reproduced(Document("The thesis", "", "", (section,), "2026-01-01"), {}, {})
-    monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: made)
+    monkeypatch.setattr(reproduce, "_reproduce_study", lambda *_: made)
 
 
 def test_check_lists_the_findings_that_no_longer_hold(cli, one_finding):
@@ -187,15 +187,15 @@ def test_conclusions_are_written_for_programs(cli, one_finding, tmp_path):
     assert small["conditions"][0]["text"] == "tip error < 1 mm"
 
 
-def test_check_lists_the_caveats_that_a_work_does_not_expect(cli, monkeypatch):
+def test_check_lists_the_caveats_that_a_study_does_not_expect(cli, monkeypatch):
     caveats = [{"rule": rule, "text": f"what {rule} found", "value": 1.0} for rule in ("saturation", "overload")]
     runs = {"heavy": SimpleNamespace(caveats=caveats, hash="0a", status="ok", metrics={})}
     expected = [ExpectedCaveat("overload", "heavy", "It is to be heavy.")]
     made = reproduce._Reproduced(Document("The thesis", "", "", (), "2026-01-01"), runs, {}, expected)
-    monkeypatch.setattr(reproduce, "_reproduce_work", lambda *_: made)
+    monkeypatch.setattr(reproduce, "_reproduce_study", lambda *_: made)
     assert cli("reproduce", "thesis").code == 0
     ending = cli("reproduce", "thesis", "--check")
     assert ending.code == 1
     told = [line for line in ending.err.splitlines() if "caveat" in line]
-    line = "runner: thesis: heavy: caveat saturation, which the work does not expect: what saturation found"
+    line = "runner: thesis: heavy: caveat saturation, which the study does not expect: what saturation found"
     assert told == [line]

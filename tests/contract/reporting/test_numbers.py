@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.study.job import Made, MissingError
+from runner.study.job import MissingError, Results
 from runner.study.measured import Measured
 from runner.study.prose import read_chapter
-from runner.study.prose.blocks import metric, percent, to_digits
+from runner.study.prose.blocks import metric, percent, round_to
 from runner.study.prose.plots import over
 from runner.study.prose.signals import setting
 from runner.study.prose.tables import column, level, table
@@ -42,7 +42,7 @@ def test_a_metric_has_ends(runs):
 def test_shares_digits_and_settings(runs):
     assert percent(Measured("share", 0.25)) == Measured("share", 25.0, "%")
     assert percent(Measured("share", None)).value is None
-    assert (to_digits(Measured("length", 0.031416, "m"), 4), to_digits(0.031416, 2)) == ("31.42 mm", "0.031")
+    assert (round_to(Measured("length", 0.031416, "m"), 4), round_to(0.031416, 2)) == ("31.42 mm", "0.031")
     assert setting("controller.period", 1000.0)(runs["step/3.0/slow"]) == 10.0
 
 
@@ -66,6 +66,6 @@ def test_what_a_failed_run_gave_is_shown_where_asked_for(runs):
 
 
 def test_a_chapter_without_its_run_says_which_was_not_made():
-    made = Made({}, {"step": "cut short"})
+    made = Results({}, {"step": "cut short"})
     with pytest.raises(MissingError, match="step: cut short"):
         read_chapter("chapter.md", "# Title\n\n{{ step() }}", {"step": lambda: made["step"]})

@@ -128,6 +128,6 @@ def test_of_a_part_the_content_counts(monkeypatch, tmp_path, old, new, same):
     assert (names[0] == names[1]) == same
 
 
-def test_of_a_part_of_our_works_the_source_is_its_folder():
+def test_of_a_part_of_our_studies_the_source_is_its_folder():
     names = [path.name for path in source_files("runner.studies.xarm7.parts.three_joint")]
     assert names == ["__init__.py", "three_joint.py", "three_joint_kinematics.py", "xarm7_as_printed.py"]

@@ -8,25 +8,24 @@ import pytest
 from scipy.stats import spearmanr
 from support.benchmark_runs import LAWS, SCATTER, SEEDS, SIZES, TUNINGS, benchmark_runs
 from support.recorded_runs import recorded
+from support.study_plans import FULL_ALONE
 from support.study_sections import texts
-from support.work_plans import FULL_ALONE
 
 from runner.base.errors import RunnerError
 from runner.cli.reproduce import _chosen, _Way
 from runner.reporting.formulas import faulty
 from runner.studies.benchmark import engines
 from runner.studies.benchmark.cells import cells
-from runner.studies.benchmark.figures import said
-from runner.studies.benchmark.halves import halves
+from runner.studies.benchmark.figures import halves, said
 from runner.studies.benchmark.horizon import grown
 from runner.studies.benchmark.how_tuned import ends_of
 from runner.studies.benchmark.late_and_limited import bearable
 from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
 from runner.study.findings import findings
-from runner.study.prose.trying import never_failing
-from runner.study.work import load_work
+from runner.study.prose.condition_tests import never_failing
+from runner.study.study import load_study
 
-WORK = load_work("benchmark")
+STUDY = load_study("benchmark")
 METRIC = "rms_tracking_error"
 
 
@@ -195,7 +194,7 @@ def test_values_near_an_end_of_their_range_are_named_with_law_and_arm():
 @pytest.fixture(scope="module")
 def whole():
     """The plan of the full profile."""
-    return load_work("benchmark", profile="full").jobs()
+    return load_study("benchmark", profile="full").jobs()
 
 
 @pytest.fixture
@@ -204,8 +203,8 @@ def runs(made):
     return made("benchmark").runs
 
 
-def test_it_is_not_made_with_all_works(tmp_path):
-    assert "benchmark" not in {work.name for work in _chosen("all", _Way(tmp_path, (), "")) if work is not None}
+def test_it_is_not_made_with_all_studies(tmp_path):
+    assert "benchmark" not in {study.name for study in _chosen("all", _Way(tmp_path, (), "")) if study is not None}
 
 
 @pytest.mark.costs(2)
@@ -267,7 +266,7 @@ def test_what_the_full_profile_alone_shows(tmp_path, whole, file):
     }[file]
     wanted = re.compile(rf"first/({arms})/\w+/circle/{condition}/.*")
     names = [name for name in whole if wanted.fullmatch(name)]
-    chapters = WORK.chapters(benchmark_runs(names, recorded("benchmark", tmp_path)), {})
+    chapters = STUDY.chapters(benchmark_runs(names, recorded("benchmark", tmp_path)), {})
     told = [finding for _, finding in findings(SimpleNamespace(sections=[chapters.section(file)]))]
     assert [each.title for each in told if not each.holds] == []
     assert len(told) == count

@@ -21,8 +21,8 @@ def runs(made: Callable[[str], Made]) -> Mapping[str, Run]:
     return made("engines").runs
 
 
-def test_it_is_not_made_with_all_works(tmp_path: Path) -> None:
-    names = {work.name for work in _chosen("all", _Way(tmp_path, (), "")) if work is not None}
+def test_it_is_not_made_with_all_studies(tmp_path: Path) -> None:
+    names = {study.name for study in _chosen("all", _Way(tmp_path, (), "")) if study is not None}
     assert names == {"thesis", "xarm7", "meca500"}
 
 

@@ -4,20 +4,20 @@ import pytest
 from support.finding_words import typed_in_module
 
 from runner.base.paths import package_dir
-from runner.study.prose.typed import levels_in, typed_numbers
-from runner.study.work import load_work
+from runner.study.check import levels_in, typed_numbers
+from runner.study.study import load_study
 
 
-@pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500", "engines", "benchmark"])
-def test_no_number_is_typed_in_the_words_of_a_finding(work):
-    made = load_work(work)
+@pytest.mark.parametrize("study", ["thesis", "xarm7", "meca500", "engines", "benchmark"])
+def test_no_number_is_typed_in_the_words_of_a_finding(study):
+    made = load_study(study)
     levels = levels_in([*made.jobs(), *made.calibrations()])
     texts = {path: path.read_text(encoding="utf-8") for path in sorted(made.folder.glob("*.md"))}
     assert [told for path, text in texts.items() for told in typed_numbers(path.name, text, levels)] == []
     assert [path.name for path in made.folder.rglob("*.py") if "finding(" in path.read_text(encoding="utf-8")] == []
 
 
-def test_no_finding_of_all_works_has_one():
+def test_no_finding_of_all_studies_has_one():
     assert [told for path in (package_dir() / "reporting").rglob("*.py") for told in typed_in_module(path, ())] == []
 
 

@@ -13,7 +13,7 @@ from support.pages import ROOT
 ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
 RUNS = "grids:\n  goal:\n    with: [robot=macro, plant=rk4, duration=0.05, experiment=paper/own]\n"
 FILES = {
-    "work.yaml": ABOUT,
+    "study.yaml": ABOUT,
     "runs.yaml": RUNS,
     "one.md": "# One\n\nWords.\n",
     "experiment/own.yaml": "# @package _global_\n# An experiment\nseed: 1\n",
@@ -82,7 +82,7 @@ def test_nor_one_that_is_put_together(paper, tmp_path):
 @pytest.mark.parametrize(
     ("file", "line"),
     [
-        ("work.yaml", 5),
+        ("study.yaml", 5),
         ("claims.yaml", 1),
         ("gains.yaml", 1),
         ("caveats.yaml", 1),
@@ -131,7 +131,7 @@ def test_nor_do_gains(paper, tmp_path):
 
 
 KINDS = [
-    "work.yaml", "runs.yaml", "one.md", "experiment/own.yaml", "claims.yaml", "gains.yaml", "caveats.yaml",
+    "study.yaml", "runs.yaml", "one.md", "experiment/own.yaml", "claims.yaml", "gains.yaml", "caveats.yaml",
     "checklist.yaml", "one.py", "robots/own.urdf", "robots/own.xml", "robots/mesh.stl", "own.csv", "own.parquet",
     "equations/inventory.yaml", "equations/own.yaml", "equations/truths/own.py", "mine.ranges.yaml", "noise",
 ]  # fmt: skip
@@ -191,7 +191,7 @@ def test_a_paper_names_no_file_outside(paper, tmp_path, override, file):
 def test_plug_ins_of_a_paper_lie_in_its_folder(paper, tmp_path, file, options):
     (tmp_path / "own.py").write_text("raise RuntimeError\n")
     about = f"{ABOUT}plugins: ['controller={file.replace('HERE', str(tmp_path))}']\n"
-    assert refused(paper({"work.yaml": about}, *options), tmp_path, f"outside of the folder {tmp_path}/paper")
+    assert refused(paper({"study.yaml": about}, *options), tmp_path, f"outside of the folder {tmp_path}/paper")
 
 
 @pytest.mark.parametrize(

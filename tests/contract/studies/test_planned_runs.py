@@ -1,9 +1,9 @@
-"""The works have the runs and calibrations that they had: their number, and a handful of overrides."""
+"""The studies have the runs and calibrations that they had: their number, and a handful of overrides."""
 
 import pytest
 
-from runner.study.names import work_names
-from runner.study.work import load_work
+from runner.study.names import study_names
+from runner.study.study import load_study
 
 SOME = {
     "thesis": {
@@ -80,7 +80,7 @@ SOME = {
 
 
 @pytest.mark.parametrize(
-    ("work", "runs", "calibrations"),
+    ("study", "runs", "calibrations"),
     [
         ("thesis", 593, 0),
         ("xarm7", 119, 0),
@@ -90,13 +90,13 @@ SOME = {
         ("benchmark", 2444, 0),
     ],
 )
-def test_a_work_has_its_runs(work, runs, calibrations):
-    planned = load_work(work)
+def test_a_study_has_its_runs(study, runs, calibrations):
+    planned = load_study(study)
     jobs, calibrated = planned.jobs(), planned.calibrations()
     assert (len(jobs), len(set(calibrated.values()))) == (runs, calibrations)  # of some names one calibration
     found = {name: job.overrides for name, job in jobs.items()} | dict(calibrated)
-    assert {name: found[name] for name in SOME[work]} == SOME[work]
+    assert {name: found[name] for name in SOME[study]} == SOME[study]
 
 
-def test_every_work_is_counted():
-    assert set(work_names()) == {"thesis", "xarm7", "meca500", "engines", "precision", "benchmark"}
+def test_every_study_is_counted():
+    assert set(study_names()) == {"thesis", "xarm7", "meca500", "engines", "precision", "benchmark"}

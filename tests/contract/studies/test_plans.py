@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 
 import pytest
+from support.study_plans import RECORDED, planned
 from support.thin_plans import Overrides
-from support.work_plans import RECORDED, planned
 
 from runner.base.engines import has_pybullet
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.study.work import load_work
+from runner.study.study import load_study
 
 
 def parts(overrides: Overrides) -> set[str]:
@@ -29,7 +29,7 @@ def covering(jobs: dict[str, Overrides]) -> Iterator[Overrides]:
 @pytest.mark.costs(3)
 @pytest.mark.parametrize("study", RECORDED)
 def test_each_robot_and_key_of_a_plan_is_taken(study: str) -> None:
-    dirs = load_work(study).config_dirs
+    dirs = load_study(study).config_dirs
     jobs = planned(study)
     if not has_pybullet():
         jobs = {name: overrides for name, overrides in jobs.items() if not any("bullet" in text for text in overrides)}

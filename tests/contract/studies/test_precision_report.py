@@ -8,7 +8,7 @@ import pytest
 from fixtures.studies import Made
 from scipy.special import ellipk
 from support.precision_runs import error
-from support.work_plans import cut
+from support.study_plans import cut
 
 from runner.cli.reproduce import _chosen, _Way
 from runner.config.compose.compose import compose
@@ -20,9 +20,9 @@ from runner.store import Run
 from runner.studies.precision import measure, tried
 from runner.studies.precision.exact import Adaptive, Collocation, energy_drift
 from runner.study.job import MissingError
-from runner.study.work import load_work
+from runner.study.study import load_study
 
-WORK = load_work("precision")
+STUDY = load_study("precision")
 LENGTH, ANGLE = 0.5, 2.0  # m, rad from hanging
 PENDULUM = f"""<robot name="pendulum">
   <link name="base"/>
@@ -46,8 +46,8 @@ def runs(made: Callable[[str], Made]) -> Mapping[str, Run]:
     return made("precision").runs
 
 
-def test_it_is_not_made_with_all_works(tmp_path: Path) -> None:
-    assert "precision" not in {work.name for work in _chosen("all", _Way(tmp_path, (), "")) if work is not None}
+def test_it_is_not_made_with_all_studies(tmp_path: Path) -> None:
+    assert "precision" not in {study.name for study in _chosen("all", _Way(tmp_path, (), "")) if study is not None}
 
 
 @pytest.mark.parametrize("way", ["adaptive", "collocation"])
@@ -91,7 +91,7 @@ def test_runge_kutta_by_pinocchio_is_the_compiled_scheme(model: RobotModel) -> N
 
 
 def test_what_is_worked_out_of_a_case_is_of_fourth_order_and_two_methods_agree() -> None:
-    jobs = WORK.jobs()
+    jobs = STUDY.jobs()
     steps = {
         step: validate(compose(cut(jobs[f"control/macro/Runge-Kutta/{step}"].overrides, 0.1)).resolved)
         for step in ("0.01", "0.0025")

@@ -5,17 +5,17 @@ from collections.abc import Callable, Mapping
 
 import pytest
 from fixtures.studies import Made
+from support.study_plans import FULL_ALONE, STUDIES, chapter_files
 from support.study_sections import every_run, every_third, unfinished_texts
-from support.work_plans import FULL_ALONE, WORKS, chapter_files
 
 from runner.reporting import outline
 from runner.reporting.document import Document, Section
 from runner.reporting.formulas import faulty
 from runner.store import Run
-from runner.study.prose.trying import never_failing
-from runner.study.work import load_work
+from runner.study.prose.condition_tests import never_failing
+from runner.study.study import load_study
 
-FILES = {study: [file for file in chapter_files(study) if file not in FULL_ALONE] for study in WORKS}
+FILES = {study: [file for file in chapter_files(study) if file not in FULL_ALONE] for study in STUDIES}
 NEEDS = {"engines": pytest.mark.bullet}  # its chapters load arms into PyBullet
 CHAPTERS = [
     pytest.param(study, file, id=f"{study}/{file}", marks=NEEDS.get(study, ()))
@@ -50,7 +50,7 @@ def test_a_chapter_has_its_sections_and_each_condition_can_fail(
     assert section.blocks or section.sections
     assert faults(section) == []
     if file.endswith(".md"):
-        text = (load_work(study).folder / file).read_text(encoding="utf-8")
+        text = (load_study(study).folder / file).read_text(encoding="utf-8")
         written = re.findall(r"^## (.*)$", text, re.MULTILINE)
         assert set(written) <= {each.section.title for each in outline.number_sections([section])}
         assert never_failing(file, chapters.reading(file.removesuffix(".md"))) == []

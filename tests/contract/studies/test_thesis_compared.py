@@ -9,9 +9,7 @@ import pytest
 from runner.reporting.claims import load_claims
 from runner.reporting.words import PRESET
 from runner.store import Run
-from runner.studies.thesis.compared import APART, Compared
-from runner.studies.thesis.engines import parting, step_of_both
-from runner.studies.thesis.takeaways import takeaway
+from runner.studies.thesis.compared import APART, Compared, parting, step_of_both, takeaway
 
 CLAIMS = [claim for claim in load_claims("thesis") if claim.experiment == "thesis/figure_3_5"]
 

@@ -15,7 +15,7 @@ from runner.store import Run
 from runner.studies.thesis import how_sure
 from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
 from runner.study.findings import Finding
-from runner.study.work import load_work
+from runner.study.study import load_study
 from runner.sweeps.execution import run
 
 CLAIMS = load_claims("thesis")
@@ -47,7 +47,7 @@ def with_values(some: Run, **values: list[float | None]) -> Run:
 
 
 def judged_by(some: Run, number: int, values: list[float | None], **others: list[float | None]) -> Judged:
-    """Return a claim judged by seeds with these values; the work's own run has those of the first ones."""
+    """Return a claim judged by seeds with these values; the study's own run has those of the first ones."""
     claim = next(each for each in CLAIMS if each.number == number)
     stored = {claim.experiment.rpartition("/")[2]: {claim.metric: values}}
     if claim.like is not None:
@@ -107,7 +107,7 @@ def test_the_share_of_seeds_has_its_interval() -> None:
 
 
 def test_the_full_profile_raises_the_seeds_alone() -> None:
-    whole, full = (load_work("thesis", profile=profile).jobs() for profile in ("", "full"))
+    whole, full = (load_study("thesis", profile=profile).jobs() for profile in ("", "full"))
     assert {name for name in whole if name not in full} == {name for name in whole if name.startswith("sure/")}
     more = {name: job for name, job in full.items() if name not in whole}
     assert len(more) == 20

@@ -15,7 +15,7 @@ from runner.store import Run
 from runner.studies.thesis import measure
 from runner.study.checklist import load_checklist
 from runner.study.job import MissingError
-from runner.study.work import load_work
+from runner.study.study import load_study
 
 STUDIES = ("coupling", "mass_ratio", "stage_sampling", "folding", "stretch", "reference_velocity", "bandwidth", "turns",
            "whole_body")  # fmt: skip
@@ -37,7 +37,7 @@ def test_the_dynamics_are_measured_once_and_read(
 ) -> None:
     path = tmp_path / measure.FILE
     elsewhere = {name: replace(run, folder=tmp_path / "runs" / run.hash) for name, run in runs.items()}
-    thesis = load_work("thesis")
+    thesis = load_study("thesis")
     with pytest.raises(MissingError, match="not measured; runner reproduce thesis makes it"):
         thesis.chapters(elsewhere, {}).section("dynamics_cost.md")
     monkeypatch.setattr(measure, "_BLOCKS", 1)

@@ -6,14 +6,14 @@ from pathlib import Path
 import pytest
 from fixtures.studies import Made
 from support.recorded_runs import recorded
+from support.study_plans import RECORDED, meca500_calibrations, meca500_jobs, planned, recorded_jobs, thesis_jobs
 from support.thin_plans import make_calibrations, make_runs
-from support.work_plans import RECORDED, meca500_calibrations, meca500_jobs, planned, recorded_jobs, thesis_jobs
 
 from runner.reporting.formulas import faulty
 from runner.store import Run
 from runner.study.findings import findings
-from runner.study.prose.trying import never_failing
-from runner.study.work import load_work
+from runner.study.prose.condition_tests import never_failing
+from runner.study.study import load_study
 
 # True of real numbers, which take minutes; from runs cut to a moment findings do not hold.
 pytestmark = [pytest.mark.slow, pytest.mark.bullet]
@@ -28,15 +28,15 @@ CLOSE = {"rel": 1e-3, "abs": 1e-9}  # what is recorded has six digits; rounding 
 
 def whole(study: str, folder: Path, jobs: Mapping[str, tuple[str, ...]]) -> Made:
     """Make all runs of a plan, and measure what no run does."""
-    work = load_work(study)
+    study = load_study(study)
     calibrations = make_calibrations(folder, meca500_calibrations()) if study == "meca500" else {}
-    made = Made(study, make_runs(folder, jobs, None, work.config_dirs), calibrations)
-    work.measure(folder / "outputs")
+    made = Made(study, make_runs(folder, jobs, None, study.config_dirs), calibrations)
+    study.measure(folder / "outputs")
     return made
 
 
 def never_failing_in(made: Made) -> list[str]:
-    files = [file for file in made.work.about.files() if file.endswith(".md")]
+    files = [file for file in made.study.manifest.files() if file.endswith(".md")]
     return [told for file in files for told in never_failing(file, made.chapters.reading(file.removesuffix(".md")))]
 
 
@@ -70,7 +70,7 @@ def test_recorded_runs_are_those_that_the_runner_makes(shared_store: Path, study
     """Where they are not, `PYTHONPATH=tests .venv/bin/python -m support.recorded_runs STUDY` records them anew."""
     kept, jobs = recorded(study, shared_store), recorded_jobs(study)
     assert set(kept) == set(jobs)
-    made = make_runs(shared_store, jobs, None, load_work(study).config_dirs)
+    made = make_runs(shared_store, jobs, None, load_study(study).config_dirs)
     assert [name for name in jobs if not same(made[name], kept[name])] == []
 
 

@@ -12,7 +12,7 @@ from runner.reporting.render import write_report
 from runner.study.chapters import Chapters
 from runner.study.findings import findings
 from runner.study.job import PRESETS
-from runner.study.work import load_work
+from runner.study.study import load_study
 
 STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")
 TITLES = {"why_it_failed": "Why the second part failed"}  # of those that the checklist names
@@ -34,7 +34,7 @@ def document(runs):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Chapters, "section", without_studies)
-        return load_work("xarm7").document(runs, {})
+        return load_study("xarm7").document(runs, {})
 
 
 def blocks_of(document, *kinds):

@@ -1,15 +1,15 @@
-"""The tunings of a work: what runs.yaml says of them, and gains that get from trials into runs and back."""
+"""The tunings of a study: what runs.yaml says of them, and gains that get from trials into runs and back."""
 
 import pytest
 import yaml
 
 from runner.base.errors import RunnerError
+from runner.study.execute import make_all
 from runner.study.gains import put_in, read_gains, write_gains
 from runner.study.grids import Grids
 from runner.study.items import Way
-from runner.study.making import make_all
+from runner.study.study import load_study
 from runner.study.tune import find_gains
-from runner.study.work import load_work
 
 HERE = "hydra.sweeper.workers=0"
 RUNS = """
@@ -35,10 +35,10 @@ ARM = "[robot=planar, trajectory=quintic, trajectory.duration=0.2, duration=0.2,
 
 @pytest.fixture
 def paper(tmp_path):
-    """Write a work; return a function that opens it with changes of its runs.yaml."""
+    """Write a study; return a function that opens it with changes of its runs.yaml."""
     folder = tmp_path / "paper"
     folder.mkdir()
-    (folder / "work.yaml").write_text(
+    (folder / "study.yaml").write_text(
         "{title: T, source: S, abstract: A, chapters: [a.md], profiles: {anew: {tuned_anew: true}}}"
     )
     (folder / "a.md").write_text("# A\n\nText.\n")
@@ -49,7 +49,7 @@ def paper(tmp_path):
             assert old in text
             text = text.replace(old, new)
         (folder / "runs.yaml").write_text(text)
-        return load_work(str(folder), profile=profile)
+        return load_study(str(folder), profile=profile)
 
     opened.folder = folder
     return opened
@@ -88,15 +88,15 @@ def test_what_is_wrong_is_told_with_its_place(paper, change, told):
 
 
 def test_a_range_of_factors_needs_a_number_to_begin_with(paper, tmp_path):
-    work = paper(("controller.natural_frequency: [", "controller.feedforward: ["))
+    study = paper(("controller.natural_frequency: [", "controller.feedforward: ["))
     with pytest.raises(RunnerError, match=r"planar/pd: controller.feedforward is True; a range of factors needs"):
-        find_gains(work.untuned(), Way(tmp_path, (HERE,)))
+        find_gains(study.untuned(), Way(tmp_path, (HERE,)))
 
 
 def test_gains_go_from_trials_into_runs_and_what_is_not_tuned_stays(paper, tmp_path, capsys):
-    work = paper()
-    assert [tuning.name for tuning in work.untuned()] == ["planar/pd", "planar/held"]
-    runs, _ = make_all(work, tmp_path / "outputs", (HERE,))
+    study = paper()
+    assert [tuning.name for tuning in study.untuned()] == ["planar/pd", "planar/held"]
+    runs, _ = make_all(study, tmp_path / "outputs", (HERE,))
     first = capsys.readouterr().err.splitlines()[0]  # of one law 2 times 4 trials, of the other, not tuned, 2 times 1
     assert first.startswith("runner: 2 laws on 1 arm: 10 trials in 3 rounds, some 12 long runs, then 3 runs: about ")
     before, after = (runs[f"moves/pd/{gains}"] for gains in ("untuned", "tuned"))
@@ -105,8 +105,8 @@ def test_gains_go_from_trials_into_runs_and_what_is_not_tuned_stays(paper, tmp_p
         1.0 < after.config["controller"]["natural_frequency"] / before.config["controller"]["natural_frequency"] <= 2.0
     )
     assert runs["moves/held/untuned"].folder == runs["moves/held/tuned"].folder
-    assert [len(own) for own in work.tuned.values()] == [2, 2]  # as the runs ask for the second
-    assert work.tuned["planar/held"] == [{}, {}]
+    assert [len(own) for own in study.tuned.values()] == [2, 2]  # as the runs ask for the second
+    assert study.tuned["planar/held"] == [{}, {}]
 
 
 def test_stored_gains_are_taken_and_a_profile_tunes_anew(paper):
@@ -145,13 +145,13 @@ def test_the_gains_of_a_tuning_have_numbers():
 
 
 def test_a_law_of_the_reader_s_has_its_ranges_beside_its_module(paper, tmp_path):
-    from runner.study.given import GivenPart
+    from runner.study.plugins import UserPlugin
 
     mine = tmp_path / "mine"
     (mine / "controller").mkdir(parents=True)
-    part = GivenPart("controller", "spring", str(mine / "spring.py"), mine)
-    work = paper(("over: {law: *laws}\n", "over: {law: *laws}\n    plugins: {law: controller}\n"))
-    path = work.folder / "runs.yaml"
+    part = UserPlugin("controller", "spring", str(mine / "spring.py"), mine)
+    study = paper(("over: {law: *laws}\n", "over: {law: *laws}\n    plugins: {law: controller}\n"))
+    path = study.folder / "runs.yaml"
     assert Grids(path, None, [part]).tunings["planar/spring"].ranges == {}
     (mine / "spring.ranges.yaml").write_text(yaml.safe_dump({"controller.stiffness": [0.1, 10]}))
     assert Grids(path, None, [part]).tunings["planar/spring"].ranges == {"controller.stiffness": (0.1, 10.0)}
@@ -162,11 +162,11 @@ def test_a_law_of_the_reader_s_has_its_ranges_beside_its_module(paper, tmp_path)
 
 @pytest.mark.costs(2)
 def test_a_tuning_asked_for_twice_is_found_stored(paper, tmp_path, capsys):
-    work = paper()
+    study = paper()
     way = Way(tmp_path / "outputs", (HERE,))
-    first = find_gains(work.untuned(), way)
+    first = find_gains(study.untuned(), way)
     capsys.readouterr()
-    assert find_gains(work.untuned(), way) == first
+    assert find_gains(study.untuned(), way) == first
     told = capsys.readouterr().err
     assert "6 runs, 6 of them stored already" in told  # of two seeds 2 trials of one law, and 1 of the other
     assert "longer runs of 4 trials ..." in told

@@ -174,7 +174,7 @@ def test_python_of_a_folder_runs_where_it_is_allowed(paper):
 
 
 def test_sources_that_are_none_are_told(tmp_path):
-    with pytest.raises(RunnerError, match=r"no work 'xarm' \(did you mean xarm7\?\); works: meca500, thesis, xarm7"):
+    with pytest.raises(RunnerError, match=r"no study 'xarm' \(did you mean xarm7\?\); studies: meca500, thesis, xarm7"):
         audit("xarm")
     with pytest.raises(RunnerError, match="no folder 'equations' in it"):
         list(entries(tmp_path))

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
-from runner.studies.meca500.admittance_response import frequency_response, sampled_frequency_response, step_response
+from runner.studies.meca500.frequency_response import frequency_response, sampled_frequency_response, step_response
 
 # Light, heavy and critical damping, none, hand guiding, a free mass.
 LAW = Admittance(

@@ -5,21 +5,27 @@ import pytest
 from support.thin_plans import make_runs
 
 from runner.controllers.force.admittance_stability import stiffest_wall
-from runner.studies.meca500.admittance_response import sampled_frequency_response
-from runner.studies.meca500.at_the_tip import filtered_turn
-from runner.studies.meca500.contact import forces
-from runner.studies.meca500.figures import bounces, displacement, law_of, servo_compliance, turned, wrenches
-from runner.studies.meca500.frequency_response import fitted_response
-from runner.studies.meca500.limits import limits
+from runner.studies.meca500.figures import (
+    bounces,
+    displacement,
+    filtered_turn,
+    forces,
+    law_of,
+    limits,
+    servo_compliance,
+    turned,
+    wrenches,
+)
+from runner.studies.meca500.frequency_response import fitted_response, sampled_frequency_response
 from runner.studies.meca500.plan import REPORTED, law
 from runner.studies.meca500.step_response import step
-from runner.study.work import load_work
+from runner.study.study import load_study
 
 
 @pytest.fixture(scope="module")
 def planned(shared_store):
     """Run a job of the plan by its name, with further overrides."""
-    jobs = load_work("meca500").jobs()
+    jobs = load_study("meca500").jobs()
     return lambda name, *overrides: make_runs(shared_store, {name: (*jobs[name].overrides, *overrides)})[name]
 
 

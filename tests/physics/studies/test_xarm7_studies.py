@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from support.study_plans import xarm7_studies
 from support.thin_plans import make_runs
-from support.work_plans import xarm7_studies
 
 from runner.store import Run
 from runner.studies.xarm7.figures import ROWS, first_saturation, lag, sag
+from runner.studies.xarm7.kinematics import random_postures
 from runner.studies.xarm7.null_space import between_commands, drifts, way
 from runner.studies.xarm7.payload import largest_payloads, lost_when, stretched
-from runner.studies.xarm7.printed_kinematics import random_postures
 from runner.studies.xarm7.why_it_failed import invert, jacobians
 from runner.study.prose.signals import largest_of
 from runner.sweeps.execution import run

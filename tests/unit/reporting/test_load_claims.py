@@ -1,20 +1,20 @@
-"""Files of claims and statements of all works."""
+"""Files of claims and statements of all studies."""
 
 import pytest
 import yaml
 
 from runner.base.errors import RunnerError
-from runner.reporting.claims import claim, load_claims, load_statements, works_with_claims
+from runner.reporting.claims import claim, load_claims, load_statements, studies_with_claims
 
 
 @pytest.fixture
 def entries(tmp_path, monkeypatch):
     """The thesis' claims 1 to 5 as data, and a function that stores what was made of them."""
-    monkeypatch.setattr(claim, "works_dir", lambda: tmp_path)
-    (tmp_path / "work").mkdir()
+    monkeypatch.setattr(claim, "studies_dir", lambda: tmp_path)
+    (tmp_path / "study").mkdir()
 
     def store(content):
-        (tmp_path / "work" / "claims.yaml").write_text(yaml.safe_dump(content))
+        (tmp_path / "study" / "claims.yaml").write_text(yaml.safe_dump(content))
 
     return [each.model_dump() for each in THESIS[:5]], store
 
@@ -22,9 +22,9 @@ def entries(tmp_path, monkeypatch):
 THESIS = load_claims("thesis")
 
 
-@pytest.mark.parametrize("work", works_with_claims())
-def test_the_claims_of_a_work_are_numbered_in_order(work):
-    assert [each.number for each in load_claims(work)] == list(range(1, len(load_claims(work)) + 1))
+@pytest.mark.parametrize("study", studies_with_claims())
+def test_the_claims_of_a_study_are_numbered_in_order(study):
+    assert [each.number for each in load_claims(study)] == list(range(1, len(load_claims(study)) + 1))
 
 
 def test_the_statements_have_names_of_their_own():
@@ -35,11 +35,11 @@ def test_the_statements_have_names_of_their_own():
 def test_a_claim_that_does_not_fit_is_told_with_its_number(entries):
     content, store = entries
     store(content)
-    assert load_claims("work") == THESIS[:5]
+    assert load_claims("study") == THESIS[:5]
     del content[2]["place"]
     store(content)
     with pytest.raises(RunnerError, match=r"claims\.yaml: 2 \(3\)\.place: Field required"):
-        load_claims("work")
+        load_claims("study")
 
 
 def test_a_bound_by_a_claim_that_is_not_there_is_refused(entries):
@@ -47,4 +47,4 @@ def test_a_bound_by_a_claim_that_is_not_there_is_refused(entries):
     content[4]["bound"]["claim"] = 9
     store(content)
     with pytest.raises(RunnerError, match=r"claims\.yaml: claim 5: bound\.claim: there is no claim 9"):
-        load_claims("work")
+        load_claims("study")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from runner.base.paths import works_dir
+from runner.base.paths import studies_dir
 
 ROOT = Path(__file__).resolve().parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
@@ -71,14 +71,14 @@ def test_hooks_before_a_commit_run_what_is_installed():
             assert hook["entry"].split()[0].removeprefix(".venv/bin/") in development
 
 
-def test_every_published_work_and_cited_author_is_in_the_citation():
+def test_every_published_study_and_cited_author_is_in_the_citation():
     citation = read("CITATION.cff")
     assert citation["cff-version"] == "1.2.0"
     assert citation["license"] == PROJECT["license"]
     assert "version" not in citation  # which stands in pyproject.toml alone
     titles = {each["title"] for each in citation["references"]}
-    for work in works_dir().glob("*/work.yaml"):
-        bibtex = yaml.safe_load(work.read_text(encoding="utf-8")).get("bibtex", "")
+    for study in studies_dir().glob("*/study.yaml"):
+        bibtex = yaml.safe_load(study.read_text(encoding="utf-8")).get("bibtex", "")
         assert set(re.findall(r"^\s*title = \{(.*)\},$", bibtex, re.M)) <= titles
     for reference in citation["references"]:
         assert {"type", "title", "authors", "year"} <= set(reference)

@@ -1,4 +1,4 @@
-"""What moved between two makings of a work."""
+"""What moved between two versions of a study."""
 
 import copy
 import json
@@ -85,21 +85,21 @@ def test_the_size_of_a_change_is_a_share():
     assert Change("number", "a", 0.0, 3.0).size == Change("number", "a", None, 3.0).size == float("inf")
 
 
-def test_a_work_from_before_there_were_caveats_is_read(new):
+def test_a_study_from_before_there_were_caveats_is_read(new):
     for key in ("caveats", "equations", "calibrations"):
         del new["thesis"][key]
     new["thesis"]["findings"][0]["holds"] = False
     told = [(change.kind, change.name, change.new) for change in changes(new, OLD)]
     assert told == [
-        ("work", "thesis: equations", "there"),
-        ("work", "thesis: caveats", "there"),
-        ("work", "thesis: calibrations", "there"),
+        ("study", "thesis: equations", "there"),
+        ("study", "thesis: caveats", "there"),
+        ("study", "thesis: calibrations", "there"),
         ("finding", "thesis: It follows", "holds"),
     ]
 
 
-def test_a_work_that_only_one_has_is_told():
-    assert changes({}, OLD) == [Change("work", "thesis", None, "The thesis")]
+def test_a_study_that_only_one_has_is_told():
+    assert changes({}, OLD) == [Change("study", "thesis", None, "The thesis")]
 
 
 def test_conclusions_are_read_from_a_file_or_a_report_s_folder(tmp_path):

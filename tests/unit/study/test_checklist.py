@@ -1,9 +1,9 @@
-"""The checklist of a work, from its file to the section of its report."""
+"""The checklist of a study, from its file to the section of its report."""
 
 import pytest
 from pydantic import ValidationError
 
-from runner.base.paths import works_with
+from runner.base.paths import studies_with
 from runner.reporting.document import Curves, Origin, Section
 from runner.study.checklist import Checklist, load_checklist
 
@@ -67,9 +67,9 @@ def test_what_was_not_to_be_expected_and_is_there_is_drawn_anew():
     assert table.rows[0] == ["Figure 1.1", "A bridge", "drawn anew", "§1"]
 
 
-@pytest.mark.parametrize("work", works_with("checklist.yaml"))
-def test_every_checklist_names_each_thing_once(work):
-    names = [item.name for item in load_checklist(work).items]
+@pytest.mark.parametrize("study", studies_with("checklist.yaml"))
+def test_every_checklist_names_each_thing_once(study):
+    names = [item.name for item in load_checklist(study).items]
     assert len(names) == len(set(names))
 
 

@@ -3,7 +3,7 @@
 from support.made_up_runs import made_up_run
 
 from runner.reporting.document import Code
-from runner.study.citing import citing_section
+from runner.study.report import citing_section
 
 
 def codes(section):

@@ -1,4 +1,4 @@
-"""The verdicts on a work's claims, from runs that are made up here."""
+"""The verdicts on a study's claims, from runs that are made up here."""
 
 from dataclasses import replace
 
@@ -18,7 +18,7 @@ NUMBER = {
     "place": "section 1",
     "printed": [1.4],
     "unit": "s",
-    "experiment": "work/macro",
+    "experiment": "study/macro",
     "metric": "settling_time",
     "reason": "As printed.",
 }
@@ -54,7 +54,7 @@ def told(block):
 
 
 def test_a_run_is_named_by_the_last_part_of_its_experiment():
-    assert run_name("work/macro", "full_equations") == "macro/full_equations"
+    assert run_name("study/macro", "full_equations") == "macro/full_equations"
 
 
 def test_a_number_is_judged_by_the_median_and_shown_with_its_range():
@@ -117,7 +117,7 @@ def test_a_verdict_hangs_on_the_end_of_the_run_where_a_longer_one_is_judged_othe
     assert hanging(lasting(4.0, 1.0, 3.0), lasting(8.0, 4.5, 3.0)) == {}
 
 
-def test_the_legend_speaks_of_the_kinds_of_claims_that_a_work_has():
+def test_the_legend_speaks_of_the_kinds_of_claims_that_a_study_has():
     numbers, motions = legend([PublishedClaim.model_validate(NUMBER)]), legend([PublishedClaim.model_validate(MOTION)])
     assert "factor of 1.5" in numbers
     assert "motion" not in numbers
@@ -140,7 +140,7 @@ def test_a_failure_that_is_told_matches_where_the_run_fails():
 
 
 def test_a_comparison_in_words_takes_the_other_runs_median():
-    like = NUMBER | {"printed": [], "like": {"experiment": "work/mini", "metric": "rise_time"}}
+    like = NUMBER | {"printed": [], "like": {"experiment": "study/mini", "metric": "rise_time"}}
     runs = {"macro": run_of({"settling_time": seconds(1.0)}), "mini": run_of({"rise_time": seconds(2.0)})}
     (block,) = blocks(runs, like)
     assert told(block) == ("1 s", "differs")
@@ -152,7 +152,7 @@ def test_a_comparison_in_words_takes_the_other_runs_median():
 @pytest.mark.parametrize(("macro", "verdict"), [(1.0, CONTRADICTION), (3.0, "matches")])
 def test_a_bound_is_the_other_claims_number_or_our_median_where_that_is_larger(macro, verdict):
     bound = {"claim": 1, "scale": 0.1, "name": "A tenth of the Macro's", "reason": "It is scaled."}
-    mini = NUMBER | {"number": 2, "printed": [0.3], "experiment": "work/mini", "bound": bound}
+    mini = NUMBER | {"number": 2, "printed": [0.3], "experiment": "study/mini", "bound": bound}
     runs = {"macro": run_of({"settling_time": seconds(macro)}), "mini": run_of({"settling_time": seconds(0.3)})}
     block = blocks(runs, NUMBER, mini)[1]
     assert told(block) == ("0.3 s", verdict)
@@ -187,7 +187,7 @@ def test_statements_are_numbered_and_take_their_verdicts_by_name():
         judged_statements(stated, {"a": ("matches", ""), "c": ("matches", "")})
 
 
-def test_a_claim_names_a_run_and_presets_of_the_works_own():
+def test_a_claim_names_a_run_and_presets_of_its_study():
     claim = PublishedClaim.model_validate({**NUMBER, "experiment": "", "run": "goal"})
     runs = {"goal/slow": run_of({"settling_time": seconds(1.4)}), "goal/fast": run_of({"settling_time": seconds(0.1)})}
     (block,) = judged_claims([claim], runs, {"slow": "half", "fast": "whole"})

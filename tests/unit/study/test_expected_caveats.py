@@ -1,4 +1,4 @@
-"""Caveats that a work expects, against those of runs that are made up here."""
+"""Caveats that a study expects, against those of runs that are made up here."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -16,9 +16,9 @@ from runner.study.expected_caveats import (
     caveats_section,
     unexpected_caveats,
 )
-from runner.study.job import Made
+from runner.study.job import Results
 from runner.study.run_values import cell, measured
-from runner.study.work import load_work
+from runner.study.study import load_study
 
 
 def run_with(*rules):
@@ -39,14 +39,14 @@ SATURATED = ExpectedCaveat("saturation", "fast/*", "The limit is what the sectio
 def test_a_caveat_is_expected_of_the_runs_that_a_pattern_names():
     assert unexpected_caveats(RUNS, [SATURATED, CHATTERS]) == []
     lines = unexpected_caveats(RUNS, [SATURATED])
-    assert lines == ["fast/as_reported: caveat chatter, which the work does not expect: chatter of 0.2 $"]
+    assert lines == ["fast/as_reported: caveat chatter, which the study does not expect: chatter of 0.2 $"]
     assert len(unexpected_caveats(RUNS, [ExpectedCaveat("saturation", "fast/full_equations", "Why.")])) == 2
 
 
 def test_the_section_tells_how_many_and_the_worst_and_warns_of_others():
     warning, table = caveats_section(RUNS, [SATURATED, ExpectedCaveat("overload", "*", "Nothing has it.")]).blocks
     assert isinstance(warning, Notice)
-    assert warning.title == "1 caveat that this work does not expect"
+    assert warning.title == "1 caveat that this study does not expect"
     assert isinstance(table, Table)
     assert table.rows == [["saturation", "2", "fast/as_reported: saturation of 0.6 $$", SATURATED.why]]
 
@@ -56,7 +56,7 @@ def test_a_run_of_two_names_is_counted_once():
     assert [row[:2] for row in table.rows] == [["saturation", "2"], ["chatter", "1"]]
 
 
-def test_a_work_without_caveats_says_so():
+def test_a_study_without_caveats_says_so():
     (text,) = caveats_section({"slow/full_equations": run_with()}, []).blocks
     assert text.text == "No rule found anything at the end of the runs."
 
@@ -70,9 +70,9 @@ def test_programs_get_every_caveat_with_why_it_is_expected():
     ]
 
 
-@pytest.mark.parametrize("work", ["thesis", "xarm7", "meca500", "engines"])
-def test_what_a_work_expects_is_of_known_rules_and_of_runs_that_it_has(work):
-    made = load_work(work)
+@pytest.mark.parametrize("study", ["thesis", "xarm7", "meca500", "engines"])
+def test_what_a_study_expects_is_of_known_rules_and_of_runs_that_it_has(study):
+    made = load_study(study)
     names = made.jobs()
     rules = set(KEYS)
     for expected in made.expected:
@@ -81,8 +81,8 @@ def test_what_a_work_expects_is_of_known_rules_and_of_runs_that_it_has(work):
         assert expected.why.endswith(".")
 
 
-def test_a_run_that_a_work_does_not_have_is_refused_with_the_nearest_name():
-    made = Made({"figure_3_5/full_equations": run_with()}, {"figure_3_6/full_equations": "not begun"})
+def test_a_run_that_a_study_does_not_have_is_refused_with_the_nearest_name():
+    made = Results({"figure_3_5/full_equations": run_with()}, {"figure_3_6/full_equations": "not begun"})
     with pytest.raises(
         RunnerError,
         match=r"no run or calibration 'figure_3_5/full_equation' \(did you mean figure_3_5/full_equations\?\)",

@@ -1,4 +1,4 @@
-"""Grids of a work's runs: which runs they stand for, and what is said of those that cannot be read."""
+"""Grids of a study's runs: which runs they stand for, and what is said of those that cannot be read."""
 
 import pytest
 

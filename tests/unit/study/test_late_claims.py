@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from runner.base.errors import StoreError
-from runner.study.late_claims import late_claims
+from runner.study.claims import late_claims
 
 CLAIM = {
     "number": 1, "statement": "The tip settles", "place": "section 2", "printed": [0.9], "unit": "s", "run": "goal",
@@ -21,8 +21,8 @@ def judge(tmp_path):
 
     def judged(date, runs=RUNS, **changes):
         (tmp_path / "claims.yaml").write_text(yaml.safe_dump([CLAIM | changes]))
-        work = SimpleNamespace(name="mine", folder=tmp_path, about=SimpleNamespace(presets=dict.fromkeys("ab", "")))
-        return late_claims(tmp_path / "outputs", work, runs, date)
+        study = SimpleNamespace(name="mine", folder=tmp_path, manifest=SimpleNamespace(presets=dict.fromkeys("ab", "")))
+        return late_claims(tmp_path / "outputs", study, runs, date)
 
     return judged
 
@@ -43,9 +43,9 @@ def test_other_runs_are_another_result_and_those_that_are_missing_none(judge):
     assert judge("2026-03-04", printed=[2.9])
 
 
-def test_a_work_without_claims_leaves_no_file(tmp_path):
-    work = SimpleNamespace(name="mine", folder=tmp_path)
-    assert late_claims(tmp_path / "outputs", work, {}) == []
+def test_a_study_without_claims_leaves_no_file(tmp_path):
+    study = SimpleNamespace(name="mine", folder=tmp_path)
+    assert late_claims(tmp_path / "outputs", study, {}) == []
     assert list(tmp_path.iterdir()) == []
 
 

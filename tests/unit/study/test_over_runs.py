@@ -5,7 +5,7 @@ import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
 from runner.base.errors import RunnerError
-from runner.study.job import Made, MissingError
+from runner.study.job import MissingError, Results
 from runner.study.measured import Measured
 from runner.study.prose import blocks, plots, signals, tables
 from runner.study.prose.patterns import found
@@ -49,7 +49,7 @@ def test_a_pattern_that_names_nothing_is_refused():
     with pytest.raises(RunnerError, match=r"has no axis 'gian' \(did you mean gain\?\)"):
         found(RUNS, "gain/{gain}/full_equations", ["gian"])
     with pytest.raises(MissingError, match="gain/2/full_equations: cut short"):
-        found(Made(RUNS, {"gain/2/full_equations": "cut short"}), "gain/{gain}/full_equations")
+        found(Results(RUNS, {"gain/2/full_equations": "cut short"}), "gain/{gain}/full_equations")
 
 
 def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
@@ -122,7 +122,7 @@ def test_signals_over_time():
     )
     np.testing.assert_allclose(full_equations.y, [0.0, 12.5e3])
     np.testing.assert_array_equal(reported.x, [0.0, 0.5])
-    (apart,) = plots.line(RUNS, "gain/5/full_equations", signals.apart("error"), "", "gain/5/as_reported")
+    (apart,) = plots.line(RUNS, "gain/5/full_equations", signals.distance("error"), "", "gain/5/as_reported")
     np.testing.assert_allclose(apart.y, [0.0, 12.5, 25.0])
     assert [series.name for series in plots.joints(RUNS, "held")] == ["q1", "q2"]
     assert [series.name for series in plots.axes(RUNS, "held")] == ["x", "y", "z"]

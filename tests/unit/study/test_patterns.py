@@ -7,10 +7,10 @@ from runner.base.errors import RunnerError
 from runner.study.measured import Measured
 from runner.study.prose import read_chapter
 from runner.study.prose.blocks import each, named
+from runner.study.prose.condition_tests import never_failing
 from runner.study.prose.patterns import found
 from runner.study.prose.plots import line
 from runner.study.prose.tables import listing
-from runner.study.prose.trying import never_failing
 
 RUNS = dict.fromkeys(["line/a/1", "line/a/2", "line/b/1", "line/c/1", "circle/a/1"])
 

@@ -10,7 +10,7 @@ from runner.audit.chains import derivative, product, rotation, translation
 from runner.audit.model_truths import AuditedArm, Dynamics, audited_arm, by_model, by_urdf
 from runner.audit.truth import Elements, Symbols, Truth, along
 from runner.base.arrays import FloatArray
-from runner.base.paths import works_dir
+from runner.base.paths import studies_dir
 from runner.robots.model import RobotModel
 from runner.studies.thesis.equations.truths.thesis import JOINTS
 
@@ -44,7 +44,7 @@ class Arm:
     def audited(self) -> AuditedArm:
         """The same arm by its URDF."""
         joints = tuple(f"q{i + 1}" for i in range(JOINTS)[self.joints])
-        return audited_arm(self.robot, "", joints, works_dir() / "thesis")
+        return audited_arm(self.robot, "", joints, studies_dir() / "thesis")
 
     @property
     def model(self) -> RobotModel:

@@ -13,7 +13,7 @@ from runner.studies.xarm7.equations.truths.xarm7 import (
     printed_jacobians,
 )
 from runner.studies.xarm7.equations.truths.xarm7_inverse import ENDS, full, points, solve
-from runner.studies.xarm7.printed_kinematics import CENTIMETRES, printed_tip
+from runner.studies.xarm7.kinematics import CENTIMETRES, printed_tip
 
 _POINTS = 201
 _DURATION = 4.0  # s

@@ -13,7 +13,7 @@ from runner.audit.chains import derivative
 from runner.audit.truth import Elements, Symbols, Truth, Way, columns, coordinates
 from runner.base.arrays import FloatArray
 from runner.studies.xarm7.equations.truths.xarm7 import BY_MODEL, JOINTS, L1, constants, pose
-from runner.studies.xarm7.printed_kinematics import CENTIMETRES, printed_inverse
+from runner.studies.xarm7.kinematics import CENTIMETRES, printed_inverse
 
 Q6 = 0.75  # rad
 _Q2 = (-2.0594, 2.0943)

@@ -1,4 +1,4 @@
-"""A work in a folder of a stranger's: written, read, made, checked, and what is said when something is wrong."""
+"""A study in a folder of a stranger's: written, read, made, checked, and what is said when something is wrong."""
 
 import re
 import sys
@@ -7,13 +7,12 @@ from pathlib import Path
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.base.paths import example_work_dir
+from runner.base.paths import example_study_dir
 from runner.cli.main import dispatch
 from runner.reporting.document import Table
 from runner.study.check import problems
-from runner.study.names import find_work, work_names
-from runner.study.new import write_new
-from runner.study.work import load_work
+from runner.study.names import find_study, study_names, write_new
+from runner.study.study import load_study
 from runner.sweeps.execution import run
 
 ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
@@ -39,33 +38,33 @@ holds: error > 1e-9
 """
 
 
-def a_work(folder: Path, **files: str) -> Path:
-    """Write a small work; files by name, with `__` for the dot."""
+def a_study(folder: Path, **files: str) -> Path:
+    """Write a small study; files by name, with `__` for the dot."""
     folder.mkdir(exist_ok=True)
-    for name, text in ({"work__yaml": ABOUT, "runs__yaml": RUNS, "one__md": CHAPTER} | files).items():
+    for name, text in ({"study__yaml": ABOUT, "runs__yaml": RUNS, "one__md": CHAPTER} | files).items():
         (folder / name.replace("__", ".")).write_text(text, encoding="utf-8")
     return folder
 
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """The runs of the small work, by name."""
+    """The runs of the small study, by name."""
     root = tmp_path_factory.mktemp("made")
-    jobs = load_work(str(a_work(root / "paper"))).jobs()
+    jobs = load_study(str(a_study(root / "paper"))).jobs()
     return {name: run(*job.overrides, f"outputs={root}") for name, job in jobs.items()}
 
 
 def read(folder, runs, **options):
-    work = load_work(str(folder), **options)
-    return work, work.chapters(runs, {}).sections()
+    study = load_study(str(folder), **options)
+    return study, study.chapters(runs, {}).sections()
 
 
 @pytest.mark.costs(5)
-def test_the_work_that_is_written_first_is_small_and_stands(tmp_path, capsys):
+def test_the_study_that_is_written_first_is_small_and_stands(tmp_path, capsys):
     folder = tmp_path / "paper"
-    assert dispatch(["work", "new", str(folder)]) == 0
+    assert dispatch(["study", "new", str(folder)]) == 0
     texts = {path.name: path.read_text() for path in folder.iterdir()}
-    assert sorted(texts) == ["claims.yaml", "goal.md", "runs.yaml", "work.yaml"]
+    assert sorted(texts) == ["claims.yaml", "goal.md", "runs.yaml", "study.yaml"]
     lines = [line for text in texts.values() for line in text.splitlines()]
     assert len(lines) <= 45
     assert max(map(len, lines)) <= 100
@@ -74,24 +73,24 @@ def test_the_work_that_is_written_first_is_small_and_stands(tmp_path, capsys):
     report = Path(capsys.readouterr().out.splitlines()[-1])
     assert report == tmp_path / "outputs" / "reports" / "paper"
     assert {"report.html", "report.pdf", "conclusions.json"} <= {path.name for path in report.iterdir()}
-    assert dispatch(["work", "check", str(folder), outputs]) == 0
+    assert dispatch(["study", "check", str(folder), outputs]) == 0
     assert "nothing is wrong" in capsys.readouterr().out
 
 
-def test_the_first_work_is_not_written_over_something(tmp_path):
+def test_the_first_study_is_not_written_over_something(tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
     with pytest.raises(RunnerError, match="is there already, and not empty"):
         write_new(tmp_path)
 
 
 def test_its_chapters_read_its_runs(tmp_path, made):
-    work, (chapter,) = read(a_work(tmp_path / "paper"), made)
+    study, (chapter,) = read(a_study(tmp_path / "paper"), made)
     (table, finding) = chapter.blocks
     assert isinstance(table, Table)
     assert table.header == ["preset", "error (m)"]
     assert [row[0] for row in table.rows] == ["slow", "slow", "fast", "fast"]
     assert finding.holds
-    assert [*problems(work, made, {})] == []
+    assert [*problems(study, made, {})] == []
 
 
 @pytest.mark.parametrize(
@@ -103,32 +102,32 @@ def test_its_chapters_read_its_runs(tmp_path, made):
         ("holds: errr > 1e-9", "It errs.", r"paper/one.md:8: .*no name 'errr' \(did you mean error\?\)"),
     ],
 )
-def test_what_is_wrong_with_a_work_is_told_with_its_place(tmp_path, made, holds, words, told):
+def test_what_is_wrong_with_a_study_is_told_with_its_place(tmp_path, made, holds, words, told):
     text = CHAPTER.replace("holds: error > 1e-9", holds).replace("It errs by {{ error }}.", words)
     text = "\n".join(line for line in text.splitlines() if not line.startswith("{{ table"))
-    work = load_work(str(a_work(tmp_path / "paper", one__md=text)))
-    found = [*problems(work, made, {})]
+    study = load_study(str(a_study(tmp_path / "paper", one__md=text)))
+    found = [*problems(study, made, {})]
     assert len(found) == 1
     assert re.search(told, found[0]), found
 
 
 def test_caveats_that_no_run_can_have_are_told(tmp_path, made):
     caveats = "- {rules: [saturation], runs: [gaol/*], why: So.}\n"
-    work = load_work(str(a_work(tmp_path / "paper", caveats__yaml=caveats)))
-    assert [*problems(work, made, {})] == ["paper: gaol/*: expected caveats: no run of it is named so"]
+    study = load_study(str(a_study(tmp_path / "paper", caveats__yaml=caveats)))
+    assert [*problems(study, made, {})] == ["paper: gaol/*: expected caveats: no run of it is named so"]
 
 
 def test_a_cover_shows_a_run_in_motion_and_one_that_is_none_is_told(tmp_path, made):
     def with_cover(run):
-        return load_work(
-            str(a_work(tmp_path / "paper", work__yaml=ABOUT + f"cover: {{run: {run}, caption: It moves.}}\n"))
+        return load_study(
+            str(a_study(tmp_path / "paper", study__yaml=ABOUT + f"cover: {{run: {run}, caption: It moves.}}\n"))
         )
 
     assert "<animate" in with_cover("goal/slow/0.1").document(made, {}).cover.moving
-    work = with_cover("goal/slwo/0.1")
-    assert work.document(made, {}).cover is None
-    (told,) = problems(work, made, {})
-    assert re.search(r"paper/work.yaml: cover: no run 'goal/slwo/0.1' \(did you mean goal/slow/0.1\?\)", told), told
+    study = with_cover("goal/slwo/0.1")
+    assert study.document(made, {}).cover is None
+    (told,) = problems(study, made, {})
+    assert re.search(r"paper/study.yaml: cover: no run 'goal/slwo/0.1' \(did you mean goal/slow/0.1\?\)", told), told
 
 
 def test_a_part_has_sections_and_a_file_of_python_is_a_chapter(tmp_path, made):
@@ -136,7 +135,7 @@ def test_a_part_has_sections_and_a_file_of_python_is_a_chapter(tmp_path, made):
     code = (
         "from runner.reporting.document import Section\ndef section(runs):\n    return Section(f'{len(runs)} runs')\n"
     )
-    folder = a_work(tmp_path / "paper", work__yaml=about, two__py=code)
+    folder = a_study(tmp_path / "paper", study__yaml=about, two__py=code)
     _, (part,) = read(folder, made, allow_code=True)
     assert [section.title for section in part.sections] == ["One", "4 runs"]
     _, (part,) = read(folder, made)
@@ -144,9 +143,9 @@ def test_a_part_has_sections_and_a_file_of_python_is_a_chapter(tmp_path, made):
     assert "two.py was not run: code in a folder runs with --code alone" in part.sections[1].blocks[0].text
 
 
-def test_functions_of_the_work_are_called_where_code_may_run(tmp_path, made):
+def test_functions_of_the_study_are_called_where_code_may_run(tmp_path, made):
     chapter = "# One\n\nThere are {{ count() }} runs, {{ twice(2) }}.\n"
-    folder = a_work(
+    folder = a_study(
         tmp_path / "paper",
         one__md=chapter,
         figures__py="def count(runs):\n    return len(runs)\n",
@@ -156,69 +155,71 @@ def test_functions_of_the_work_are_called_where_code_may_run(tmp_path, made):
     assert section.blocks[0].text == "There are 4 runs, 4."
     _, (section,) = read(folder, made)
     assert section.title == "Left out: One"
-    assert "not run" in load_work(str(folder)).document(made, {}).sections[-2].blocks[1].rows[-1][1]
+    assert "not run" in load_study(str(folder)).document(made, {}).sections[-2].blocks[1].rows[-1][1]
 
 
 def test_code_that_cannot_be_imported_is_told(tmp_path, made):
-    folder = a_work(tmp_path / "paper", figures__py="1 / 0\n")
+    folder = a_study(tmp_path / "paper", figures__py="1 / 0\n")
     with pytest.raises(RunnerError, match=r"figures.py cannot be imported: .*division by zero"):
         read(folder, made, allow_code=True)
 
 
 def test_a_run_that_was_not_made_leaves_its_chapter_out(tmp_path, made):
-    from runner.study.job import Made
+    from runner.study.job import Results
 
-    runs = Made({name: each for name, each in made.items() if name != "goal/slow/0.1"}, {"goal/slow/0.1": "cut short"})
-    _, (section,) = read(a_work(tmp_path / "paper"), runs)
+    runs = Results(
+        {name: each for name, each in made.items() if name != "goal/slow/0.1"}, {"goal/slow/0.1": "cut short"}
+    )
+    _, (section,) = read(a_study(tmp_path / "paper"), runs)
     assert section.title == "Left out: One"
     assert "goal/slow/0.1: cut short" in section.blocks[0].text
 
 
 def test_a_profile_makes_other_levels(tmp_path):
     about = ABOUT + "profiles: {quick: {repetitions: 3, levels: {goal: {duration: [0.2], preset: [slow]}}}}\n"
-    folder = a_work(tmp_path / "paper", work__yaml=about)
-    jobs = load_work(str(folder), profile="quick").jobs()
+    folder = a_study(tmp_path / "paper", study__yaml=about)
+    jobs = load_study(str(folder), profile="quick").jobs()
     assert list(jobs) == ["goal/slow/0.2"]
     assert jobs["goal/slow/0.2"].overrides[-2:] == ("duration=0.2", "repetitions=3")
-    assert len(load_work(str(folder)).jobs()) == 4
-    assert sorted(load_work(str(folder), profile="quick").dropped()) == sorted(load_work(str(folder)).jobs())
+    assert len(load_study(str(folder)).jobs()) == 4
+    assert sorted(load_study(str(folder), profile="quick").dropped()) == sorted(load_study(str(folder)).jobs())
     with pytest.raises(RunnerError, match=r"no profile 'quik' \(did you mean quick\?\); profiles: quick"):
-        load_work(str(folder), profile="quik")
+        load_study(str(folder), profile="quik")
 
 
 @pytest.mark.parametrize(
     ("files", "told"),
     [
-        ({"work__yaml": "title: T\n"}, r"work.yaml: source: Field required; .*chapters: Field required"),
-        ({"work__yaml": ABOUT.replace("one.md", "on.md")}, r"work.yaml: chapters: on.md: must be .*mean one.md\?\)"),
-        ({"work__yaml": ABOUT + "in_al: false\n"}, r"work.yaml: in_al: Extra inputs are not permitted"),
-        ({"work__yaml": "title: [\n"}, r"work.yaml, line 2"),
+        ({"study__yaml": "title: T\n"}, r"study.yaml: source: Field required; .*chapters: Field required"),
+        ({"study__yaml": ABOUT.replace("one.md", "on.md")}, r"study.yaml: chapters: on.md: must be .*mean one.md\?\)"),
+        ({"study__yaml": ABOUT + "in_al: false\n"}, r"study.yaml: in_al: Extra inputs are not permitted"),
+        ({"study__yaml": "title: [\n"}, r"study.yaml, line 2"),
         ({"runs__yaml": "grids: {goal: {wiht: []}}\n"}, r"runs.yaml: grids.goal.*wiht"),
         ({"caveats__yaml": "- {rules: [satration], runs: [a], why: W.}\n"}, r"no rule 'satration' \(did you mean satu"),
         ({"caveats__yaml": "- {rules: [saturation], runs: [a]}\n"}, r"caveats.yaml: 0.why: Field required"),
         (
-            {"work__yaml": ABOUT + "profiles: {quick: {levels: {goal: {preset: [slaw]}}}}\n"},
+            {"study__yaml": ABOUT + "profiles: {quick: {levels: {goal: {preset: [slaw]}}}}\n"},
             r"grid 'goal': axis 'preset' has no level 'slaw' \(did you mean slow\?\)",
         ),
     ],
 )
 def test_data_that_do_not_fit_are_refused_with_file_and_key(tmp_path, files, told):
     with pytest.raises(RunnerError, match=told):
-        load_work(str(a_work(tmp_path / "paper", **files)), profile="quick" if "quick" in str(files) else "")
+        load_study(str(a_study(tmp_path / "paper", **files)), profile="quick" if "quick" in str(files) else "")
 
 
-def test_what_is_no_work_is_told(tmp_path):
-    told = r"no work 'tesis' \(did you mean thesis\?\); works: benchmark, engines, meca500, precision, thesis, xarm7"
+def test_what_is_no_study_is_told(tmp_path):
+    told = r"no study 'tesis' \(did you mean thesis\?\); studies: benchmark, engines, meca500, precision, thesis, xarm7"
     with pytest.raises(RunnerError, match=told):
-        find_work("tesis")
-    with pytest.raises(RunnerError, match=r"no work: there is no work.yaml in it; `runner work new"):
-        find_work(str(tmp_path))
-    with pytest.raises(RunnerError, match="is the name of an installed work; rename the folder"):
-        find_work(str(a_work(tmp_path / "thesis")))
+        find_study("tesis")
+    with pytest.raises(RunnerError, match=r"no study: there is no study.yaml in it; `runner study new"):
+        find_study(str(tmp_path))
+    with pytest.raises(RunnerError, match="is the name of an installed study; rename the folder"):
+        find_study(str(a_study(tmp_path / "thesis")))
 
 
-def test_an_installed_package_is_a_work_by_its_entry_point(tmp_path, made, monkeypatch):
-    package = a_work(tmp_path / "a_paper", one__md="# One\n\n{{ count() }} runs.\n")
+def test_an_installed_package_is_a_study_by_its_entry_point(tmp_path, made, monkeypatch):
+    package = a_study(tmp_path / "a_paper", one__md="# One\n\n{{ count() }} runs.\n")
     (package / "__init__.py").write_text("")
     (package / "one.py").write_text("def count(runs):\n    return len(runs)\n")
     info = tmp_path / "a_paper-1.0.dist-info"
@@ -226,17 +227,22 @@ def test_an_installed_package_is_a_work_by_its_entry_point(tmp_path, made, monke
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: a-paper\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text("[runner.studies]\nsmith_2020 = a_paper\n")
     monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
-    assert "smith_2020" in work_names()
+    assert "smith_2020" in study_names()
     _, (section,) = read("smith_2020", made)
     assert section.blocks[0].text == "4 runs."
 
 
 def test_the_example_is_what_is_written():
-    assert {path.name for path in example_work_dir().iterdir()} >= {"work.yaml", "runs.yaml", "claims.yaml", "goal.md"}
+    assert {path.name for path in example_study_dir().iterdir()} >= {
+        "study.yaml",
+        "runs.yaml",
+        "claims.yaml",
+        "goal.md",
+    }
 
 
 def test_its_printed_equations_are_judged_by_yaml_alone(tmp_path, made):
-    folder = a_work(tmp_path / "paper", one__md='# One\n\n{{ equations("All.") }}\n')
+    folder = a_study(tmp_path / "paper", one__md='# One\n\n{{ equations("All.") }}\n')
     (folder / "equations").mkdir()
     entry = (
         '- {id: %s, number: "1", place: p. 1, title: Height, printed: {elements: {P_z: %s}}, truth: model.position%s}'
@@ -250,20 +256,20 @@ def test_its_printed_equations_are_judged_by_yaml_alone(tmp_path, made):
 
 
 def test_a_formula_that_cannot_be_read_is_told_with_its_line(tmp_path, made):
-    work = load_work(str(a_work(tmp_path / "paper", one__md="# One\n\nSo.\n\nThis is $frac(1$.\n")))
-    assert [*problems(work, made, {})] == ["paper/one.md:5: frac(1: no formula in Typst's notation"]
+    study = load_study(str(a_study(tmp_path / "paper", one__md="# One\n\nSo.\n\nThis is $frac(1$.\n")))
+    assert [*problems(study, made, {})] == ["paper/one.md:5: frac(1: no formula in Typst's notation"]
 
 
 def test_claims_that_do_not_fit_are_told_before_anything_is_made(tmp_path):
     with pytest.raises(RunnerError, match=r"claims.yaml: 0.number: Field required"):
-        load_work(str(a_work(tmp_path / "paper", claims__yaml="- {statement: S}\n")))
+        load_study(str(a_study(tmp_path / "paper", claims__yaml="- {statement: S}\n")))
 
 
 def test_what_a_profile_does_without_is_left_out_of_tables_and_of_the_chapters_that_name_it(tmp_path):
     text = '# One\n\n{{ table("Errors.", "goal/{preset}/{duration}", column("error", "max_tracking_error")) }}\n'
     about = ABOUT.replace("[one.md]", "[one.md, two.md]")
     about += "profiles: {quick: {levels: {goal: {duration: [0.05], preset: [slow]}}}}\n"
-    folder = a_work(tmp_path / "paper", work__yaml=about, one__md=text, two__md=CHAPTER.replace("# One", "# Two"))
+    folder = a_study(tmp_path / "paper", study__yaml=about, one__md=text, two__md=CHAPTER.replace("# One", "# Two"))
     outputs = f"--output={tmp_path / 'outputs'}"
     assert dispatch(["reproduce", str(folder), outputs, "--profile", "quick", "hydra.sweeper.workers=0"]) == 0
     page = (tmp_path / "outputs" / "reports" / "paper" / "report.html").read_text()
@@ -299,12 +305,12 @@ def build(config, robot):
 """
 
 
-def test_a_law_of_the_works_own_runs_with_code_and_its_command_names_it(tmp_path, monkeypatch, capsys):
+def test_a_controller_of_the_study_runs_with_code_and_its_command_names_it(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("RUNNER_PLUGINS", "")
     monkeypatch.chdir(tmp_path)
-    folder = a_work(
+    folder = a_study(
         tmp_path / "paper",
-        work__yaml=ABOUT + "plugins: [controller=resting.py]\n",
+        study__yaml=ABOUT + "plugins: [controller=resting.py]\n",
         runs__yaml="grids: {rest: {with: [robot=macro, controller=resting, duration=0.02]}}\n",
         one__md='# One\n\n{{ table("Rest.", "rest", column("moved", "peak_torque")) }}\n',
         resting__py=LAW,

@@ -2,10 +2,10 @@
 
 import pytest
 
+from runner.study.check import typed_numbers
 from runner.study.measured import Measured
 from runner.study.prose import ProseError, read_chapter
-from runner.study.prose.trying import never_failing
-from runner.study.prose.typed import typed_numbers
+from runner.study.prose.condition_tests import never_failing
 
 NAMES = {
     "number": lambda value: Measured("number", value, "m"),

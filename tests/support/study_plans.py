@@ -1,4 +1,4 @@
-"""Which runs the tests of the works' reports make: those of the plans, with what takes long cut to a moment."""
+"""Which runs the tests of the studies' reports make: those of the plans, with what takes long cut to a moment."""
 
 import re
 from collections.abc import Mapping
@@ -7,13 +7,13 @@ from support.thin_plans import Overrides, stand_ins
 
 from runner.studies.precision.measure import PLANT
 from runner.study.job import Job
-from runner.study.work import load_work
+from runner.study.study import load_study
 
 FULL_ALONE = ("late_and_limited.md",)  # chapters of the benchmark's full profile alone
 MOMENT = 0.08  # s
-WORKS = ("thesis", "xarm7", "meca500", "engines", "benchmark", "precision")
-RECORDED = tuple(work for work in WORKS if work != "meca500")
-"""Works of which a thin plan is recorded; that of the other is made by each session of tests."""
+STUDIES = ("thesis", "xarm7", "meca500", "engines", "benchmark", "precision")
+RECORDED = tuple(study for study in STUDIES if study != "meca500")
+"""Studies of which a thin plan is recorded; that of the other is made by each session of tests."""
 _ENGINES_ARM, _ENGINES_STEP = re.compile(r"^((?:open|reference|closed|least)/)(\w+)"), re.compile(r"^(wall/.*/)[^/]+$")
 _ENGINES_ARMS = {"combined": "mini", "macro_mini_mini": "mini", "xarm7_mini": "mini", "xarm7": "macro",
                  "meca500": "macro", "scara": "planar", "seven": "planar"}  # fmt: skip
@@ -29,7 +29,7 @@ def cut(overrides: Overrides, duration: float) -> Overrides:
 
 def thesis_jobs() -> dict[str, Overrides]:
     """Return all runs of the thesis, with two repetitions in place of forty; the twins of another plant have one."""
-    return {name: _repeated(job.overrides) for name, job in load_work("thesis").jobs().items()}
+    return {name: _repeated(job.overrides) for name, job in load_study("thesis").jobs().items()}
 
 
 def _repeated(overrides: Overrides) -> Overrides:
@@ -52,7 +52,7 @@ def thesis_moments() -> dict[str, Overrides]:
 
 def xarm7_studies() -> dict[str, Job]:
     """Return the runs of the studies on the xArm7, of which none is an experiment of the report's."""
-    jobs = load_work("xarm7").jobs()
+    jobs = load_study("xarm7").jobs()
     return {name: job for name, job in jobs.items() if not job.overrides[0].startswith("experiment=")}
 
 
@@ -63,7 +63,7 @@ def xarm7_moments() -> dict[str, Overrides]:
 
 def meca500_jobs() -> dict[str, Overrides]:
     """Return all runs of the Meca500 report; those of contact, guiding and steps as short as shows what they do."""
-    jobs = {name: job.overrides for name, job in load_work("meca500").jobs().items()}
+    jobs = {name: job.overrides for name, job in load_study("meca500").jobs().items()}
     lengths = {name: _MECA500.get(name.partition("/")[0]) for name in jobs}
     return {name: o if lengths[name] is None else cut(o, lengths[name]) for name, o in jobs.items()}
 
@@ -72,7 +72,7 @@ def meca500_calibrations() -> dict[str, Overrides]:
     """Return all calibrations of the Meca500 report, with few repetitions."""
     return {
         name: (*(override for override in overrides if override != "repetitions=1"), "repetitions=4")
-        for name, overrides in load_work("meca500").calibrations().items()
+        for name, overrides in load_study("meca500").calibrations().items()
     }
 
 
@@ -95,7 +95,7 @@ def benchmark_kinds() -> dict[str, Overrides]:
     """Return a moment's run of each plan, arm and condition of the benchmark, with one repetition."""
     kinds: dict[str, Overrides] = {}
     for profile in ("", "full"):
-        for name, job in load_work("benchmark", profile=profile).jobs().items():
+        for name, job in load_study("benchmark", profile=profile).jobs().items():
             kept = tuple(o for o in job.overrides if not o.startswith("repetitions="))
             kinds.setdefault(benchmark_kind(name), (*cut(kept, 0.01), "repetitions=1"))
     return kinds
@@ -104,22 +104,22 @@ def benchmark_kinds() -> dict[str, Overrides]:
 def precision_kinds() -> dict[str, Overrides]:
     """Return a moment's run of each case and arm of the report on what precision costs, by these."""
     kinds: dict[str, Overrides] = {}
-    for name, job in load_work("precision").jobs().items():
+    for name, job in load_study("precision").jobs().items():
         case, arm, plant, _ = name.split("/")
         if plant == PLANT:
             kinds.setdefault(f"{case}/{arm}", cut(job.overrides, 0.016 if case == "free" else 0.02))
     return kinds
 
 
-def planned(work: str) -> dict[str, Overrides]:
-    """Return the runs of a work's plan, by name."""
-    return {name: job.overrides for name, job in load_work(work).jobs().items()}
+def planned(study: str) -> dict[str, Overrides]:
+    """Return the runs of a study's plan, by name."""
+    return {name: job.overrides for name, job in load_study(study).jobs().items()}
 
 
-def stood_in(work: str) -> tuple[dict[str, Overrides], dict[str, str]]:
-    """Return the runs of a work's thin plan by name, and the name of the run that stands for each."""
-    jobs = planned(work)
-    match work:
+def stood_in(study: str) -> tuple[dict[str, Overrides], dict[str, str]]:
+    """Return the runs of a study's thin plan by name, and the name of the run that stands for each."""
+    jobs = planned(study)
+    match study:
         case "thesis":
             return thesis_moments(), stand_ins(thesis_moments())
         case "xarm7":
@@ -131,19 +131,19 @@ def stood_in(work: str) -> tuple[dict[str, Overrides], dict[str, str]]:
         case "meca500":
             jobs = meca500_jobs()
             return jobs, stand_ins(jobs, every=("step/", "plants/", "rest/0"))
-    raise ValueError(work)
+    raise ValueError(study)
 
 
-def recorded_jobs(work: str) -> dict[str, Overrides]:
-    """Return the runs of a work that are recorded, by name."""
-    if work == "benchmark":
+def recorded_jobs(study: str) -> dict[str, Overrides]:
+    """Return the runs of a study that are recorded, by name."""
+    if study == "benchmark":
         return benchmark_kinds()
-    if work == "precision":
+    if study == "precision":
         return precision_kinds()
-    jobs, stands_for = stood_in(work)
+    jobs, stands_for = stood_in(study)
     return {name: jobs[name] for name in dict.fromkeys(stands_for.values())}
 
 
-def chapter_files(work: str) -> list[str]:
-    """Return the files of a work's chapters."""
-    return list(load_work(work).about.files())
+def chapter_files(study: str) -> list[str]:
+    """Return the files of a study's chapters."""
+    return list(load_study(study).manifest.files())

@@ -1,4 +1,4 @@
-"""A control law of the user's in a work: its runs and their commands, and what is refused."""
+"""A control law of the user's in a study: its runs and their commands, and what is refused."""
 
 import shutil
 import sys
@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.study.given import given_parts
 from runner.study.grids import Grids
-from runner.study.work import load_work
+from runner.study.plugins import read_user_plugins
+from runner.study.study import load_study
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
 LAW = "gravity_pd"
@@ -22,7 +22,7 @@ grids:
   alone: {with: [robot=macro, duration=0.02]}
 """
 FILES = {
-    "work.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n",
+    "study.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n",
     "runs.yaml": GRIDS,
     "one.md": '# One\n\n{{ table("Laws.", "laws/{law}/{seed}", level("law"), column("torque", "peak_torque")) }}\n',
 }
@@ -30,7 +30,7 @@ FILES = {
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    """A folder with a law of one's own and its config, and a work that takes such, with no part named yet."""
+    """A folder with a law of one's own and its config, and a study that takes such, with no part named yet."""
     monkeypatch.setenv("RUNNER_PLUGINS", "")
     monkeypatch.setattr(sys, "path", [*sys.path])
     (tmp_path / "mine" / "controller").mkdir(parents=True)
@@ -45,7 +45,7 @@ def mine(tmp_path, monkeypatch):
 
 @pytest.fixture
 def part(mine):
-    return given_parts([f"controller={mine / LAW}.py"])
+    return read_user_plugins([f"controller={mine / LAW}.py"])
 
 
 def grids(tmp_path, text, parts):
@@ -55,7 +55,7 @@ def grids(tmp_path, text, parts):
 
 
 def test_a_given_part_is_one_more_level_of_the_axis_that_takes_it(mine, part):
-    runs = load_work(str(mine.parent / "paper"), parts=part).jobs()
+    runs = load_study(str(mine.parent / "paper"), parts=part).jobs()
     assert list(runs) == [
         "laws/joint PD/0", "laws/joint PD/1", "laws/gravity_pd/0", "laws/gravity_pd/1", "alone"
     ]  # fmt: skip
@@ -85,10 +85,10 @@ def test_what_is_wrong_with_an_axis_that_takes_parts_is_told(tmp_path, part, tex
 
 def test_the_command_of_a_run_names_the_part_that_it_uses(mine, part, monkeypatch):
     monkeypatch.chdir(mine.parent)
-    work = load_work("./paper", parts=part)
+    study = load_study("./paper", parts=part)
     own, *both = ("--config-dir", "paper"), "--config-dir", "mine", "--plugin", "controller=mine/gravity_pd.py"
-    assert work.options(("robot=macro", "controller=gravity_pd")) == (*own, *both)
-    assert work.options(("robot=macro", "controller=joint_pd")) == own
+    assert study.options(("robot=macro", "controller=gravity_pd")) == (*own, *both)
+    assert study.options(("robot=macro", "controller=joint_pd")) == own
 
 
 @pytest.mark.costs(2)
@@ -104,13 +104,13 @@ def test_the_law_stands_in_the_report_and_a_second_time_nothing_is_simulated(cli
     assert {path: path.stat().st_mtime_ns for path in records} == records
 
 
-def test_a_work_that_takes_none_refuses_it(cli, mine):
+def test_a_study_that_takes_none_refuses_it(cli, mine):
     (mine.parent / "paper" / "runs.yaml").write_text("grids: {alone: {with: [robot=macro, duration=0.02]}}\n")
     ending = cli("reproduce", "paper", "--plugin", f"controller=mine/{LAW}.py")
     assert ending.code == 2
     assert "paper: --plugin controller=gravity_pd: none of its runs takes a controller of yours" in ending.err
     ending = cli("reproduce", "all", "--plugin", f"controller=mine/{LAW}.py")
-    assert (ending.code, "reproduce all: --plugin gives a part to one work; name it" in ending.err) == (2, True)
+    assert (ending.code, "reproduce all: --plugin gives a part to one study; name it" in ending.err) == (2, True)
     assert not (mine.parent / "outputs").exists()
 
 

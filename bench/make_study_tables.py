@@ -1,8 +1,8 @@
-"""Writes the tables of docs/works.md of results from what was reproduced: `python -m bench.make_works_tables FILE`.
+"""Writes the tables of docs/studies.md of results from what was reproduced: `python -m bench.make_study_tables FILE`.
 
-FILE is what `runner reproduce all --json FILE` wrote, or the same of some works. Each table stands below a comment that
-names the work and its claims. Their verdicts are kept in bench/works.json, against which a test holds the page, because
-only whole runs have them. `--check` changes nothing, and ends with 1 where the page says something else than FILE.
+`runner reproduce all --json FILE` writes FILE, for all studies or for some. Each table is below a comment that names
+the study and its claims. Their verdicts are stored in bench/studies.json, and a test compares the page with that file,
+because only whole runs have them. `--check` writes nothing, and exits with 1 if the page differs from FILE.
 """
 
 import argparse
@@ -12,43 +12,43 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "works.md"
-STORED = Path(__file__).with_name("works.json")
+PAGE = Path(__file__).resolve().parents[1] / "docs" / "studies.md"
+STORED = Path(__file__).with_name("studies.json")
 _TABLE = re.compile(r"(<!-- claims of (\w+): ([\d, ]+) -->\n)((?:\|.*\n)+)")
 
 Verdicts = Mapping[str, Sequence[Mapping[str, Any]]]
-"""The verdicts of each work by its name."""
+"""The verdicts of each study by its name."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write the tables and what they are made of, or check them; return the exit code."""
-    parser = argparse.ArgumentParser(prog="python -m bench.make_works_tables", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m bench.make_study_tables", description=__doc__)
     parser.add_argument("file", type=Path, help="what `runner reproduce all --json FILE` wrote")
     parser.add_argument("--check", action="store_true", help="change nothing; exit 1 where it differs")
     options = parser.parse_args(arguments)
     text, stored = PAGE.read_text(encoding="utf-8"), json.loads(STORED.read_text(encoding="utf-8"))
     reproduced = json.loads(options.file.read_text(encoding="utf-8"))
-    known = stored | {name: work["verdicts"] for name, work in reproduced.items()}
+    known = stored | {name: study["verdicts"] for name, study in reproduced.items()}
     kept = {name: known[name] for _, name, *_ in _TABLE.findall(text)}
     made = made_from(text, kept)
     if options.check:
         same = made == text and kept == stored
-        print(f"docs/works.md: {'as reproduced' if same else 'its tables are not what was reproduced'}")
+        print(f"docs/studies.md: {'as reproduced' if same else 'its tables are not what was reproduced'}")
         return int(not same)
     STORED.write_text(json.dumps(kept, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     PAGE.write_text(made, encoding="utf-8")
     return 0
 
 
-def made_from(page: str, works: Verdicts) -> str:
-    """Return a page with its tables made from the verdicts of works.
+def made_from(page: str, studies: Verdicts) -> str:
+    """Return a page with its tables made from the verdicts of studies.
 
     Raises:
-        KeyError: if a work or claim is not there.
+        KeyError: if a study or claim is not there.
     """
 
     def table(found: re.Match[str]) -> str:
-        by_number = {verdict["claim"]: verdict for verdict in works[found[2]]}
+        by_number = {verdict["claim"]: verdict for verdict in studies[found[2]]}
         return found[1] + "".join(_lines([by_number[number] for number in found[3].split(", ")]))
 
     return _TABLE.sub(table, page)

@@ -10,8 +10,8 @@ from runner.base.errors import RunnerError
 
 
 @dataclass(frozen=True)
-class GivenPart:
-    """A part of the user's that stands beside those of a work.
+class UserPlugin:
+    """A part of the user's that stands beside those of a study.
 
     Attributes:
         group: Its config group, such as "controller".
@@ -37,7 +37,7 @@ class GivenPart:
         return "--config-dir", os.path.relpath(self.folder), "--plugin", f"{self.group}={module}"
 
 
-def given_parts(lines: Sequence[str]) -> tuple[GivenPart, ...]:
+def read_user_plugins(lines: Sequence[str]) -> tuple[UserPlugin, ...]:
     """Return parts from what names them, GROUP=MODULE each, files by their whole paths.
 
     Raises:
@@ -51,9 +51,9 @@ def given_parts(lines: Sequence[str]) -> tuple[GivenPart, ...]:
     return tuple(parts)
 
 
-def _part(group: str, module: str) -> GivenPart:
+def _part(group: str, module: str) -> UserPlugin:
     if module.endswith(".py"):
-        return GivenPart(group, Path(module).stem, module, Path(module).parent)
+        return UserPlugin(group, Path(module).stem, module, Path(module).parent)
     spec = find_spec(module)
     folder = Path(spec.origin).parent if spec is not None and spec.origin else Path()
-    return GivenPart(group, module.rpartition(".")[2], module, folder)
+    return UserPlugin(group, module.rpartition(".")[2], module, folder)

@@ -1,4 +1,4 @@
-"""Experiments of a work's folder are found under the folder's name."""
+"""Experiments of a study's folder are found under the folder's name."""
 
 import pytest
 
@@ -18,8 +18,8 @@ def paper(tmp_path):
     return folder
 
 
-def test_an_experiment_of_a_work_is_found_under_the_works_name(paper):
-    (paper / "work.yaml").touch()
+def test_an_experiment_of_a_study_is_found_under_the_study_name(paper):
+    (paper / "study.yaml").touch()
     assert group_options("experiment", [paper])["paper/one"] == "One."
     assert compose(["experiment=paper/one"], [paper]).choices["experiment"] == "paper/one"
     assert Loader([paper]).load(["experiment=paper/one"]).robot.name == "macro"

@@ -1,4 +1,4 @@
-"""The tables of docs/works.md are those of the verdicts that are stored, and these are of the works' claims."""
+"""The tables of docs/studies.md are those of the verdicts that are stored, and these are of the studies' claims."""
 
 import json
 import re
@@ -6,8 +6,8 @@ from typing import get_args
 
 import pytest
 
-from bench import make_works_tables
-from bench.make_works_tables import PAGE, STORED, made_from
+from bench import make_study_tables
+from bench.make_study_tables import PAGE, STORED, made_from
 from runner.reporting.claim import EquationVerdict
 from runner.reporting.claims import Verdict, load_claims, load_statements
 
@@ -28,7 +28,7 @@ def verdict(number, printed="9 mm", hangs=(), **ours):
     return {"claim": number, "statement": f"Statement {number}", "printed": printed, "ours": found}
 
 
-WORKS = {
+STUDIES = {
     "thesis": [verdict("1", full="8 mm"), verdict("2", hangs=("the seed",), full="7 | mm"), verdict("3", full="6 mm")],
     "meca500": [verdict("1", "", **{"": "within 1 %"})],
 }
@@ -54,16 +54,16 @@ def test_the_page_says_what_is_stored():
     assert re.findall(r"<!-- claims of (\w+): ", page) == list(KEPT) == ["thesis", "xarm7", "meca500"]
 
 
-@pytest.mark.parametrize("work", KEPT)
-def test_what_is_stored_is_of_the_claims_as_they_are(work):
-    stated = load_statements(work) if work == "meca500" else load_claims(work)
-    assert [each["statement"] for each in KEPT[work]] == [each.statement for each in stated]
-    words = {ours["verdict"] for each in KEPT[work] for ours in each["ours"]}
+@pytest.mark.parametrize("study", KEPT)
+def test_what_is_stored_is_of_the_claims_as_they_are(study):
+    stated = load_statements(study) if study == "meca500" else load_claims(study)
+    assert [each["statement"] for each in KEPT[study]] == [each.statement for each in stated]
+    words = {ours["verdict"] for each in KEPT[study] for ours in each["ours"]}
     assert words <= {*get_args(Verdict), *get_args(EquationVerdict)}
 
 
 def test_rows_are_made_in_the_order_that_the_page_names():
-    assert made_from(STALE, WORKS).splitlines()[2:12] == [
+    assert made_from(STALE, STUDIES).splitlines()[2:12] == [
         "<!-- claims of thesis: 3, 2 -->",
         "| claim | printed | full |",
         "|---|---|---|",
@@ -79,19 +79,19 @@ def test_rows_are_made_in_the_order_that_the_page_names():
 
 def test_a_claim_that_no_report_has_is_an_error():
     with pytest.raises(KeyError):
-        made_from(STALE.replace("3, 2", "4"), WORKS)
+        made_from(STALE.replace("3, 2", "4"), STUDIES)
 
 
 def test_check_tells_a_stale_page(monkeypatch, tmp_path, capsys):
-    page, file, stored = tmp_path / "works.md", tmp_path / "works.json", tmp_path / "stored.json"
+    page, file, stored = tmp_path / "studies.md", tmp_path / "studies.json", tmp_path / "stored.json"
     page.write_text(STALE)
-    file.write_text(json.dumps({work: {"verdicts": verdicts} for work, verdicts in WORKS.items()}))
+    file.write_text(json.dumps({study: {"verdicts": verdicts} for study, verdicts in STUDIES.items()}))
     stored.write_text("{}")
-    monkeypatch.setattr(make_works_tables, "PAGE", page)
-    monkeypatch.setattr(make_works_tables, "STORED", stored)
-    assert make_works_tables.main([str(file), "--check"]) == 1
+    monkeypatch.setattr(make_study_tables, "PAGE", page)
+    monkeypatch.setattr(make_study_tables, "STORED", stored)
+    assert make_study_tables.main([str(file), "--check"]) == 1
     assert page.read_text() == STALE
-    assert make_works_tables.main([str(file)]) == 0
-    assert make_works_tables.main([str(file), "--check"]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == "docs/works.md: as reproduced"
-    assert json.loads(stored.read_text()) == WORKS
+    assert make_study_tables.main([str(file)]) == 0
+    assert make_study_tables.main([str(file), "--check"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1] == "docs/studies.md: as reproduced"
+    assert json.loads(stored.read_text()) == STUDIES

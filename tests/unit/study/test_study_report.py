@@ -1,13 +1,13 @@
-"""A work whose report lacks some of its runs: what needs them says so, all else stands."""
+"""A study whose report lacks some of its runs: what needs them says so, all else stands."""
 
 import pytest
 
 from runner.base.errors import RunnerError
 from runner.reporting.document import Section, Text
-from runner.study.job import Made, MissingError
-from runner.study.work_report import parts
+from runner.study.job import MissingError, Results
+from runner.study.report import parts
 
-RUNS = Made({"a": 1, "b": 2}, {"c": "cut short: killed for $5"})
+RUNS = Results({"a": 1, "b": 2}, {"c": "cut short: killed for $5"})
 
 
 def section(name):

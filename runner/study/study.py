@@ -11,18 +11,16 @@ from runner.base.paths import check_inside
 from runner.plugins.discovery import use_plugins
 from runner.reporting.claims import CLAIMS, load_claims
 from runner.store import Calibration, Run
-from runner.study.about import read_about
-from runner.study.caveats import read_expected
 from runner.study.code import Code
-from runner.study.expected_caveats import ExpectedCaveat
+from runner.study.expected_caveats import ExpectedCaveat, read_expected
 from runner.study.gains import Gains, named, put_in, read_gains
-from runner.study.given import GivenPart
 from runner.study.grid import Overrides
 from runner.study.grids import FILE as RUNS
 from runner.study.grids import Grids
 from runner.study.job import Job, Jobs, distinct
-from runner.study.names import Place, find_work
-from runner.study.profiles import Profile
+from runner.study.manifest import Profile, read_manifest
+from runner.study.names import Location, find_study
+from runner.study.plugins import UserPlugin
 from runner.study.tunings import Tuning
 
 if TYPE_CHECKING:  # drawing comes with these
@@ -35,21 +33,21 @@ _PLAN = "plan"  # module whose computed_runs() and calibrations(given) add to ru
 _MEASURE = "measure"  # module and function that measures what no run does
 
 
-class Work:
-    """A published work, read from its folder; docs/paper.md tells what stands in it.
+class Study:
+    """A study, read from its folder; docs/paper.md describes the format.
 
     Args:
-        place: Where it is.
+        location: Location of its folder.
         allow_code: Whether Python of a folder that is no installed package may run.
-        profile: Name of the profile by which it is made; empty for the one that work.yaml names, or the whole work.
+        profile: Name of the profile by which it is made; empty for the one that study.yaml names, or the whole study.
         parts: Parts of the user's that stand beside its own.
 
     Attributes:
         name: What it is called.
         folder: Its folder.
-        about: What work.yaml says.
+        manifest: Content of study.yaml.
         installed: Whether it is an installed package.
-        profile: The profile by which it is made; empty for the whole work.
+        profile: The profile by which it is made; empty for the whole study.
         expected: The caveats that its runs are to have.
         tuned: The gains that were tuned and not read from its folder.
 
@@ -58,29 +56,29 @@ class Work:
     """
 
     def __init__(
-        self, place: Place, allow_code: bool = False, profile: str = "", parts: Sequence[GivenPart] = ()
+        self, location: Location, allow_code: bool = False, profile: str = "", parts: Sequence[UserPlugin] = ()
     ) -> None:
-        self.name, self.folder = place.name, place.folder
-        for path in () if place.package else place.folder.rglob("*"):
+        self.name, self.folder = location.name, location.folder
+        for path in () if location.package else location.folder.rglob("*"):
             if path.is_symlink():
-                check_inside(path, [place.folder])
-        self.about = read_about(place.folder)
-        self.installed = place.package is not None
-        self._ours = place.ours
-        self.profile = profile or self.about.default_profile
+                check_inside(path, [location.folder])
+        self.manifest = read_manifest(location.folder)
+        self.installed = location.package is not None
+        self._ours = location.ours
+        self.profile = profile or self.manifest.default_profile
         self._profile = self._chosen(self.profile)
-        self._code = Code(place.folder, place.package, allow_code)
+        self._code = Code(location.folder, location.package, allow_code)
         self._given = tuple(parts)
-        self._gains: Gains = {} if self._profile and self._profile.tuned_anew else read_gains(place.folder)
+        self._gains: Gains = {} if self._profile and self._profile.tuned_anew else read_gains(location.folder)
         self.tuned: Gains = {}
-        self._grids = Grids(place.folder / RUNS, self._profile, parts)
+        self._grids = Grids(location.folder / RUNS, self._profile, parts)
         self._check_given()
-        self.expected: tuple[ExpectedCaveat, ...] = read_expected(place.folder)
-        if (place.folder / CLAIMS).is_file():
-            load_claims(place.folder)  # told before anything is simulated
+        self.expected: tuple[ExpectedCaveat, ...] = read_expected(location.folder)
+        if (location.folder / CLAIMS).is_file():
+            load_claims(location.folder)  # told before anything is simulated
         self._plugins = self._parts()
         if self._plugins and not self._code.runs:
-            named = ", ".join(self.about.plugins)
+            named = ", ".join(self.manifest.plugins)
             raise RunnerError(f"{self.name}: its runs need {named}: code in a folder runs with --code alone")
         if self._plugins:
             use_plugins(self._plugins)
@@ -134,7 +132,7 @@ class Work:
         self._gains = {**self._gains, **gains}
 
     def dropped(self) -> dict[str, str]:
-        """Return the runs and calibrations of the whole work that its profile does without, each with why."""
+        """Return the runs and calibrations of the whole study that its profile does without, each with why."""
         if not self.profile:
             return {}
         whole, kept = Grids(self.folder / RUNS), {**self._grids.runs, **self._grids.calibrations}
@@ -154,10 +152,10 @@ class Work:
         from runner.study.chapters import Chapters
 
         command = self.name if self.installed else os.path.relpath(self.folder)
-        return Chapters(self.folder, self.about, self._code, self._grids, command, runs, calibrations)
+        return Chapters(self.folder, self.manifest, self._code, self._grids, command, runs, calibrations)
 
     def measure(self, outputs: Path) -> None:
-        """Measure what no run does, such as computing times, into an outputs folder, where the work does so."""
+        """Measure what no run does, such as computing times, into an outputs folder, where the study does so."""
         function = self._code.functions(_MEASURE).get(_MEASURE)
         if function is not None:
             function(outputs)
@@ -173,12 +171,12 @@ class Work:
             chapters: What makes its chapters from these, if some have been read.
         """
         from runner.study.checklist import load_checklist
-        from runner.study.work_report import work_document
+        from runner.study.report import study_document
 
-        made = work_document(
-            title=self.about.title,
-            subtitle=self.about.source,
-            abstract=self.about.abstract,
+        made = study_document(
+            title=self.manifest.title,
+            subtitle=self.manifest.source,
+            abstract=self.manifest.abstract,
             chapters=(chapters or self.chapters(runs, calibrations)).sections(),
             runs=runs,
             calibrations=calibrations,
@@ -186,18 +184,18 @@ class Work:
             checklist=load_checklist(self.folder),
             code=self._code.about(),
             cover=self._cover(runs),
-            bibtex=self.about.bibtex,
+            bibtex=self.manifest.bibtex,
         )
         return replace(made, sections=[*self._by_profile(runs), *made.sections])
 
     def _by_profile(self, runs: Mapping[str, Run]) -> "Iterator[Section]":
-        """Yield what the profile makes otherwise than the whole work; nothing where that is nothing."""
+        """Yield what the profile makes otherwise than the whole study; nothing where that is nothing."""
         from runner.reporting.document import Section, Text
 
         dropped, repetitions = self.dropped(), self._profile.repetitions if self._profile else None
         if not (dropped or repetitions):
             return
-        less = " and leaves out some of the whole work" if dropped else ""
+        less = " and leaves out some of the whole study" if dropped else ""
         each = f" Every run has {repetitions} repetitions." if repetitions else ""
         text = f"The profile {self.profile} takes {len(distinct(runs)):,} runs{less}.{each}"
         yield Section("Made with a profile", (Text(text),))
@@ -206,14 +204,14 @@ class Work:
         """Return the picture of the first screen; None where there is none, or its run was not made."""
         from runner.reporting.cover import cover
 
-        wanted = self.about.cover
+        wanted = self.manifest.cover
         if wanted is None or wanted.run not in runs or runs[wanted.run].status == "failed":
             return None
         return cover(runs[wanted.run], wanted.caption, wanted.end)
 
     def _parts(self) -> list[str]:
         """Return its plug-ins, GROUP=FILE each, files by their whole paths."""
-        named = [text.partition("=") for text in self.about.plugins]
+        named = [text.partition("=") for text in self.manifest.plugins]
         for _, _, file in named:
             check_inside(self.folder / file, [self.folder])
         return [f"{group}={self.folder / file}" for group, _, file in named]
@@ -230,23 +228,23 @@ class Work:
         return self._code.functions(_PLAN).get(name, otherwise)(*given)
 
     def _chosen(self, profile: str) -> Profile | None:
-        profiles = self.about.profiles
+        profiles = self.manifest.profiles
         if profile and profile not in profiles:
             there = f"; profiles: {', '.join(profiles)}" if profiles else "; it has none"
             raise RunnerError(f"{self.name}: no profile '{profile}'{nearest(profile, profiles)}{there}")
         return profiles[profile] if profile else None
 
 
-def load_work(
+def load_study(
     name: str,
     allow_code: bool = False,
     profile: str = "",
     others: Sequence[str] = (),
-    parts: Sequence[GivenPart] = (),
-) -> Work:
-    """Return a work by its name, or by its folder; see Work and find_work.
+    parts: Sequence[UserPlugin] = (),
+) -> Study:
+    """Return a study by its name, or by its folder; see Study and find_study.
 
     Raises:
         RunnerError: if there is none, or its data do not fit.
     """
-    return Work(find_work(name, others), allow_code, profile, parts)
+    return Study(find_study(name, others), allow_code, profile, parts)

@@ -1,4 +1,4 @@
-"""`runner work diff`: what moved between two makings."""
+"""`runner study diff`: what moved between two versions."""
 
 import copy
 import json
@@ -16,8 +16,8 @@ OLD = {
 
 
 @pytest.fixture
-def makings(tmp_path):
-    """Two files: the later making has another finding, and a number that moved in each of 30 metrics."""
+def versions(tmp_path):
+    """Two files: the later version has another finding, and a number that moved in each of 30 metrics."""
     new = copy.deepcopy(OLD)
     new["thesis"]["findings"][0] |= {"title": "It follows \x1b[31mwell"}
     for n, metric in enumerate(new["thesis"]["numbers"]["goal"]["metrics"].values()):
@@ -27,8 +27,8 @@ def makings(tmp_path):
     return tmp_path / "old.json", tmp_path / "new.json"
 
 
-def test_what_moved_is_printed_and_counted(cli, makings):
-    ending = cli("work", "diff", *makings)
+def test_what_moved_is_printed_and_counted(cli, versions):
+    ending = cli("study", "diff", *versions)
     assert (ending.code, ending.err) == (0, "")
     lines = ending.out.splitlines()
     assert lines[:2] == [
@@ -40,22 +40,22 @@ def test_what_moved_is_printed_and_counted(cli, makings):
         "number: 9 more; --all prints them",
         "finding: 2 changed; words: 2 changed; number: 29 changed",
     ]
-    assert len(cli("work", "diff", *makings, "--all").out.splitlines()) == 2 + 2 + 29 + 1
+    assert len(cli("study", "diff", *versions, "--all").out.splitlines()) == 2 + 2 + 29 + 1
 
 
-def test_equal_makings_differ_in_nothing(cli, makings):
-    assert cli("work", "diff", makings[0], makings[0]).out == "nothing changed\n"
+def test_equal_versions_differ_in_nothing(cli, versions):
+    assert cli("study", "diff", versions[0], versions[0]).out == "nothing changed\n"
 
 
-def test_programs_get_all_of_it(cli, makings, tmp_path):
-    assert cli("work", "diff", *makings, "--json", tmp_path / "changes.json").code == 0
+def test_programs_get_all_of_it(cli, versions, tmp_path):
+    assert cli("study", "diff", *versions, "--json", tmp_path / "changes.json").code == 0
     written = json.loads((tmp_path / "changes.json").read_text())
     assert len(written) == 2 + 2 + 29
     assert written[0] == {"kind": "finding", "name": "thesis: It follows", "old": "holds", "new": None}
 
 
-def test_bad_input_is_told(cli, makings):
-    ending = cli("work", "diff", makings[0], "nowhere.json")
+def test_bad_input_is_told(cli, versions):
+    ending = cli("study", "diff", versions[0], "nowhere.json")
     assert ending.code == 2
     assert ending.err.startswith("runner: cannot read nowhere.json: ")
-    assert cli("work", "change", *makings).code == 2
+    assert cli("study", "change", *versions).code == 2

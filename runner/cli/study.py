@@ -1,4 +1,4 @@
-"""`runner work new DIR`, `check DIR`, `diff OLD NEW`: write, check and compare studies.
+"""`runner study new DIR`, `check DIR`, `diff OLD NEW`: write, check and compare studies.
 
 new writes a template of a study into a folder: it runs at once, and you change it. check simulates the missing runs
 and checks the study: every expression, every condition tested both ways, literal numbers in findings, unexpected
@@ -26,16 +26,16 @@ _TOLD = 20  # changes of a kind that are printed without --all
 
 def main(arguments: Sequence[str]) -> int:
     """Do one of them."""
-    parser = Parser("work", __doc__)
+    parser = Parser("study", __doc__)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=ActionParser)
-    new = actions.add_parser("new", help="write a first work into a folder")
+    new = actions.add_parser("new", help="write a first study into a folder")
     new.add_argument("folder", type=Path, metavar="DIR", help="a folder that is not there yet, or empty")
-    check = actions.add_parser("check", help="look through a work")
-    check.add_argument("work", metavar="DIR", help="the work's folder, or the name of an installed one")
+    check = actions.add_parser("check", help="look through a study")
+    check.add_argument("study", metavar="DIR", help="the study's folder, or the name of an installed one")
     check.add_argument("-o", "--output", type=Path, default=outputs_dir(), metavar="DIR", help="where to write runs")
     check.add_argument("--code", action="store_true", help="run the Python of DIR")
-    diff = actions.add_parser("diff", help="what changed between two makings")
-    diff.add_argument("old", type=Path, metavar="OLD", help="file or folder of the earlier making")
+    diff = actions.add_parser("diff", help="what changed between two versions")
+    diff.add_argument("old", type=Path, metavar="OLD", help="file or folder of the earlier version")
     diff.add_argument("new", type=Path, metavar="NEW", help="file or folder of the later one")
     diff.add_argument("--all", action="store_true", help=f"print all changes, not {_TOLD} of a kind")
     diff.add_argument("--json", type=Path, metavar="FILE", help="write them to a file, too")
@@ -44,7 +44,7 @@ def main(arguments: Sequence[str]) -> int:
 
 
 def _new(options: Namespace) -> int:
-    from runner.study.new import write_new
+    from runner.study.names import write_new
 
     for path in write_new(options.folder):
         print(path)
@@ -53,18 +53,18 @@ def _new(options: Namespace) -> int:
 
 
 def _check(options: Namespace) -> int:
-    """Print what is wrong with a work, a line each; exit 1 where something is."""
-    from runner.study.names import find_work
+    """Print what is wrong with a study, a line each; exit 1 where something is."""
+    from runner.study.names import find_study
 
-    find_work(options.work)  # one that is not there is told at once
+    find_study(options.study)  # one that is not there is told at once
     quiet_environment()
     from runner.study.check import problems
-    from runner.study.making import make_all
-    from runner.study.work import load_work
+    from runner.study.execute import make_all
+    from runner.study.study import load_study
 
-    work = load_work(options.work, options.code)
-    runs, calibrations = make_all(work, options.output)
-    found = [*problems(work, runs, calibrations)]
+    study = load_study(options.study, options.code)
+    runs, calibrations = make_all(study, options.output)
+    found = [*problems(study, runs, calibrations)]
     for line in found:
         print(one_line(line))
     print("nothing is wrong" if not found else f"{len(found)} problem{'s' if len(found) > 1 else ''}")

@@ -12,10 +12,10 @@ from runner.simulation.provenance import portable_overrides
 from runner.store import Calibration, Run
 from runner.study.estimate import counted, estimate_all, planned, told
 from runner.study.items import Way, listed, make_items
-from runner.study.job import Made
+from runner.study.job import Results
+from runner.study.study import Study
 from runner.study.tune import find_gains
 from runner.study.tunings import Tuning
-from runner.study.work import Work
 from runner.sweeps.calibration_job import CALIBRATION
 from runner.sweeps.listed import Item
 from runner.sweeps.loading import Loader
@@ -23,14 +23,14 @@ from runner.sweeps.plan import check
 
 
 def make_all(
-    work: Work, outputs: Path, overrides: Sequence[str] = (), command: str = "runner reproduce"
-) -> tuple[Made[Run], Made[Calibration]]:
-    """Make the runs and calibrations of a work that are not stored yet; return all by name.
+    study: Study, outputs: Path, overrides: Sequence[str] = (), command: str = "runner reproduce"
+) -> tuple[Results[Run], Results[Calibration]]:
+    """Make the runs and calibrations of a study that are not stored yet; return all by name.
 
     Gains that its runs take and that are not known are tuned at first.
 
     Args:
-        work: The work.
+        study: The study.
         outputs: Folder in which they are stored.
         overrides: How they are made: keys of hydra.sweeper, sweep and limits.
         command: The command that makes them and goes on with it.
@@ -40,51 +40,51 @@ def make_all(
         StoreError: if the disk does not take them.
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
-    way = Way(outputs, overrides, command, work.config_dirs)
-    tunings = work.untuned()
+    way = Way(outputs, overrides, command, study.config_dirs)
+    tunings = study.untuned()
     if tunings:
-        _tell_estimate(work, tunings, way)
-    work.take(find_gains(tunings, way))
-    jobs, calibrations = work.jobs(), work.calibrations()
-    made = make_items(_items(work), way, trace="all" if work.about.traces else "never")
+        _tell_estimate(study, tunings, way)
+    study.take(find_gains(tunings, way))
+    jobs, calibrations = study.jobs(), study.calibrations()
+    made = make_items(_items(study), way, trace="all" if study.manifest.traces else "never")
     missing = {name: each.missing for name, each in made.items() if each.missing}
     finished = store.Finished(outputs)
     stored = {name: finished.open(made[name].place) for name in jobs if name not in missing}
-    runs = {name: run.made_by(_command(work, jobs[name].overrides, run)) for name, run in stored.items()}
+    runs = {name: run.made_by(_command(study, jobs[name].overrides, run)) for name, run in stored.items()}
     found = {
         name: store.open_calibration(outputs / "calibrations" / made[name].place)
         for name in calibrations
         if name not in missing
     }
     return (
-        Made(runs, {name: why for name, why in missing.items() if name in jobs}, work.dropped()),
-        Made(found, {name: why for name, why in missing.items() if name in calibrations}, work.dropped()),
+        Results(runs, {name: why for name, why in missing.items() if name in jobs}, study.dropped()),
+        Results(found, {name: why for name, why in missing.items() if name in calibrations}, study.dropped()),
     )
 
 
-def _tell_estimate(work: Work, tunings: Sequence[Tuning], way: Way) -> None:
+def _tell_estimate(study: Study, tunings: Sequence[Tuning], way: Way) -> None:
     """Print what tunings take with the runs of their laws, before they are started."""
     progress.begin("estimating", SOON)
-    counts = counted(work, tunings, {override for each in tunings for override in each.chosen})
+    counts = counted(study, tunings, {override for each in tunings for override in each.chosen})
     amounts = estimate_all(planned(counts, way), [*counts.values()])
     laws = list(dict.fromkeys(each.law for each in tunings))
     workers = Loader(way.config_dirs).sweeper([text for text in way.overrides if text.startswith("hydra.")]).workers
     print(f"runner: {told(laws, amounts, workers)}, less where they are stored", file=sys.stderr)
 
 
-def _command(work: Work, overrides: Sequence[str], run: Run) -> str:
-    return shlex.join(["runner", *work.options(overrides), *portable_overrides(overrides, run.config)])
+def _command(study: Study, overrides: Sequence[str], run: Run) -> str:
+    return shlex.join(["runner", *study.options(overrides), *portable_overrides(overrides, run.config)])
 
 
-def count_missing(work: Work, outputs: Path) -> int:
-    """Return how many runs and calibrations of a work are not stored."""
-    names = check(listed(_items(work), Way(outputs), Loader(work.config_dirs))).names
+def count_missing(study: Study, outputs: Path) -> int:
+    """Return how many runs and calibrations of a study are not stored."""
+    names = check(listed(_items(study), Way(outputs), Loader(study.config_dirs))).names
     in_shards = store.Finished(outputs).places_of(names) >= 0
     left = {name for name, there in zip(names, in_shards.tolist(), strict=True) if not there}
     kept = ("runs/{}/metrics.json", "calibrations/{}/result.json")
     return sum(not any((outputs / place.format(name)).exists() for place in kept) for name in left)
 
 
-def _items(work: Work) -> dict[str, Item]:
-    items = {name: Item(job.overrides) for name, job in work.jobs().items()}
-    return items | {name: Item(own, CALIBRATION) for name, own in work.calibrations().items()}
+def _items(study: Study) -> dict[str, Item]:
+    items = {name: Item(job.overrides) for name, job in study.jobs().items()}
+    return items | {name: Item(own, CALIBRATION) for name, own in study.calibrations().items()}

@@ -1,20 +1,20 @@
-"""Report on a study: chapters, provenance, caveats, checklist and citation."""
+"""Report on a study: chapters, provenance, caveats, checklist and citation in BibTeX."""
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
+from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text, Verdicts
 from runner.reporting.markup import literal, literals
 from runner.reporting.outline import number_sections
 from runner.reporting.run_report import provenance
 from runner.reporting.tally import find_conditional_claims
 from runner.store import Calibration, Run
 from runner.study.checklist import Checklist
-from runner.study.citing import citing_section
 from runner.study.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
-from runner.study.job import LeftOutError, Made, MissingError, distinct
+from runner.study.job import LeftOutError, MissingError, Results, distinct
 
 
-def work_document(
+def study_document(
     title: str,
     subtitle: str,
     abstract: str,
@@ -27,22 +27,22 @@ def work_document(
     cover: Cover | None = None,
     bibtex: str = "",
 ) -> Document:
-    """Return the report on a published work.
+    """Return the report on a study.
 
     Args:
-        title: The work's title.
+        title: The study's title.
         subtitle: Whose it is.
         abstract: What comes out; inline mathematics as in Text.
         chapters: The report's own chapters.
-        runs: The stored runs of the work's plan, by name.
-        calibrations: The stored calibrations of the work, by name.
-        expected: The caveats that the work expects of them.
-        checklist: What of the work is to stand where, for the last chapter; None where the work has no list.
-        code: What is to be said of the work's own code; nothing where it has none.
+        runs: The stored runs of the study's plan, by name.
+        calibrations: The stored calibrations of the study, by name.
+        expected: The caveats that the study expects of them.
+        checklist: What of the study is to stand where, for the last chapter; None where the study has no list.
+        code: What is to be said of the study's own code; nothing where it has none.
         cover: The picture of the first screen.
         bibtex: BibTeX entry of the source; empty where there is none.
     """
-    missing = [_missing(runs.missing)] if isinstance(runs, Made) and runs.missing else []
+    missing = [_missing(runs.missing)] if isinstance(runs, Results) and runs.missing else []
     sections = [*missing, *chapters, caveats_section(runs, expected), _where_from(runs, calibrations, code)]
     date = max((str(run.provenance["date"]) for run in runs.values()), default="")
     listed = [checklist.section(sections)] if checklist else []
@@ -72,7 +72,7 @@ def _where_from(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]
     blocks: list[Block] = [Text(text)]
     if runs:
         rows = provenance(list(runs.values())).rows
-        blocks.append(Provenance([*rows, *([("code of the work", code)] if code else [])]))
+        blocks.append(Provenance([*rows, *([("code of the study", code)] if code else [])]))
     return Section("Provenance", blocks)
 
 
@@ -99,3 +99,39 @@ def _missing(missing: Mapping[str, str]) -> Section:
     rows = [literals(item) for item in missing.items()]
     table = Table("Not made, and so missing in this report; the same command makes them.", ["name", "why"], rows)
     return Section("What is missing", (table,))
+
+
+_SPECIAL = re.compile(r"[&%$#_{}~^\\]")
+
+
+def citing_section(title: str, source: str, bibtex: str, runs: Mapping[str, Run]) -> Section:
+    """Return how the report is cited, and its source where that is known.
+
+    Args:
+        title: Title of the study.
+        source: Whose it is.
+        bibtex: Entry of the source; empty where there is none.
+        runs: The stored runs behind the report, by name.
+    """
+    newest = max(runs.values(), key=lambda run: str(run.provenance["date"]), default=None)
+    blocks: list[Block] = [Text("The source:"), Code(bibtex.strip())] if bibtex.strip() else []
+    return Section("Cite this", [*blocks, Text("This report:"), Code(_report(title, source, newest))])
+
+
+def _report(title: str, source: str, newest: Run | None) -> str:
+    provenance: Mapping[str, object] = {} if newest is None else newest.provenance
+    commit, date = str(provenance.get("commit") or ""), str(provenance.get("date") or "")
+    made = f"Made by arm-control-runner{f', commit {commit[:12]}' if commit else ''}{f', {date}' if date else ''}"
+    key = "-".join(re.findall(r"[a-z0-9]+", title.lower())[:4])
+    fields = {
+        "title": f"{{{_plain(title)}}}: {_plain(source)}",
+        "author": "{arm-control-runner}",
+        **({"year": date[:4]} if date else {}),
+        "note": _plain(made),
+    }
+    return "\n".join([f"@misc{{{key}-reproduced,", *(f"  {name} = {{{text}}}," for name, text in fields.items()), "}"])
+
+
+def _plain(text: str) -> str:
+    """Return a text in which no character has a meaning of its own in BibTeX."""
+    return _SPECIAL.sub(lambda found: f"\\{found[0]}" if found[0] in "&%$#_{}" else " ", text)
