@@ -5,18 +5,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner import store
+from runner.api.boundary import door
 from runner.api.comparison_frame import comparison_frame
-from runner.api.door import door
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.base.errors import RunnerError
-from runner.reporting.comparison.side import letter
+from runner.reporting.comparison.operand import letter
 from runner.store.latest import find_folder
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.reporting.comparison.side import Side
+    from runner.reporting.comparison.operand import Side
 
 Comparable = Run | Sweep | str | Path
 
@@ -74,7 +74,7 @@ def _opened(thing: Comparable) -> Run | Sweep:
 
 
 def _side(name: str, thing: Run | Sweep) -> "Side":
-    from runner.reporting.comparison.side import open_side, side_of_run, stored_part
+    from runner.reporting.comparison.operand import open_side, side_of_run, stored_part
     from runner.sweeps.finer_step import work_out, work_out_sweep
 
     if isinstance(thing, Run):

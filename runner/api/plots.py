@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from runner.api.again import Signals
+from runner.api.resimulate import Signals
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import label_with_unit
 from runner.reporting.charts.figure import Panel, Series

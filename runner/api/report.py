@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner.api import page
-from runner.api.door import door
+from runner.api.boundary import door
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning

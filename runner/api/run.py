@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from runner import store
 from runner.api import page
-from runner.api.door import door
+from runner.api.boundary import door
 from runner.api.metric import Metrics
 from runner.base.errors import RunnerError
 from runner.base.texts import one_line
@@ -130,7 +130,7 @@ class Run:
         Raises:
             RunnerError: if there is no such repetition, or it cannot be had as the code has changed since.
         """
-        from runner.api.again import signals_of
+        from runner.api.resimulate import signals_of
 
         return signals_of(self.stored, repetition).frame
 
@@ -145,8 +145,8 @@ class Run:
         Raises:
             RunnerError: if the run has no such signal; tells which it has.
         """
-        from runner.api.again import signals_of
         from runner.api.plots import figure_of
+        from runner.api.resimulate import signals_of
 
         return figure_of(signals_of(self.stored, repetition), signal)
 
@@ -222,8 +222,8 @@ class Run:
         return key_metrics(self.stored, most)
 
     def _picture(self) -> str:
-        from runner.api.again import Signals
         from runner.api.plots import svg_of
+        from runner.api.resimulate import Signals
 
         try:
             signals = Signals(self.stored.trace, self.stored.units)

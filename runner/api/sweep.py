@@ -9,7 +9,7 @@ import numpy as np
 
 from runner import store
 from runner.api import page
-from runner.api.door import door
+from runner.api.boundary import door
 from runner.api.run import Run
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.quantities import quantity

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from runner import store
 from runner.api import page
-from runner.api.door import door
+from runner.api.boundary import door
 from runner.api.run import Run
 from runner.base.errors import RunnerError
 from runner.base.quantities import quantity

@@ -10,8 +10,8 @@ from runner.reporting.answers import EXPLAINED, Asked, judge
 from runner.reporting.comparison.caveats import caveats_of
 from runner.reporting.comparison.cells import label_text
 from runner.reporting.comparison.levels import levels
-from runner.reporting.comparison.side import Side, open_side, stored_part
-from runner.reporting.comparison.words import NOISE_ALONE, format_count, noise_alone
+from runner.reporting.comparison.messages import NOISE_ALONE, format_count, noise_alone
+from runner.reporting.comparison.operand import Side, open_side, stored_part
 from runner.reporting.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep
 from runner.sweeps.finer_step import work_out_sweep

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from runner.reporting.charts.axes import map_in_readable_units
 from runner.reporting.charts.map_scale import (
     CONTOURS,
     MOST_PARTED,
@@ -14,7 +15,6 @@ from runner.reporting.charts.map_scale import (
     scale_values,
     value_range,
 )
-from runner.reporting.charts.units import map_in_readable_units
 from runner.reporting.curves import named_places, neutral
 from runner.reporting.document import Map, Maps
 

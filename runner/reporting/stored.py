@@ -11,8 +11,8 @@ from runner.base.errors import RunnerError
 from runner.base.progress.stages import READING, SOON, of_report
 from runner.config.compose.user_settings import outputs_dir
 from runner.reporting import render
+from runner.reporting.comparison.operand import letter, open_side
 from runner.reporting.comparison.report import comparison_document
-from runner.reporting.comparison.side import letter, open_side
 from runner.reporting.document import Document
 from runner.reporting.run_report import run_document
 from runner.reporting.sweep.report import sweep_document

@@ -9,8 +9,8 @@ from runner.base.expressions.parser import parse
 from runner.base.expressions.shortening import holds, shorten_expression
 from runner.base.expressions.tree import Node, Sum, size
 from runner.base.expressions.typesetting import linear
-from runner.reporting.audit.formula_marks import marked_formulas
 from runner.reporting.audit.likeness import Likeness
+from runner.reporting.audit.marks import marked_formulas
 from runner.reporting.audit.matrices import gather_elements
 from runner.reporting.audit.pieces import LONG, cut, pieces
 from runner.reporting.equation import EquationForm, Matrix

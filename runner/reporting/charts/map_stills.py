@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from runner.base.arrays import FloatArray
 from runner.reporting.charts import palette
+from runner.reporting.charts.axes import map_in_readable_units
 from runner.reporting.charts.figure import Map, MapFigure
 from runner.reporting.charts.map_scale import (
     CONTOURS,
@@ -23,7 +24,6 @@ from runner.reporting.charts.map_scale import (
 )
 from runner.reporting.charts.names import Names, literal, names_below, names_beside, wrap_text
 from runner.reporting.charts.sheet import REPORT, Sheet, render_figure
-from runner.reporting.charts.units import map_in_readable_units
 
 # Measures in inches, for letters of the size of a report.
 _LEFT, _LABEL, _RIGHT, _BOTTOM, _BAR = 0.7, 0.3, 0.12, 0.42, 0.36  # the second and last without names and values

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from runner.reporting.comparison.side import Side
+from runner.reporting.comparison.operand import Side
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from runner.base.quantities import quantity
 from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, judge
 from runner.reporting.comparison.cells import label_text
+from runner.reporting.comparison.messages import POOLED
 from runner.reporting.comparison.sweeps import MetricComparison, SweepComparison
-from runner.reporting.comparison.words import POOLED
 from runner.reporting.document import Block, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title

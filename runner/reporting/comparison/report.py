@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 
-from runner.reporting.comparison import differing, figures, metrics
+from runner.reporting.comparison import difference_tables as differing
+from runner.reporting.comparison import figures, metrics
 from runner.reporting.comparison.caveats import caveats_of
-from runner.reporting.comparison.side import Side
+from runner.reporting.comparison.messages import NOISE_ALONE, format_count
+from runner.reporting.comparison.operand import Side
 from runner.reporting.comparison.summary import cells_told, size_told
 from runner.reporting.comparison.sweeps import SweepComparison, compare_sweeps
-from runner.reporting.comparison.words import NOISE_ALONE, format_count
 from runner.reporting.document import Block, Code, Document, Items, Notice, Provenance, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from runner.reporting.comparison.cells import label_text
-from runner.reporting.comparison.side import Side
+from runner.reporting.comparison.messages import format_count
+from runner.reporting.comparison.operand import Side
 from runner.reporting.comparison.sweeps import SweepComparison
-from runner.reporting.comparison.words import format_count
 
 _NAMED = 3  # cells of one sweep alone
 

@@ -9,11 +9,11 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
-from runner.reporting.comparison.beyond import Beyond, find_differences
 from runner.reporting.comparison.cells import Matched, match
+from runner.reporting.comparison.differences import Beyond, find_differences
+from runner.reporting.comparison.messages import noise_alone
+from runner.reporting.comparison.operand import Side
 from runner.reporting.comparison.pairs import CellPairs, compare
-from runner.reporting.comparison.side import Side
-from runner.reporting.comparison.words import noise_alone
 from runner.statistics import Comparison
 from runner.sweeps.metric_names import check_metrics, is_part
 

@@ -10,12 +10,12 @@ import typst
 from runner.base.errors import RunnerError, nearest
 from runner.reporting.charts import map_stills, stills
 from runner.reporting.charts.sheet import Sheet
+from runner.reporting.consistency import color_series
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.export.points import Figure, as_csv
 from runner.reporting.markup import Literal, spans
 from runner.reporting.outline import blocks
 from runner.reporting.places import Places
-from runner.reporting.series_colors import color_series
 from runner.store.atomic import write_atomically
 
 _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Sequence
 
 from runner.base.texts import table_cell
+from runner.reporting.charts.axes import in_readable_units, map_in_readable_units
 from runner.reporting.charts.figure import Panel, Series
-from runner.reporting.charts.units import in_readable_units, map_in_readable_units
 from runner.reporting.document import Curves, Maps, Picture, Playback
 
 Figure = Curves | Maps | Picture | Playback

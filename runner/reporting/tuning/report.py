@@ -15,7 +15,8 @@ from runner.reporting.cover import cover
 from runner.reporting.document import Document, Notice, Origin, Provenance, RunList, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.tuning import best_trials, front, history, keys
+from runner.reporting.tuning import front, history, keys
+from runner.reporting.tuning import sections as best_trials
 from runner.reporting.tuning.subject import Subject, key_label, key_value
 from runner.store import Sweep, open_run
 from runner.sweeps.measurements import Measurements, measure_sweep

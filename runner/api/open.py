@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner import store
-from runner.api.door import door
+from runner.api.boundary import door
 from runner.store.latest import find_folder
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from runner.reporting.comparison.cells import Matched, label_text
-from runner.reporting.comparison.side import Side
+from runner.reporting.comparison.operand import Side
 from runner.store import simulated_part
 from runner.sweeps.differing import entries, is_of_option
 from runner.sweeps.measurements import Measurements

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from runner import store
-from runner.api.door import door
+from runner.api.boundary import door
 from runner.api.overrides import config_folders, run_overrides, sweep_overrides, tuning_overrides
 from runner.api.processes import workers_only_work
 from runner.api.run import Run

@@ -2,7 +2,7 @@
 
 from runner.base.quantities import label_with_unit
 from runner.config.compose.key_units import key_unit
-from runner.reporting.comparison.beyond import Value
+from runner.reporting.comparison.differences import Value
 from runner.reporting.comparison.sweeps import SweepComparison
 from runner.reporting.document import Block, Table
 from runner.reporting.markup import literals
