@@ -9,8 +9,18 @@ import numpy as np
 from runner.base.quantities import format_range, quantity, spread
 from runner.metrics.positioning import STEADY_WINDOW
 from runner.reporting.claim import Claim, ClaimResult, EquationVerdict
-from runner.reporting.claims import CONTRADICTION, FACTOR, PublishedClaim, PublishedStatement, Verdict, judge_motion
-from runner.reporting.claims.judging import Simulated, scale_bound, simulated_by, verdict_on
+from runner.reporting.claims import (
+    CONTRADICTION,
+    FACTOR,
+    PublishedClaim,
+    PublishedStatement,
+    Simulated,
+    Verdict,
+    judge_motion,
+    scale_bound,
+    simulated_by,
+    verdict_on,
+)
 from runner.reporting.figures import columns
 from runner.reporting.words import PLANT
 from runner.store import Run

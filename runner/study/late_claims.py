@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from runner.reporting.claims import CLAIMS, load_claims
-from runner.reporting.claims.judging import simulated_by
+from runner.reporting.claims import CLAIMS, load_claims, simulated_by
 from runner.statistics.spec.history import merge_histories, set_after, today
 from runner.store import Run
 from runner.store.atomic import write_atomically
