@@ -16,6 +16,17 @@ from runner.schema.model import StrictModel
 CLAIMS = "claims.yaml"
 
 
+_STATEMENTS = "statements.yaml"
+FACTOR = 1.5
+"""By which factor a simulated value may differ from a printed one that it matches: sources read theirs off plots."""
+Verdict = Literal[
+    "matches", "differs", "smaller than printed", "larger than printed", "source contradicts itself", "undecided"
+]
+CONTRADICTION: Verdict = "source contradicts itself"
+Simulated = Callable[[str, str], float | None]
+"""Gives the simulated value of a metric of an experiment, or of a run by the begin of its name; None for none."""
+
+
 class Bound(StrictModel):
     """What another number of the same source leads one to expect at most.
 
@@ -141,9 +152,6 @@ def load_claims(work: str | Path) -> list[PublishedClaim]:
     return claims
 
 
-_STATEMENTS = "statements.yaml"
-
-
 class PublishedStatement(StrictModel):
     """One statement, which findings on many runs judge.
 
@@ -175,15 +183,6 @@ def load_statements(work: str | Path) -> list[PublishedStatement]:
         RunnerError: if its file does not fit; names the file, the entries and keys.
     """
     return read_data(works_dir() / work / _STATEMENTS, list[PublishedStatement])
-
-
-FACTOR = 1.5
-"""By which factor a simulated value may differ from a printed one that it matches: sources read theirs off plots."""
-
-Verdict = Literal[
-    "matches", "differs", "smaller than printed", "larger than printed", "source contradicts itself", "undecided"
-]
-CONTRADICTION: Verdict = "source contradicts itself"
 
 
 def judge(printed: float, measured: float | None, bound: float | None = None) -> Verdict:
@@ -224,10 +223,6 @@ def judge_motion(
     if not fails and not all(extent.met(desired) for extent in extents):
         return CONTRADICTION
     return "matches" if met != fails else "differs"
-
-
-Simulated = Callable[[str, str], float | None]
-"""Gives the simulated value of a metric of an experiment, or of a run by the begin of its name; None for none."""
 
 
 def simulated_by(claim: PublishedClaim) -> tuple[str, str]:

@@ -17,7 +17,7 @@ from runner.reporting import formulas, outline, playback
 from runner.reporting.charts import palette
 from runner.reporting.curves import plotly_spec
 from runner.reporting.document import Curves, Document, Maps, Playback, RunList
-from runner.reporting.formula_sheet import FormulaSheet
+from runner.reporting.formulas import FormulaSheet
 from runner.reporting.maps import maps_spec
 from runner.reporting.places import Places
 from runner.reporting.run_list import run_list_spec

@@ -7,8 +7,7 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.progress.stages import of_report
 from runner.reporting import html, outline, pdf
-from runner.reporting.column_units import in_readable_units
-from runner.reporting.consistency import color_series
+from runner.reporting.consistency import color_series, in_readable_units
 from runner.reporting.document import Document
 from runner.store.atomic import write_atomically
 

@@ -9,9 +9,8 @@ from runner.base.errors import RunnerError
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.metrics.caveats import changes_since
 from runner.reporting.changed_keys import changed_keys, flatten
-from runner.reporting.cover import cover
 from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text
-from runner.reporting.figures import desired_motion, playback, torque_and_error
+from runner.reporting.figures import cover, desired_motion, playback, torque_and_error
 from runner.reporting.key_metrics import key_metrics, shared_range
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title

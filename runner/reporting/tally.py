@@ -5,9 +5,8 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from runner.reporting.claim import ClaimResult
 from runner.reporting.claims import CONTRADICTION
-from runner.reporting.document import Block, Document, Equations, Verdicts
+from runner.reporting.document import Block, ClaimResult, Document, Equations, Verdicts
 from runner.reporting.equation import FOLDED, SHOWN
 from runner.reporting.outline import blocks
 from runner.reporting.places import claim_place, verdict_place

@@ -9,11 +9,10 @@ from runner.base.expressions.typesetting import matrix, symbol, typeset
 from runner.base.paths import templates_dir
 from runner.base.texts import plain
 from runner.reporting.document import Origin
-from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, of_verdict
+from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, of_verdict, symbols_in
 from runner.reporting.markup import spans
 from runner.reporting.places import verdict_place
 from runner.reporting.spoken import spoken
-from runner.reporting.symbols import symbols_in
 
 VERDICT_SIGNS = {
     "matches": "=",

@@ -8,7 +8,6 @@ import numpy as np
 
 from runner.base.quantities import format_range, quantity, spread
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.reporting.claim import Claim, ClaimResult, EquationVerdict
 from runner.reporting.claims import (
     CONTRADICTION,
     FACTOR,
@@ -21,6 +20,8 @@ from runner.reporting.claims import (
     simulated_by,
     verdict_on,
 )
+from runner.reporting.document import Claim, ClaimResult
+from runner.reporting.equation import EquationVerdict
 from runner.reporting.figures import columns
 from runner.reporting.words import PLANT
 from runner.store import Run

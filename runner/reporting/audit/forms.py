@@ -1,5 +1,6 @@
 """Displayed forms of an audited equation, shortened, with differences marked."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence, Set
 
 from runner.audit.entry import Entry, Form
@@ -7,12 +8,10 @@ from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
 from runner.base.expressions.shortening import holds, shorten_expression
-from runner.base.expressions.tree import Node, Sum, size
+from runner.base.expressions.tree import Name, Node, Sum, size
 from runner.base.expressions.typesetting import linear
 from runner.reporting.audit.likeness import Likeness
-from runner.reporting.audit.marks import marked_formulas
-from runner.reporting.audit.matrices import gather_elements
-from runner.reporting.audit.pieces import LONG, cut, pieces
+from runner.reporting.audit.marks import LONG, cut, marked_formulas, pieces
 from runner.reporting.equation import EquationForm, Matrix
 
 _SYMBOLS = 40  # symbols of a form that is shown whole
@@ -21,6 +20,10 @@ _FAULTS = 6  # differing parts up to which it is one with faults
 
 _Elements = Mapping[str, Node]
 _Shown = list[tuple[Node, Node | Matrix]]
+
+
+_ELEMENT = re.compile(r"(?P<name>\w+?)_(?P<place>\d\d|[xyz])")
+_VECTOR = ("x", "y", "z")
 
 
 def forms_of(entry: Entry, likeness: Likeness) -> list[EquationForm]:
@@ -165,3 +168,35 @@ def _begun(groups: _Shown) -> _Shown:
 def _short(groups: _Shown) -> _Shown:
     """Return what is shown of a form, or nothing where it is still too long to be read."""
     return groups if sum(size(node) for _, part in groups for node in _nodes(part)) <= 2 * _SYMBOLS else []
+
+
+def gather_elements(elements: Mapping[str, Node]) -> list[tuple[Node, Node | Matrix]]:
+    """Return elements such as T_11 to T_44, or P_x, P_y and P_z, as one matrix, and the others as they are.
+
+    A matrix is whole: it has an element in each row and column, from 0 or 1 on.
+    """
+    families: dict[str, dict[str, Node]] = {}
+    for name, node in elements.items():
+        match = _ELEMENT.fullmatch(name)
+        family, place = (match["name"], match["place"]) if match else (name, "")
+        families.setdefault(family, {})[place] = node
+    found: list[tuple[Node, Node | Matrix]] = []
+    for family, members in families.items():
+        matrix = _matrix(members)
+        if matrix is not None:
+            found.append((Name(family, 0), matrix))
+            continue
+        found += [(Name(f"{family}_{place}" if place else family, 0), node) for place, node in members.items()]
+    return found
+
+
+def _matrix(members: Mapping[str, Node]) -> Matrix | None:
+    if tuple(members) == _VECTOR:
+        return Matrix([[node] for node in members.values()])
+    if len(members) < 4 or not all(len(place) == 2 for place in members):
+        return None
+    rows, columns = (sorted({place[axis] for place in members}) for axis in (0, 1))
+    whole = [f"{row}{column}" for row in rows for column in columns] == sorted(members)
+    if not (whole and rows[0] == columns[0] and rows[0] in "01" and len(rows) > 1):
+        return None
+    return Matrix([[members[f"{row}{column}"] for column in columns] for row in rows])

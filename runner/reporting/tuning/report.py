@@ -11,8 +11,8 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.config.compose.key_units import key_unit
 from runner.reporting.answers import CHOSEN
-from runner.reporting.cover import cover
 from runner.reporting.document import Document, Notice, Origin, Provenance, RunList, Section, Table, Text
+from runner.reporting.figures import cover
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.tuning import front, history, keys

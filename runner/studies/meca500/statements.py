@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from runner.audit.audit import audit
-from runner.reporting.claim import EquationVerdict
 from runner.reporting.claims import Verdict, load_statements
 from runner.reporting.document import Verdicts
+from runner.reporting.equation import EquationVerdict
 from runner.study.chapters import Concluded
 from runner.study.claims import judged_statements
 
