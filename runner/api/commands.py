@@ -5,9 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from runner import store
-from runner.api.boundary import door
+from runner.api.boundary import door, workers_only_work
 from runner.api.overrides import config_folders, run_overrides, sweep_overrides, tuning_overrides
-from runner.api.processes import workers_only_work
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning

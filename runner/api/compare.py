@@ -1,15 +1,17 @@
-"""Runs or sweeps compared with each other."""
+"""Runs or sweeps compared with each other, and comparisons as a table."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from runner import store
 from runner.api.boundary import door
-from runner.api.comparison_frame import comparison_frame
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.base.errors import RunnerError
+from runner.reporting.answers import Asked, judge
 from runner.reporting.comparison.operand import letter
 from runner.store.latest import find_folder
 
@@ -46,7 +48,6 @@ def compare(
     """
     import pandas as pd
 
-    from runner.reporting.answers import Asked
     from runner.reporting.comparison.sweeps import compare_sweeps
     from runner.reporting.sweep.subject import first_screen, whole_metrics
 
@@ -85,3 +86,34 @@ def _side(name: str, thing: Run | Sweep) -> "Side":
     if side.damage:
         raise RunnerError("; ".join(side.damage))
     return side
+
+
+def comparison_frame(
+    labels: Sequence[Mapping[str, str]], asked: Sequence[Asked], first: Sequence[str]
+) -> "pd.DataFrame":
+    """Return a row for each comparison of one question, with its corrected p, its interval and its word.
+
+    Args:
+        labels: Names of the things compared in each row: the columns first and second, behind the axes.
+        asked: The comparisons, in the same order.
+        first: Metrics of the first screen; see judge.
+    """
+    import pandas as pd
+
+    missing = (np.nan, np.nan)
+    rows = [
+        {
+            **label,
+            "metric": answer.metric,
+            "unit": answer.unit,
+            "difference": answer.comparison.difference,
+            "low": (answer.interval or missing)[0],
+            "high": (answer.interval or missing)[1],
+            "n": answer.comparison.n,
+            "effect": answer.comparison.effect,
+            "p": answer.p_value,
+            "word": answer.word,
+        }
+        for label, answer in zip(labels, judge(asked, first), strict=True)
+    ]
+    return pd.DataFrame(rows).astype({"low": float, "high": float, "p": float})

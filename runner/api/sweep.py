@@ -174,7 +174,7 @@ class Sweep:
         Raises:
             RunnerError: if there is no such axis or metric, or no two runs share their seeds.
         """
-        from runner.api.comparison_frame import comparison_frame
+        from runner.api.compare import comparison_frame
         from runner.reporting.answers import Asked
         from runner.reporting.comparison.levels import levels
         from runner.reporting.sweep.subject import first_screen, whole_metrics

@@ -107,8 +107,9 @@ def _paired(a: "Side", b: "Side", metrics: Sequence[str]) -> str:
     """Return the comparison of two runs on the same seeds, repetition by repetition, or why there is none."""
     from runner.reporting.answers import EXPLAINED, Asked, judge
     from runner.reporting.comparison.cells import one_cell
-    from runner.reporting.comparison.messages import NOISE_ALONE, noise_alone
+    from runner.reporting.comparison.messages import NOISE_ALONE
     from runner.reporting.comparison.pairs import compare, share_seeds
+    from runner.reporting.comparison.sweeps import noise_alone
     from runner.reporting.sweep.subject import first_screen, whole_metrics
     from runner.statistics import SMALLEST_SAMPLE
 

@@ -14,8 +14,6 @@ from runner.base.paths import works_dir, works_with
 from runner.schema.model import StrictModel
 
 CLAIMS = "claims.yaml"
-
-
 _STATEMENTS = "statements.yaml"
 FACTOR = 1.5
 """By which factor a simulated value may differ from a printed one that it matches: sources read theirs off plots."""

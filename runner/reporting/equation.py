@@ -13,8 +13,6 @@ SHOWN: tuple[EquationVerdict, ...] = ("wrong as printed", "unreadable", "correct
 """Verdicts that need a look, in the order of reading."""
 FOLDED: tuple[EquationVerdict, ...] = ("correct", "definition")
 """Verdicts that need none: the page folds their equations, paper lists their names."""
-
-
 _NAME = re.compile(
     r"(?<!\w)(?P<frame>\d?)(?P<letter>[^\W\d_])"
     r"(?:_(?P<below>[^\W_]+(?:,\d\d)?)|(?P<digits>\d+)|(?P<difference>\(\d(?:-\d)+\)))?"

@@ -4,8 +4,7 @@ import numpy as np
 import pandas as pd
 
 from runner.reporting.bodies import playback_bodies
-from runner.reporting.charts import arm_motion
-from runner.reporting.charts.moving_arm import moving_arm
+from runner.reporting.charts.arm import arm_motion, moving_arm
 from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Cover, Curves, Origin, Panel, Playback, Series
 from runner.robots import RobotModel
@@ -13,8 +12,6 @@ from runner.store import Calibration, Run
 
 AXES = ("x", "y", "z")
 _STILLS = 6  # instants in the still picture of a motion
-
-
 _FRAMES = 60
 
 

@@ -20,8 +20,6 @@ _SIZE = re.compile(r'viewBox="0 0 ([\d.]+) ([\d.]+)"')
 _FONT_SIZE = 10.0
 _KEPT = 5000  # formulas of one process, more than all reports have
 _drawn: dict[tuple[str, bool], "Image | None"] = {}
-
-
 _SVG = "{http://www.w3.org/2000/svg}"
 _LINK = "{http://www.w3.org/1999/xlink}href"
 _BLACK = {"#000", "#000000", "black"}

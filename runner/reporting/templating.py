@@ -31,8 +31,6 @@ VERDICT_SIGNS = {
     "note": "–",
 }
 """A sign beside each verdict, for readers who see no colours."""
-
-
 _SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 
 

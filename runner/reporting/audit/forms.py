@@ -20,8 +20,6 @@ _FAULTS = 6  # differing parts up to which it is one with faults
 
 _Elements = Mapping[str, Node]
 _Shown = list[tuple[Node, Node | Matrix]]
-
-
 _ELEMENT = re.compile(r"(?P<name>\w+?)_(?P<place>\d\d|[xyz])")
 _VECTOR = ("x", "y", "z")
 

@@ -9,8 +9,6 @@ from runner.base.expressions.shortening import ELLIPSIS
 _CALL = re.compile(r"(mat|vec|cases)\((.*)\)", re.DOTALL)
 _SEPARATORS = (",", ";")
 _OPEN, _CLOSE = "([{", ")]}"
-
-
 Pieces = list[tuple[bool, str]]
 LONG = 130
 """Characters of a text that is shown whole."""

@@ -17,12 +17,11 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 from runner.base.texts import plain
 from runner.reporting.charts import palette
-from runner.reporting.charts.axes import in_readable_units
+from runner.reporting.charts.axes import Mark, at_2_and_5, in_readable_units, marks
 from runner.reporting.charts.figure import CurveFigure, Panel, Series, shares_legend, upright
 from runner.reporting.charts.names import Names, literal, names_below, wrap_text
 from runner.reporting.charts.sheet import REPORT, Sheet, render_figure, style
 from runner.reporting.charts.thinning import thin, usable
-from runner.reporting.charts.ticks import Mark, at_2_and_5, marks
 
 # Measures in inches, for letters of the size of a report; fixed margins, because a layout engine costs more time than
 # all the curves.

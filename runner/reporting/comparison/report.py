@@ -2,17 +2,20 @@
 
 from collections.abc import Sequence
 
-from runner.reporting.comparison import difference_tables as differing
+from runner.base.quantities import label_with_unit
+from runner.config.compose.key_units import key_unit
 from runner.reporting.comparison import figures, metrics
-from runner.reporting.comparison.caveats import caveats_of
-from runner.reporting.comparison.messages import NOISE_ALONE, format_count
-from runner.reporting.comparison.operand import Side
-from runner.reporting.comparison.summary import cells_told, size_told
+from runner.reporting.comparison.differences import Value
+from runner.reporting.comparison.messages import NOISE_ALONE, cells_told, format_count, size_told
+from runner.reporting.comparison.operand import Side, caveats_of
 from runner.reporting.comparison.sweeps import SweepComparison, compare_sweeps
 from runner.reporting.document import Block, Code, Document, Items, Notice, Provenance, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import first_screen
+from runner.sweeps.resolved import UNITS
+
+_MOST_ROWS, _LONGEST = 40, 60
 
 
 def comparison_document(sides: Sequence[Side], wanted: Sequence[str] = ()) -> Document:
@@ -78,7 +81,7 @@ def _sections(found: SweepComparison, wanted: Sequence[str]) -> list[Section]:
     first: Block = Text(told) if alone else Notice("warning", "More than one thing differs", told)
     cells = Items([literal(text) for text in cells_told(found)])
     return [
-        Section("What differs", [first, *differing.tables(found), cells]),
+        Section("What differs", [first, *_difference_tables(found), cells]),
         Section("Cell by cell", figures.blocks(found, wanted)),
         Section("Every metric", metrics.blocks(found, wanted)),
     ]
@@ -106,3 +109,28 @@ def _made(sides: Sequence[Side]) -> Section:
         same = len(set(texts.values())) == 1
         rows += [(name, texts[sides[0].name])] if same else [(f"{name}, {side}", text) for side, text in texts.items()]
     return Section("Provenance", [*blocks, Provenance(rows)])
+
+
+def _difference_tables(found: SweepComparison) -> list[Block]:
+    """Return the resolved values that differ, and what made the runs where that differs."""
+    a, b = found.a.name, found.b.name
+    values = [*found.beyond.options, *found.beyond.values]
+    blocks: list[Block] = []
+    if values:
+        left = len(values) - _MOST_ROWS
+        more = f" {left} more differ." if left > 0 else ""
+        caption = f"All resolved values that differ in the cells that both have.{more}"
+        blocks.append(Table(caption, ["key", a, b, "at"], [_row(value) for value in values[:_MOST_ROWS]]))
+    if found.beyond.provenance:
+        rows = [literals([value.key, value.a, value.b]) for value in found.beyond.provenance]
+        blocks.append(Table("They were made by different versions.", ["made by", a, b], rows))
+    return blocks
+
+
+def _row(value: Value) -> list[str]:
+    label = label_with_unit(value.key, UNITS.get(value.key) or key_unit(value.key))
+    return literals([label, _short(value.a), _short(value.b), value.cells or "all cells"])
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."

@@ -1,8 +1,9 @@
 """Comparison of two sweeps by cell and repetition."""
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,6 @@ from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
 from runner.reporting.comparison.cells import Matched, match
 from runner.reporting.comparison.differences import Beyond, find_differences
-from runner.reporting.comparison.messages import noise_alone
 from runner.reporting.comparison.operand import Side
 from runner.reporting.comparison.pairs import CellPairs, compare
 from runner.statistics import Comparison
@@ -153,3 +153,9 @@ def _median_differences(a: FloatArray, b: FloatArray, pairs: CellPairs) -> Float
         warnings.simplefilter("ignore", RuntimeWarning)
         found: FloatArray = np.nanmedian(np.where(first == second, 0.0, second - first), axis=1)
     return found
+
+
+def noise_alone(configs: Iterable[Mapping[str, Any]]) -> bool:
+    """Tell whether the repetitions of runs draw nothing but noise: nothing of the arm is drawn from the seed."""
+    mismatches = [config.get("mismatch", {}) for config in configs]
+    return all(not mismatch.get("spread") and "kind" not in mismatch for mismatch in mismatches)

@@ -10,7 +10,6 @@ from runner.reporting.document import Document, Provenance, RunList, Section, Te
 from runner.reporting.markup import literal
 from runner.reporting.sweep import (
     axes,
-    caveats,
     distributions,
     effects,
     extremes,
@@ -46,7 +45,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     """
     subject = choose(measure_sweep(sweep), metrics)
     measurements = subject.measurements
-    doubts = [caveats.section(subject)] if caveats.is_needed(subject) else []
+    doubts = [failures.caveats_section(subject)] if failures.has_caveats(subject) else []
     sections = [*doubts, axes.section(subject, sweep.command)]
     if sweep.spec:
         sections.append(spec.section(subject, sweep))

@@ -15,8 +15,7 @@ from runner.reporting.document import Document, Notice, Origin, Provenance, RunL
 from runner.reporting.figures import cover
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.tuning import front, history, keys
-from runner.reporting.tuning import sections as best_trials
+from runner.reporting.tuning.sections import front_section, history_section, keys_section, trials_section
 from runner.reporting.tuning.subject import Subject, key_label, key_value
 from runner.store import Sweep, open_run
 from runner.sweeps.measurements import Measurements, measure_sweep
@@ -42,13 +41,13 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     measurements = measure_sweep(sweep)
     sections, shown = [_what(subject)], None
     if subject.good:
-        sections += [history.section(subject), keys.section(subject)]
+        sections += [history_section(subject), keys_section(subject)]
         if len(subject.objectives) > 1:
-            sections.insert(2, front.section(subject))
+            sections.insert(2, front_section(subject))
         places = list(subject.best_by_objective())
         runs = {place: open_run(sweep.outputs / "runs" / subject.trials[place].run) for place in places}
         commands = {place: _command(tuning.study.trial_overrides(subject.trials[place])) for place in places}
-        sections.append(best_trials.section(subject, runs, commands))
+        sections.append(trials_section(subject, runs, commands))
         shown = cover(runs[places[0]], f"The motion of trial {places[0]}, the chosen one.")
     if len(subject.good) < len(subject.trials):
         sections.append(_failures(subject))
