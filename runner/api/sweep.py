@@ -176,7 +176,7 @@ class Sweep:
         """
         from runner.api.compare import comparison_frame
         from runner.reporting.answers import Asked
-        from runner.reporting.comparison.levels import levels
+        from runner.reporting.comparison.pairs import levels
         from runner.reporting.sweep.subject import first_screen, whole_metrics
 
         inside = [within] if isinstance(within, str) else within

@@ -8,9 +8,9 @@ from runner.base.texts import one_line
 from runner.cli.columns import COMPARED, align_columns, answer_cells
 from runner.reporting.answers import EXPLAINED, Asked, judge
 from runner.reporting.comparison.cells import label_text
-from runner.reporting.comparison.levels import levels
 from runner.reporting.comparison.messages import NOISE_ALONE, format_count
 from runner.reporting.comparison.operand import Side, caveats_of, open_side, stored_part
+from runner.reporting.comparison.pairs import levels
 from runner.reporting.comparison.sweeps import noise_alone
 from runner.reporting.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep

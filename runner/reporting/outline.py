@@ -20,7 +20,7 @@ from runner.reporting.document import (
     Text,
     Verdicts,
 )
-from runner.reporting.markup import Math, anchor, spans
+from runner.reporting.markup import anchor, spans
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ def formulas(document: Document) -> tuple[list[str], list[str]]:
 
 
 def _math(text: str) -> list[str]:
-    return [span.text for span in spans(text) if isinstance(span, Math)]
+    return [span.text for span in spans(text) if span.math]
 
 
 def _texts(block: Block) -> Iterator[str]:

@@ -18,7 +18,7 @@ from runner.reporting.charts.figure import Panel, Series
 from runner.reporting.charts.sheet import Sheet
 from runner.reporting.consistency import color_series
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
-from runner.reporting.markup import Literal, spans
+from runner.reporting.markup import spans
 from runner.reporting.outline import blocks
 from runner.reporting.places import Places
 from runner.store.atomic import write_atomically
@@ -117,7 +117,7 @@ def _as_pdf(svg: str) -> bytes:
 
 def _slug(caption: str) -> str:
     """Return the first words of a caption as a part of a file's name; its numbers may be results, and are left out."""
-    text = " ".join(span.text for span in spans(caption) if isinstance(span, Literal))
+    text = " ".join(span.text for span in spans(caption) if not (span.math or span.anchor))
     return "-".join(re.findall(r"(?<![\w.])[a-z]+(?!\w)", text.partition(". ")[0].lower())[:_WORDS])
 
 

@@ -12,8 +12,7 @@ from runner.config.spec import Bound
 from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
-from runner.reporting.spec_blocks import RULE
-from runner.reporting.spec_words import bound_text, late_text, probability
+from runner.reporting.spec_blocks import RULE, bound_text, late_text, probability
 from runner.reporting.sweep import maps
 from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
 from runner.statistics.spec import bounds_of
