@@ -15,8 +15,8 @@ T = TypeVar("T")
 _GO_ON = "interrupted; finished runs are stored; the same call continues"
 
 
-def door(function: Callable[P, T]) -> Callable[P, T]:
-    """Show how far a function is; let what a user can mend, and interruptions, out of it without the frames within."""
+def public(function: Callable[P, T]) -> Callable[P, T]:
+    """Show the progress of a function; raise errors of the user, and interruptions, without the frames within it."""
 
     @functools.wraps(function)
     def through(*args: P.args, **kwargs: P.kwargs) -> T:

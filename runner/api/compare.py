@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from runner import store
-from runner.api.boundary import door
+from runner.api.boundary import public
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.base.errors import RunnerError
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Comparable = Run | Sweep | str | Path
 
 
-@door
+@public
 def compare(
     first: Comparable, second: Comparable, *others: Comparable, metrics: str | Sequence[str] = ()
 ) -> "pd.DataFrame":

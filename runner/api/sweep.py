@@ -9,7 +9,7 @@ import numpy as np
 
 from runner import store
 from runner.api import page
-from runner.api.boundary import door
+from runner.api.boundary import public
 from runner.api.run import Run
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.quantities import quantity
@@ -39,11 +39,8 @@ class Sweep:
         >>> sweep.run(robot="mini", controller="computed_torque").status
         'ok'
 
-    Args:
-        stored: The sweep as it lies on the disk.
-
     Attributes:
-        stored: The same; what the other rooms of the package take.
+        stored: The sweep as it is stored, which other packages take.
     """
 
     def __init__(self, stored: store.Sweep) -> None:
@@ -76,7 +73,7 @@ class Sweep:
         """
         return map(Run, self.stored.runs())
 
-    @door
+    @public
     def run(self, **values: object) -> Run:
         """Return the one run with some values of the axes; two underscores in a keyword stand for a dot.
 
@@ -96,7 +93,7 @@ class Sweep:
             raise RunnerError("no run of the sweep has these values together")
         return Run(store.Finished(self.stored.outputs).open(self.stored.hashes[int(cells[0])]))
 
-    @door
+    @public
     def to_frame(
         self, metrics: str | Sequence[str] | None = None, level: Literal["cells", "repetitions"] = "cells"
     ) -> "pd.DataFrame":
@@ -154,7 +151,7 @@ class Sweep:
         none = pd.DataFrame(columns=[*keys, "repetition", "metric", "unit", "value"])
         return pd.concat(parts, ignore_index=True) if parts else none
 
-    @door
+    @public
     def compare(
         self, *, by: str, within: str | Sequence[str] | None = None, metrics: str | Sequence[str] | None = None
     ) -> "pd.DataFrame":

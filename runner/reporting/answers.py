@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from runner.base.quantities import ROUNDING, number, quantity, with_ends
-from runner.reporting.metric_titles import title
+from runner.reporting.metric_titles import capital, title
 from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
 
 ALPHA = 0.05
@@ -132,8 +132,7 @@ class Answer:
             second: What the second is called.
             beside: A sentence between the two, with a space before it.
         """
-        name = title(self.metric)
-        head, told = f"{name[:1].upper()}{name[1:]}:", self._evidence()
+        head, told = f"{capital(title(self.metric))}:", self._evidence()
         if self.sign:
             unknown = "" if self.comparison.error is not None else "; the plant's own error in it is not known"
             return f"{head} {second} is {self.word} than {first} by {self.amount} ({told}{unknown}).{beside}"

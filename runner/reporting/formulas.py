@@ -4,7 +4,7 @@ import json
 import re
 import tempfile
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -63,11 +63,15 @@ def draw(texts: Iterable[str], *, displayed: bool) -> dict[str, Image | None]:
     return {text: _drawn[text, displayed] for text in wanted}
 
 
+def draw_all(document: Document) -> dict[bool, dict[str, Image | None]]:
+    """Return the drawings of all formulas of a document, by whether they are displayed."""
+    displayed, inline = outline.formulas(document)
+    return {True: draw(displayed, displayed=True), False: draw(inline, displayed=False)}
+
+
 def faulty(document: Document) -> list[str]:
     """Return the formulas of a document that Typst refuses; the report shows them as they are written."""
-    displayed, inline = outline.formulas(document)
-    images = [*draw(displayed, displayed=True).items(), *draw(inline, displayed=False).items()]
-    return [text for text, image in images if image is None]
+    return [text for images in draw_all(document).values() for text, image in images.items() if image is None]
 
 
 def _compile(texts: list[str], displayed: bool) -> dict[str, Image | None]:
@@ -127,11 +131,8 @@ class FormulaSheet:
 
     def definitions(self) -> str:
         """Return the content of the page's `<defs>`."""
-        return "".join(self._definitions())
-
-    def _definitions(self) -> Iterator[str]:
-        for name, body in (*self._letters.values(), *self._formulas.values()):
-            yield f'<g id="{name}">{body}</g>'
+        named = (*self._letters.values(), *self._formulas.values())
+        return "".join(f'<g id="{name}">{body}</g>' for name, body in named)
 
     def _written(self, element: ET.Element) -> str:
         """Return an element and all in it, black as the colour of the text, with the page's names."""

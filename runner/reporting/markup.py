@@ -29,8 +29,8 @@ class Span:
     Attributes:
         text: The characters; of mathematics, in Typst's notation without its dollar signs.
         math: Whether it is mathematics.
-        anchor: Name of the place of a section, claim, figure or table that it links to; see runner/reporting/places.py.
-            It is shown literally if the report has no such place.
+        anchor: Name of the section, claim, figure or table that it links to, as in outline.py. It is shown
+            literally if the report has no such place.
         mark: "emphasis" or "code" if it is set so.
         address: Web address that it links to.
     """

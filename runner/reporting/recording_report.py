@@ -16,7 +16,7 @@ from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.markup import literal, literals
-from runner.reporting.metric_titles import title
+from runner.reporting.metric_titles import capital, title
 from runner.reporting.run_report import provenance
 
 _MOST_POINTS = 600
@@ -27,13 +27,13 @@ def recording_document(found: RecordingComparison) -> Document:
     """Return the report on a recording beside a run."""
     robot = str(found.run.config["robot"]["name"]).replace("_", " ")
     return Document(
-        title=f"{robot[:1].upper()}{robot[1:]}: a recording beside a run",
+        title=f"{capital(robot)}: a recording beside a run",
         subtitle=literal(f"{found.recording.path.name} against run {found.run.hash}"),
         abstract=literal(_abstract(found)),
         sections=[
             Section("Both signals", [_both_curves(found)]),
             Section("Residuals", [_residuals(found), _residual_curves(found), Text(f"The {words.FIT}.")]),
-            Section("Time offset", [Text(literal(f"{_sentence(words.aligned_text(found))}.")), _lag_curves(found)]),
+            Section("Time offset", [Text(literal(f"{capital(words.aligned_text(found))}.")), _lag_curves(found)]),
             Section("Friction", _friction(found)),
             Section("Metrics of both", _metrics(found)),
             Section("Provenance", _made(found)),
@@ -60,10 +60,6 @@ def _abstract(found: RecordingComparison) -> str:
     if found.friction is None:
         return f"{text} {next(words.friction_lines(found))}"
     return text
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def _bytes_of(recording: Recording) -> bytes:
@@ -154,7 +150,7 @@ def _both_curves(found: RecordingComparison) -> Curves:
     """Return each signal of the recording and of the run over time."""
     panels = [
         Panel(
-            literal(_capital(one.signal.words)),
+            literal(capital(one.signal.words)),
             "time of the run (s)",
             label_with_unit(one.signal.kind, one.unit),
             [
@@ -174,7 +170,7 @@ def _residual_curves(found: RecordingComparison) -> Curves:
         groups.setdefault((one.signal.kind, one.unit), []).append(one)
     panels = [
         Panel(
-            f"{_capital(kind)}, recorded - run",
+            f"{capital(kind)}, recorded - run",
             "time of the run (s)",
             label_with_unit("residual", unit),
             [Series(literal(one.signal.of), one.t, one.values) for one in group],
@@ -224,7 +220,3 @@ def _friction_curves(found: RecordingComparison) -> Curves:
         panels.append(Panel(literal(joint.joint), label_with_unit("speed", f"{joint.unit}/s"), label, series))
     caption = "Torque that the run's model and other masses leave over, against the speed, and the friction identified."
     return Curves(caption, panels, origin=origin(found.run))
-
-
-def _capital(text: str) -> str:
-    return text[:1].upper() + text[1:]

@@ -1,16 +1,16 @@
-"""Displayed forms of an audited equation, shortened, with differences marked."""
+"""Displayed forms of an audited equation, shortened, with differences marked and the elements it resembles."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from runner.audit.entry import Entry, Form
+from runner.audit.verdict import Judged
 from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
 from runner.base.expressions.shortening import holds, shorten_expression
 from runner.base.expressions.tree import Name, Node, Sum, size
-from runner.base.expressions.typesetting import linear
-from runner.reporting.audit.likeness import Likeness
+from runner.base.expressions.typesetting import linear, typeset
 from runner.reporting.audit.marks import LONG, cut, marked_formulas, pieces
 from runner.reporting.equation import EquationForm, Matrix
 
@@ -22,6 +22,41 @@ _Elements = Mapping[str, Node]
 _Shown = list[tuple[Node, Node | Matrix]]
 _ELEMENT = re.compile(r"(?P<name>\w+?)_(?P<place>\d\d|[xyz])")
 _VECTOR = ("x", "y", "z")
+
+
+class Likeness:
+    """The right forms of the elements of a source, by name.
+
+    Args:
+        judged: The equations of the source.
+    """
+
+    def __init__(self, judged: Iterable[Judged]) -> None:
+        self._right: dict[str, Node] = {}
+        for each in judged:
+            entry = each.entry
+            if each.verdict not in ("unreadable", "definition"):
+                right = entry.corrected or entry.repair or entry.printed
+                self._right |= {name: parse(text).root for name, text in right.elements.items()}
+
+    def words(self, entry: Entry, elements: Mapping[str, Node]) -> str:
+        """Return which other element a wrong one is, but for exchanged symbols, in a sentence; nothing if none.
+
+        Args:
+            entry: An equation that is wrong.
+            elements: What it says; one element can be another.
+        """
+        if len(elements) != 1:
+            return ""
+        ((name, node),) = elements.items()
+        if size(node) < 2 or difference(node, self._right[name]).symbols_alone:
+            return ""
+        found = [(other, difference(node, right)) for other, right in self._right.items() if size(right) == size(node)]
+        alike = [(other, each) for other, each in found if each.symbols_alone and other != name]
+        if not alike:
+            return ""
+        other, best = min(alike, key=lambda each: (each[1].exchanged.total(), not _kin(each[0], name)))
+        return f"It is the right ${_typeset_name(other)}${_exchanged(best)}."
 
 
 def forms_of(entry: Entry, likeness: Likeness) -> list[EquationForm]:
@@ -198,3 +233,19 @@ def _matrix(members: Mapping[str, Node]) -> Matrix | None:
     if not (whole and rows[0] == columns[0] and rows[0] in "01" and len(rows) > 1):
         return None
     return Matrix([[members[f"{row}{column}"] for column in columns] for row in rows])
+
+
+def _kin(one: str, other: str) -> bool:
+    return one.rpartition("_")[0] == other.rpartition("_")[0]
+
+
+def _exchanged(found: Difference) -> str:
+    told = [
+        f"${_typeset_name(ours)}$ for ${_typeset_name(theirs)}${f' ({count} times)' if count > 1 else ''}"
+        for (ours, theirs), count in found.exchanged.items()
+    ]
+    return f", with {', '.join(told)}" if told else ""
+
+
+def _typeset_name(name: str) -> str:
+    return typeset(Name(name, 0))

@@ -2,20 +2,17 @@
 
 from collections.abc import Sequence
 
-from runner.base.quantities import label_with_unit
-from runner.config.compose.key_units import key_unit
-from runner.reporting.comparison import figures, metrics
 from runner.reporting.comparison.differences import Value
+from runner.reporting.comparison.figures import answers, blocks, choose_metrics, table_blocks
 from runner.reporting.comparison.messages import NOISE_ALONE, cells_told, format_count, size_told
 from runner.reporting.comparison.operand import Side, caveats_of
 from runner.reporting.comparison.sweeps import SweepComparison, compare_sweeps
 from runner.reporting.document import Block, Code, Document, Items, Notice, Provenance, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import first_screen
-from runner.sweeps.resolved import UNITS
+from runner.reporting.sweep.subject import first_screen, key_label, shorten
 
-_MOST_ROWS, _LONGEST = 40, 60
+_MOST_ROWS = 40
 
 
 def comparison_document(sides: Sequence[Side], wanted: Sequence[str] = ()) -> Document:
@@ -48,8 +45,8 @@ def _abstract(found: Sequence[SweepComparison], wanted: Sequence[str]) -> list[s
     noise = [NOISE_ALONE] if any(one.noise_alone for one in found) else []
     told = [one.beyond.in_words(one.a.name, one.b.name) for one in found]
     for one in found:
-        judged = metrics.answers(one, wanted)
-        first = first_screen([each.metric for each in metrics.choose_metrics(one, wanted)])
+        judged = answers(one, wanted)
+        first = first_screen([each.metric for each in choose_metrics(one, wanted)])
         told += [judged[name].sentence(one.a.name, one.b.name) for name in first]
     return [*told, *noise]
 
@@ -64,7 +61,7 @@ def _key_numbers(found: SweepComparison, wanted: Sequence[str]) -> list[tuple[st
     names = found.beyond.names
     more = f" and {len(names) - 1} more" if len(names) > 1 else ""
     numbers.append((f"{a} and {b} differ in", format_count(len(names), "value", "values"), "".join([*names[:1], more])))
-    first = next(iter(metrics.answers(found, wanted).values()))
+    first = next(iter(answers(found, wanted).values()))
     difference, interval, n, *_ = first.cells
     return [*numbers, (f"{title(first.metric)}, {b} - {a}", difference, f"{interval}, {n} pairs: {first.word}")]
 
@@ -82,8 +79,8 @@ def _sections(found: SweepComparison, wanted: Sequence[str]) -> list[Section]:
     cells = Items([literal(text) for text in cells_told(found)])
     return [
         Section("What differs", [first, *_difference_tables(found), cells]),
-        Section("Cell by cell", figures.blocks(found, wanted)),
-        Section("Every metric", metrics.blocks(found, wanted)),
+        Section("Cell by cell", blocks(found, wanted)),
+        Section("Every metric", table_blocks(found, wanted)),
     ]
 
 
@@ -128,9 +125,4 @@ def _difference_tables(found: SweepComparison) -> list[Block]:
 
 
 def _row(value: Value) -> list[str]:
-    label = label_with_unit(value.key, UNITS.get(value.key) or key_unit(value.key))
-    return literals([label, _short(value.a), _short(value.b), value.cells or "all cells"])
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+    return literals([key_label(value.key), shorten(value.a), shorten(value.b), value.cells or "all cells"])

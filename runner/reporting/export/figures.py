@@ -19,8 +19,7 @@ from runner.reporting.charts.sheet import Sheet
 from runner.reporting.consistency import color_series
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.markup import spans
-from runner.reporting.outline import blocks
-from runner.reporting.places import Places
+from runner.reporting.outline import Places, blocks
 from runner.store.atomic import write_atomically
 
 _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')

@@ -10,8 +10,8 @@ from runner.reporting.charts.map_scale import EQUAL, widen_range
 from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal, literals
-from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import MOST_GROUPS, QUANTILE_RULE, Subject, axis_label, spans_decades, value_names
+from runner.reporting.metric_titles import capital, title
+from runner.reporting.sweep.subject import MOST_GROUPS, QUANTILE_RULE, Subject, key_label, spans_decades, value_names
 from runner.statistics import PERMUTATIONS, EffectAnalysis
 from runner.sweeps.measurements import Axis
 
@@ -103,8 +103,7 @@ def _main_effects(subject: Subject) -> list[Curves]:
     figures: list[Curves] = []
     for metric in subject.metrics[:3]:
         panels = [_main_effect(subject, metric, axis) for axis in subject.axes]
-        name = title(metric)
-        caption = literal(f"{name[0].upper()}{name[1:]} and each axis{'.' if figures else told}")
+        caption = literal(f"{capital(title(metric))} and each axis{'.' if figures else told}")
         figures.append(Curves(caption, panels, columns=len(panels) if len(panels) <= 4 else 3))
     return figures
 
@@ -190,4 +189,4 @@ def axis_panel(title: str, axis: Axis, y_label: str, series: list[Series], y: Fl
     least = EQUAL * float(np.abs(drawn).max(initial=0.0))
     close = drawn.size and np.ptp(drawn) < least  # such differences are not to fill the panel
     y_range = widen_range(float(drawn.min()), float(drawn.max()), least) if close else None
-    return Panel(title, axis_label(axis), y_label, series, x_log, spans_decades(y), y_range=y_range, x_names=names)
+    return Panel(title, key_label(axis.name), y_label, series, x_log, spans_decades(y), y_range=y_range, x_names=names)

@@ -10,7 +10,7 @@ from runner.reporting import metric_titles
 from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Formula, Map, Maps, Section, Series, Text
 from runner.reporting.markup import literal
-from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
+from runner.reporting.sweep.subject import Subject, key_label, spans_decades, value_names
 from runner.sweeps.measurements import Axis
 
 POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
@@ -106,8 +106,8 @@ def _map(subject: Subject, of: Sequence[FloatArray], x: Axis, y: Axis, cells: Se
     pointed = [some[0] for some in members] if single and len(statuses) <= _MOST_POINTED else []
     return Map(
         title,
-        axis_label(x),
-        axis_label(y),
+        key_label(x.name),
+        key_label(y.name),
         value_names(x),
         value_names(y),
         values,

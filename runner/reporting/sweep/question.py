@@ -12,7 +12,7 @@ from runner.reporting.comparison.cells import label_text
 from runner.reporting.comparison.pairs import SEED, LevelPair, compare, level_pairs
 from runner.reporting.document import Block, Section, Table, Text
 from runner.reporting.markup import literal, literals
-from runner.reporting.metric_titles import title
+from runner.reporting.metric_titles import capital, title
 from runner.reporting.sweep.subject import Subject, first_screen
 from runner.statistics import SMALLEST_SAMPLE
 from runner.sweeps.measurements import Axis
@@ -151,7 +151,7 @@ def pairs_section(subject: Subject) -> Section | None:
             rows = [_row(pair, answer) for pair, answer in found if answer.metric == metric]
             if rows:
                 blocks.append(_table(subject, axis, metric, rows, bool(overall), fewer))
-    sections = [Section(_capital(title(metric)), blocks) for metric, blocks in tables.items() if blocks]
+    sections = [Section(capital(title(metric)), blocks) for metric, blocks in tables.items() if blocks]
     if not sections:
         return None
     text = (
@@ -180,7 +180,7 @@ def _table(
     if any(other.name == SEED for other in subject.axes):
         within += ", over all seeds"
     return Table(
-        literal(f"{_capital(title(metric))} by {axis.name}, {within}{fewer}."),
+        literal(f"{capital(title(metric))} by {axis.name}, {within}{fewer}."),
         ["at", literal(axis.name), *HEADER, "the second is"],
         rows,
         tuple(range(2, 2 + len(HEADER))),
@@ -190,7 +190,3 @@ def _table(
 def _row(pair: LevelPair, answer: Answer) -> Sequence[str]:
     at = ", ".join(f"{name}={text}" for name, text in pair.at.items()) or "all"
     return [*literals([at, f"{pair.first}, {pair.second}"]), *answer.cells]
-
-
-def _capital(text: str) -> str:
-    return f"{text[:1].upper()}{text[1:]}"

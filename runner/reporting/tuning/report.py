@@ -15,8 +15,9 @@ from runner.reporting.document import Document, Notice, Origin, Provenance, RunL
 from runner.reporting.figures import cover
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
+from runner.reporting.sweep.subject import key_label
 from runner.reporting.tuning.sections import front_section, history_section, keys_section, trials_section
-from runner.reporting.tuning.subject import Subject, key_label, key_value
+from runner.reporting.tuning.subject import Subject, key_value
 from runner.store import Sweep, open_run
 from runner.sweeps.measurements import Measurements, measure_sweep
 from runner.sweeps.tuning.study import Tuning, at_ends
@@ -96,7 +97,7 @@ def _goals(subject: Subject) -> str:
 def _what(subject: Subject) -> Section:
     rows = [
         [
-            key_label(key),
+            key_label(key.name),
             key_value(key.low),
             key_value(key.high),
             "logarithmic" if key.log else "linear",

@@ -12,8 +12,8 @@ from runner.reporting.document import Block, Curves, Origin, Panel, Section, Ser
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import spans_decades
-from runner.reporting.tuning.subject import Subject, key_label, key_value, label
+from runner.reporting.sweep.subject import key_label, spans_decades
+from runner.reporting.tuning.subject import Subject, key_value, label
 from runner.store import Run
 from runner.sweeps.tuning.objective import Objective
 from runner.sweeps.tuning.sampler import importances
@@ -40,7 +40,7 @@ def trials_section(subject: Subject, runs: Mapping[int, Run], commands: Mapping[
 def _trial(subject: Subject, trial: int, objectives: Sequence[Objective], run: Run, command: str) -> Section:
     params = subject.trials[trial].params
     rows = [
-        literals([key_label(key), key_value(params[key.name]), f"{key_value(key.low)} to {key_value(key.high)}"])
+        literals([key_label(key.name), key_value(params[key.name]), f"{key_value(key.low)} to {key_value(key.high)}"])
         for key in subject.keys
     ]
     goals = [objective.metric for objective in subject.objectives]
@@ -76,7 +76,7 @@ def keys_section(subject: Subject) -> Section:
                 Series("chosen", x[best], y[best], "points", hints=best_hints, runs=best_runs),
             ]
             panels.append(
-                Panel("", key_label(key), label(objective), series, key.log, spans_decades(y), (key.low, key.high))
+                Panel("", key_label(key.name), label(objective), series, key.log, spans_decades(y), (key.low, key.high))
             )
     return Section("Keys", [Curves("Good trials over the range of each key.", panels), _importance(subject)])
 
