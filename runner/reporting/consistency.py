@@ -80,16 +80,15 @@ def _column(head: str, cells: Sequence[str]) -> tuple[str, Sequence[str]]:
     factor, name = fewest_powers(numbers, [choose_unit(max(map(abs, numbers)), unit), *smaller_units(unit)], _PLAIN)
     if name == unit:
         return head, cells
-    return f"{head.removesuffix(f'({unit})')}({name})", [_scaled(cell, factor) for cell in cells]
+    scaled = [
+        number(factor * cell.value, cell.digits, plain=_PLAIN) if isinstance(cell, Shown) else cell for cell in cells
+    ]
+    return f"{head.removesuffix(f'({unit})')}({name})", scaled
 
 
 def _holds_number(cell: str) -> bool:
     """Tell whether a cell is a text with a number in it, other than a rounded zero, whose unit nobody could change."""
     return not isinstance(cell, Shown) and not cell.startswith("0 ") and any(letter.isdigit() for letter in cell)
-
-
-def _scaled(cell: str, factor: float) -> str:
-    return number(factor * cell.value, cell.digits, plain=_PLAIN) if isinstance(cell, Shown) else cell
 
 
 def _changed(sections: Sequence[Section], change: Callable[[Block], Block]) -> list[Section]:

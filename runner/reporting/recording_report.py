@@ -84,12 +84,8 @@ def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
     return numbers
 
 
-def _number(value: float | None) -> str:
-    return above_rounding(value)
-
-
 def _residuals(found: RecordingComparison) -> Table:
-    rows = [literals(row) for row in words.residual_rows(found, _number)]
+    rows = [literals(row) for row in words.residual_rows(found, above_rounding)]
     return Table("Recorded less simulated, at the run's ticks.", words.RESIDUAL_HEADER, rows, (2, 3, 4, 5))
 
 
@@ -97,7 +93,7 @@ def _friction(found: RecordingComparison) -> list[Block]:
     blocks: list[Block] = [Text(literal(text)) for text in words.friction_lines(found)]
     if found.friction is None or not found.friction.joints:
         return [Notice("warning", "No friction was identified", literal(" ".join(words.friction_lines(found))))]
-    rows = [literals(row) for row in words.friction_rows(found, _number)]
+    rows = [literals(row) for row in words.friction_rows(found, above_rounding)]
     caption = "Friction of the recorded arm; beside it what the run simulates."
     method = (
         "Residual torque $tau - (M dot.double(q) + V + G)$ with the run's model, regressed on $dot(q)$, "

@@ -39,7 +39,10 @@ def run_document(runs: Sequence[Run]) -> Document:
         abstract=f"{len(runs)} runs, {ends}.",
         sections=[
             Section("Overview", (_overview(runs), *spec_of_several(runs))),
-            *map(_section, runs, range(1, len(runs) + 1)),
+            *(
+                Section(f"Run {index}: {_name(run)}", [*_blocks(run), *_config(run), provenance([run])])
+                for index, run in enumerate(runs, start=1)
+            ),
         ],
         date=date,
         key_numbers=_numbers_of_several(runs),
@@ -147,10 +150,6 @@ def _overview(runs: Sequence[Run]) -> Table:
     header = ["run", *varying, "status", "caveats", *(literal(title(name)) for name in names)]
     first = len(varying) + 2
     return Table("Runs, with what distinguishes them; medians.", header, rows, tuple(range(first, len(header))))
-
-
-def _section(run: Run, index: int) -> Section:
-    return Section(f"Run {index}: {_name(run)}", [*_blocks(run), *_config(run), provenance([run])])
 
 
 def _blocks(run: Run) -> list[Block]:

@@ -55,7 +55,8 @@ class Likeness:
         alike = [(other, each) for other, each in found if each.symbols_alone and other != name]
         if not alike:
             return ""
-        other, best = min(alike, key=lambda each: (each[1].exchanged.total(), not _kin(each[0], name)))
+        family = name.rpartition("_")[0]
+        other, best = min(alike, key=lambda each: (each[1].exchanged.total(), each[0].rpartition("_")[0] != family))
         return f"It is the right ${_typeset_name(other)}${_exchanged(best)}."
 
 
@@ -168,7 +169,10 @@ def _shown(
         return EquationForm(label, groups, marks, note=note)
     if like:
         return EquationForm(label, note=note, whole=whole)
-    shown = _short([(left, _cut(part, marks)) for left, part in groups if _holds(part, marks)] or _begun(groups))
+    shown = _short(
+        [(left, _cut(part, marks)) for left, part in groups if any(holds(node, marks) for node in _nodes(part))]
+        or _begun(groups)
+    )
     return EquationForm(label, shown, marks, note=note, whole=whole)
 
 
@@ -178,10 +182,6 @@ def _nodes(part: Node | Matrix) -> Iterator[Node]:
             yield from row
     else:
         yield part
-
-
-def _holds(part: Node | Matrix, marked: Set[Node]) -> bool:
-    return any(holds(node, marked) for node in _nodes(part))
 
 
 def _cut(part: Node | Matrix, marked: Set[Node]) -> Node | Matrix:
@@ -233,10 +233,6 @@ def _matrix(members: Mapping[str, Node]) -> Matrix | None:
     if not (whole and rows[0] == columns[0] and rows[0] in "01" and len(rows) > 1):
         return None
     return Matrix([[members[f"{row}{column}"] for column in columns] for row in rows])
-
-
-def _kin(one: str, other: str) -> bool:
-    return one.rpartition("_")[0] == other.rpartition("_")[0]
 
 
 def _exchanged(found: Difference) -> str:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from runner.reporting.comparison.differences import Value
 from runner.reporting.comparison.figures import answers, blocks, choose_metrics, table_blocks
 from runner.reporting.comparison.messages import NOISE_ALONE, cells_told, format_count, size_told
 from runner.reporting.comparison.operand import Side, caveats_of
@@ -117,12 +116,12 @@ def _difference_tables(found: SweepComparison) -> list[Block]:
         left = len(values) - _MOST_ROWS
         more = f" {left} more differ." if left > 0 else ""
         caption = f"All resolved values that differ in the cells that both have.{more}"
-        blocks.append(Table(caption, ["key", a, b, "at"], [_row(value) for value in values[:_MOST_ROWS]]))
+        rows = [
+            literals([key_label(value.key), shorten(value.a), shorten(value.b), value.cells or "all cells"])
+            for value in values[:_MOST_ROWS]
+        ]
+        blocks.append(Table(caption, ["key", a, b, "at"], rows))
     if found.beyond.provenance:
         rows = [literals([value.key, value.a, value.b]) for value in found.beyond.provenance]
         blocks.append(Table("They were made by different versions.", ["made by", a, b], rows))
     return blocks
-
-
-def _row(value: Value) -> list[str]:
-    return literals([key_label(value.key), shorten(value.a), shorten(value.b), value.cells or "all cells"])

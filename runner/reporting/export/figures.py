@@ -52,15 +52,13 @@ def choose_figures(figures: Mapping[str, Figure], only: str | None) -> dict[str,
     """
     if not figures:
         raise RunnerError("the report has no figures")
-    found = {name: figure for name, figure in figures.items() if _is_asked(name, only)}
+    found = {
+        name: figure for name, figure in figures.items() if only is None or name == only or name.startswith(f"{only}-")
+    }
     if not found:
         known = "\n  ".join(figures)
         raise RunnerError(f"--only: no figure '{only}'{nearest(str(only), figures)}; there are:\n  {known}")
     return found
-
-
-def _is_asked(name: str, only: str | None) -> bool:
-    return only is None or name == only or name.startswith(f"{only}-")
 
 
 def write_figures(figures: Mapping[str, Figure], folder: Path, sheet: Sheet) -> Iterator[str]:

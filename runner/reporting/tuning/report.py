@@ -55,8 +55,9 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     sections.append(_all_runs(subject, sweep, made, measurements, folder))
     made_by = [(name, ", ".join(values)) for name, values in measurements.provenance.items()]
     sections.append(Section("Provenance", (Provenance([*made_by, ("tuning", tuning.folder.name)]),)))
+    goals = " and ".join(f"{objective.direction} the {title(objective.metric)}" for objective in subject.objectives)
     return Document(
-        title=f"Tuning to {_goals(subject)}",
+        title=f"Tuning to {goals}",
         subtitle=", ".join(tuning.study.overrides),
         abstract=literal(_abstract(subject)),
         sections=sections,
@@ -88,10 +89,6 @@ def _abstract(subject: Subject) -> str:
     elif subject.best:
         text += f" {len(subject.best)} trials are on the Pareto front."
     return " ".join([text, *at_ends(subject.tuning), *([CHOSEN] if subject.best else [])])
-
-
-def _goals(subject: Subject) -> str:
-    return " and ".join(f"{objective.direction} the {title(objective.metric)}" for objective in subject.objectives)
 
 
 def _what(subject: Subject) -> Section:
