@@ -14,7 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray as FloatArray
+from runner.reporting.charts.figure import Curves as Curves
 from runner.reporting.charts.figure import Map as Map
+from runner.reporting.charts.figure import Maps as Maps
+from runner.reporting.charts.figure import Origin as Origin
 from runner.reporting.charts.figure import Panel as Panel
 from runner.reporting.charts.figure import Series as Series
 from runner.reporting.claims import Verdict
@@ -72,55 +75,6 @@ class Formula:
     typst: str
     spoken: str
     number: str = ""
-
-
-@dataclass(frozen=True)
-class Origin:
-    """Where a figure or table comes from: its number in the source, the command that makes it, the commit."""
-
-    number: str = ""
-    command: str = ""
-    commit: str = ""
-
-
-@dataclass(frozen=True)
-class Curves:
-    """A figure of curves: interactive in HTML (zoom, hover, legend toggles), a still in the PDF.
-
-    Attributes:
-        caption: What is seen, in a sentence; inline mathematics as in Text.
-        panels: The axes, in reading order.
-        columns: How many panels stand beside each other.
-        origin: Its number in the source, command and commit.
-    """
-
-    block: ClassVar[str] = "curves"
-    caption: str
-    panels: Sequence[Panel]
-    columns: int = 2
-    origin: Origin = field(default_factory=Origin)
-
-
-@dataclass(frozen=True)
-class Maps:
-    """Heat maps with one scale of colours: interactive in HTML, a still in the PDF.
-
-    Attributes:
-        caption: What is seen, in a sentence; inline mathematics as in Text.
-        value_label: What the colours mean, with unit.
-        panels: The maps, in reading order.
-        log: Whether the colours follow the logarithm.
-        columns: How many maps stand beside each other.
-        origin: Its number in the source, command and commit.
-    """
-
-    block: ClassVar[str] = "maps"
-    caption: str
-    value_label: str
-    panels: Sequence[Map]
-    log: bool = False
-    columns: int = 2
-    origin: Origin = field(default_factory=Origin)
 
 
 @dataclass(frozen=True)

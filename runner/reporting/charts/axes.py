@@ -4,15 +4,14 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import SUPERSCRIPT, choose_unit
-from runner.reporting.charts.figure import MapFigure, Panel, Series
+from runner.reporting.charts.figure import Maps, Panel, Series
 
-MapOf = TypeVar("MapOf", bound=MapFigure)
 _UNIT = re.compile(r"\((m|s)\)$")
 _SMALLEST, _LARGEST = 1e-3, 1e4  # of what is written without a power of ten
 Mark = Callable[[float], str]
@@ -31,8 +30,8 @@ def in_readable_units(panels: Sequence[Panel], columns: int) -> list[Panel]:
     return [_in_unit(_in_unit(panel, row, "x"), row, "y") for row in rows for panel in row]
 
 
-def map_in_readable_units(figure: MapOf) -> MapOf:
-    """Return a figure of maps, a dataclass, with values that are lengths or times in the unit that fits the largest."""
+def map_in_readable_units(figure: Maps) -> Maps:
+    """Return a figure of maps with values that are lengths or times in the unit that fits the largest."""
     found = _UNIT.search(figure.value_label)
     if found is None:
         return figure
@@ -46,8 +45,7 @@ def map_in_readable_units(figure: MapOf) -> MapOf:
         for panel in figure.panels
     ]
     label = f"{figure.value_label[: found.start()]}({unit})"
-    scaled: MapOf = replace(figure, value_label=label, panels=panels)  # type: ignore[type-var]
-    return scaled
+    return replace(figure, value_label=label, panels=panels)
 
 
 def _in_unit(panel: Panel, row: Sequence[Panel], axis: str) -> Panel:

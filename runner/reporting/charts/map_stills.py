@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from runner.base.arrays import FloatArray
 from runner.reporting.charts import map_scale, palette
 from runner.reporting.charts.axes import map_in_readable_units
-from runner.reporting.charts.figure import Map, MapFigure
+from runner.reporting.charts.figure import Map, Maps
 from runner.reporting.charts.names import Names, literal, names_below, names_beside, wrap_text
 from runner.reporting.charts.sheet import REPORT, Sheet, render_figure
 
@@ -60,17 +60,17 @@ class _Frame:
         return sum(name.count("\n") + 1.2 for name in self.lines if name) * self.sheet.line
 
 
-def draw(maps: MapFigure, sheet: Sheet = REPORT) -> str:
+def draw(maps: Maps, sheet: Sheet = REPORT) -> str:
     """Return the maps as SVG; the same maps give the same text."""
     return render_figure(lambda: _figure(maps, sheet), sheet, "svg").decode()
 
 
-def draw_pdf(maps: MapFigure, sheet: Sheet = REPORT) -> bytes:
+def draw_pdf(maps: Maps, sheet: Sheet = REPORT) -> bytes:
     """Return the maps as PDF, a page of their size; the same maps give the same bytes."""
     return render_figure(lambda: _figure(maps, sheet), sheet, "pdf")
 
 
-def _figure(maps: MapFigure, sheet: Sheet) -> Figure:
+def _figure(maps: Maps, sheet: Sheet) -> Figure:
     maps = map_in_readable_units(maps)
     places, marks = map_scale.scale_marks(maps)
     widest = max(map(len, marks), default=0)
@@ -111,7 +111,7 @@ def _beside(panel: Map, height: float, sheet: Sheet) -> str:
     return wrap_text(panel.y_label, height / sheet.character)
 
 
-def _draw_map(axes: Axes, frame: _Frame, maps: MapFigure, colors: Normalize) -> None:
+def _draw_map(axes: Axes, frame: _Frame, maps: Maps, colors: Normalize) -> None:
     panel, sheet = frame.panel, frame.sheet
     literal(axes.set_title("", loc="left", y=1.0, pad=4), frame.title)
     literal(axes.xaxis.label, frame.x_label)
@@ -157,7 +157,7 @@ def _draw_map(axes: Axes, frame: _Frame, maps: MapFigure, colors: Normalize) -> 
             literal(text, name)
 
 
-def _print_values(axes: Axes, frame: _Frame, maps: MapFigure, shades: FloatArray, colors: Normalize) -> None:
+def _print_values(axes: Axes, frame: _Frame, maps: Maps, shades: FloatArray, colors: Normalize) -> None:
     """Print the value of each cell, in white where the cell is dark; none where they are wider than the cells."""
     values = map_scale.printed_values(frame.panel, maps)
     letter = frame.sheet.character * frame.sheet.small / frame.sheet.font
