@@ -61,9 +61,7 @@ def compare(
         pooled = compare_sweeps(one, side, names).pooled
         screen = first_screen(names or whole_metrics([found.metric for found in pooled]))
         labels = [{"first": one.name, "second": side.name}] * len(pooled)
-        frames.append(
-            comparison_frame(labels, [Asked(each.metric, each.unit, each.comparison) for each in pooled], screen)
-        )
+        frames.append(comparison_frame(labels, pooled, screen))
     return pd.concat(frames, ignore_index=True)
 
 

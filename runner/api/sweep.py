@@ -172,7 +172,6 @@ class Sweep:
             RunnerError: if there is no such axis or metric, or no two runs share their seeds.
         """
         from runner.api.compare import comparison_frame
-        from runner.reporting.answers import Asked
         from runner.reporting.comparison.pairs import levels
         from runner.reporting.sweep.subject import first_screen, whole_metrics
 
@@ -183,8 +182,7 @@ class Sweep:
         labels = [
             {**known, **found.pair.at, "first": found.pair.first, "second": found.pair.second} for found in compared
         ]
-        asked = [Asked(found.metric, found.unit, found.comparison) for found in compared]
-        return comparison_frame(labels, asked, first)
+        return comparison_frame(labels, compared, first)
 
     def __repr__(self) -> str:
         told = _told(find_status(self.stored))

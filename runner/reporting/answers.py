@@ -8,7 +8,6 @@ excludes zero exactly if the corrected p is below 5 %.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -44,8 +43,15 @@ HEADER = ("difference", "interval", "n", "effect", "p")
 _SMALLEST = 1e-3  # p-value that is told
 
 
-class Asked(NamedTuple):
-    """A comparison that is to be judged: of which metric, and its unit."""
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A comparison in one metric.
+
+    Attributes:
+        metric: Name of the metric.
+        unit: Its unit.
+        comparison: The second against the first, draw by draw.
+    """
 
     metric: str
     unit: str
@@ -53,21 +59,15 @@ class Asked(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
-    """A comparison, judged beside the others of its family.
+class Answer(Asked):
+    """A comparison, judged with the others of its family.
 
     Attributes:
-        metric: Name of the metric.
-        unit: Its unit.
-        comparison: The comparison.
         p_value: Its p, corrected for the family; None with too few pairs for any p.
         level: The level at which it was decided.
         family: Number of comparisons in the family.
     """
 
-    metric: str
-    unit: str
-    comparison: Comparison
     p_value: float | None
     level: float
     family: int
@@ -189,8 +189,8 @@ def judge(asked: Sequence[Asked], first: Sequence[str]) -> list[Answer]:
         corrected = dict(zip(tested, holm(p_values).tolist(), strict=True))
         levels = dict(zip(tested, holm_levels(p_values, ALPHA).tolist(), strict=True))
         for place in family:
-            level = levels.get(place, ALPHA / max(len(family), 1))
-            answers[place] = Answer(*asked[place], corrected.get(place), level, len(family))
+            one, level = asked[place], levels.get(place, ALPHA / max(len(family), 1))
+            answers[place] = Answer(one.metric, one.unit, one.comparison, corrected.get(place), level, len(family))
     return [answers[place] for place in range(len(asked))]
 
 

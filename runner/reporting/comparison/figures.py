@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import label_with_unit, quantity
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, judge
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, judge
 from runner.reporting.comparison.cells import Matched, label_text
 from runner.reporting.comparison.messages import POOLED
 from runner.reporting.comparison.sweeps import MetricComparison, SweepComparison, by_cell
@@ -57,7 +57,7 @@ def _differences(found: SweepComparison, metric: str) -> Panel:
     labels = [label_text(label) for label in matched.labels]
     compared = by_cell(found, metric)
     x = np.array([labels.index(label_text(one.cell)) for one in compared], dtype=float)
-    answers = judge([Asked(one.metric, one.unit, one.comparison) for one in compared], [metric])
+    answers = judge(compared, [metric])
     ends = np.array([_ends(answer) for answer in answers], dtype=float).reshape(-1, 3)
     low, median, high = np.where(np.isfinite(ends), ends, np.nan).T
     gap = np.full(len(x), np.nan)
@@ -113,8 +113,7 @@ def choose_metrics(found: SweepComparison, wanted: Sequence[str]) -> list[Metric
 def answers(found: SweepComparison, wanted: Sequence[str]) -> dict[str, Answer]:
     """Return the answer over all cells in each metric, those of the first screen first."""
     first = first_screen([one.metric for one in choose_metrics(found, wanted)])
-    asked = [Asked(one.metric, one.unit, one.comparison) for one in found.pooled]
-    judged = {answer.metric: answer for answer in judge(asked, first)}
+    judged = {answer.metric: answer for answer in judge(found.pooled, first)}
     return {name: judged[name] for name in dict.fromkeys([*first, *judged])}
 
 

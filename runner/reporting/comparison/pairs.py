@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
+from runner.reporting.answers import Asked
 from runner.statistics import Comparison, subtract
 from runner.sweeps.measurements import Axis, Measurements
 from runner.sweeps.metric_names import check_metrics
@@ -128,23 +129,17 @@ class LevelPair:
     cells: CellPairs
 
 
-@dataclass(frozen=True)
-class LevelComparison:
+@dataclass(frozen=True, eq=False)
+class LevelComparison(Asked):
     """How one level of an axis differs from another one in one metric.
 
     Attributes:
         axis: Name of the axis.
         pair: The two levels, what they are compared within, and their cells.
-        metric: Name of the metric.
-        unit: Its unit.
-        comparison: The second level against the first.
     """
 
     axis: str
     pair: LevelPair
-    metric: str
-    unit: str
-    comparison: Comparison
 
 
 def levels(
@@ -178,7 +173,7 @@ def levels(
     for name in dict.fromkeys(metrics or measurements.values):
         compared = [(pair, compare(measurements, measurements, name, pair.cells)) for pair in pairs]
         unit = measurements.units[name]
-        found += [LevelComparison(axis, pair, name, unit, result) for pair, result in compared if result is not None]
+        found += [LevelComparison(name, unit, result, axis, pair) for pair, result in compared if result is not None]
     return found
 
 
