@@ -16,7 +16,8 @@ import runner
 from bench.robot_pictures import robots
 from runner.controllers.graph import ControlGraph, Edge, Node
 from runner.controllers.operational_space.operational_space_graph import operational_space_graph
-from runner.reporting.charts import block_diagram, palette
+from runner.reporting.charts import palette
+from runner.reporting.charts.block_diagram import block_diagram
 from runner.reporting.charts.canvas import GREY, INK, drawing
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "pictures"

@@ -13,10 +13,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from runner.api.calls import calibrate, run, sweep, tune
+    from runner.api.commands import calibrate, run, sweep, tune
     from runner.api.compare import compare
     from runner.api.metric import Metric
-    from runner.api.opening import open_run, open_sweep, open_tuning
+    from runner.api.open import open_run, open_sweep, open_tuning
     from runner.api.report import Report, report
     from runner.api.run import Run
     from runner.api.sweep import Sweep
@@ -50,15 +50,15 @@ _PLACES = {
     "RunnerError": "runner.base.errors",
     "Sweep": "runner.api.sweep",
     "Tuning": "runner.api.tuning",
-    "calibrate": "runner.api.calls",
+    "calibrate": "runner.api.commands",
     "compare": "runner.api.compare",
-    "open_run": "runner.api.opening",
-    "open_sweep": "runner.api.opening",
-    "open_tuning": "runner.api.opening",
+    "open_run": "runner.api.open",
+    "open_sweep": "runner.api.open",
+    "open_tuning": "runner.api.open",
     "report": "runner.api.report",
-    "run": "runner.api.calls",
-    "sweep": "runner.api.calls",
-    "tune": "runner.api.calls",
+    "run": "runner.api.commands",
+    "sweep": "runner.api.commands",
+    "tune": "runner.api.commands",
 }
 
 

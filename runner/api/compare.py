@@ -1,27 +1,29 @@
-"""Runs or sweeps compared with each other."""
+"""Runs or sweeps compared with each other, and comparisons as a table."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from runner import store
-from runner.api.comparison_frame import comparison_frame
-from runner.api.door import door
+from runner.api.boundary import public
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.base.errors import RunnerError
-from runner.reporting.comparison.side import letter
+from runner.reporting.answers import Asked, judge
+from runner.reporting.comparison.operand import letter
 from runner.store.latest import find_folder
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.reporting.comparison.side import Side
+    from runner.reporting.comparison.operand import Side
 
 Comparable = Run | Sweep | str | Path
 
 
-@door
+@public
 def compare(
     first: Comparable, second: Comparable, *others: Comparable, metrics: str | Sequence[str] = ()
 ) -> "pd.DataFrame":
@@ -46,7 +48,6 @@ def compare(
     """
     import pandas as pd
 
-    from runner.reporting.answers import Asked
     from runner.reporting.comparison.sweeps import compare_sweeps
     from runner.reporting.sweep.subject import first_screen, whole_metrics
 
@@ -60,9 +61,7 @@ def compare(
         pooled = compare_sweeps(one, side, names).pooled
         screen = first_screen(names or whole_metrics([found.metric for found in pooled]))
         labels = [{"first": one.name, "second": side.name}] * len(pooled)
-        frames.append(
-            comparison_frame(labels, [Asked(each.metric, each.unit, each.comparison) for each in pooled], screen)
-        )
+        frames.append(comparison_frame(labels, pooled, screen))
     return pd.concat(frames, ignore_index=True)
 
 
@@ -74,7 +73,7 @@ def _opened(thing: Comparable) -> Run | Sweep:
 
 
 def _side(name: str, thing: Run | Sweep) -> "Side":
-    from runner.reporting.comparison.side import open_side, side_of_run, stored_part
+    from runner.reporting.comparison.operand import open_side, side_of_run, stored_part
     from runner.sweeps.finer_step import work_out, work_out_sweep
 
     if isinstance(thing, Run):
@@ -85,3 +84,34 @@ def _side(name: str, thing: Run | Sweep) -> "Side":
     if side.damage:
         raise RunnerError("; ".join(side.damage))
     return side
+
+
+def comparison_frame(
+    labels: Sequence[Mapping[str, str]], asked: Sequence[Asked], first: Sequence[str]
+) -> "pd.DataFrame":
+    """Return a row for each comparison of one question, with its corrected p, its interval and its word.
+
+    Args:
+        labels: Names of the things compared in each row: the columns first and second, behind the axes.
+        asked: The comparisons, in the same order.
+        first: Metrics of the first screen; see judge.
+    """
+    import pandas as pd
+
+    missing = (np.nan, np.nan)
+    rows = [
+        {
+            **label,
+            "metric": answer.metric,
+            "unit": answer.unit,
+            "difference": answer.comparison.difference,
+            "low": (answer.interval or missing)[0],
+            "high": (answer.interval or missing)[1],
+            "n": answer.comparison.n,
+            "effect": answer.comparison.effect,
+            "p": answer.p_value,
+            "word": answer.word,
+        }
+        for label, answer in zip(labels, judge(asked, first), strict=True)
+    ]
+    return pd.DataFrame(rows).astype({"low": float, "high": float, "p": float})

@@ -2,15 +2,15 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from matplotlib.figure import Figure
 
-from runner.api.again import Signals
+from runner.api.resimulate import Signals
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import label_with_unit
-from runner.reporting.charts.figure import Panel, Series
 from runner.reporting.charts.stills import as_figure, draw
+from runner.reporting.document import Curves, Panel, Series
+from runner.reporting.metric_titles import capital
 
 _JOINT = re.compile(r"(q|dq|tau)(\d+)(_command)?")
 _AXIS = re.compile(r"(\w+)_([xyz])")
@@ -25,14 +25,6 @@ _TITLES = {
     "desired": "desired tip position",
 }
 _BESIDE = {"tip": "desired"}  # what is drawn dashed beside a signal
-
-
-@dataclass(frozen=True)
-class _Curves:
-    """What is drawn; see runner.reporting.charts.figure.CurveFigure."""
-
-    panels: Sequence[Panel]
-    columns: int = 1
 
 
 def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:
@@ -65,14 +57,14 @@ def svg_of(signals: Signals, name: str) -> str:
     return draw(_curves(signals, name))
 
 
-def _curves(signals: Signals, name: str) -> _Curves:
+def _curves(signals: Signals, name: str) -> Curves:
     known = families(list(signals.frame.columns))
     if name not in known:
         raise RunnerError(f"no signal '{name}'{nearest(name, known)}; the run has: {', '.join(known)}")
     title = _TITLES.get(name, name.replace("_", " "))
     units = dict.fromkeys(signals.units[column] for column in known[name].values())
     beside = known.get(_BESIDE.get(name, ""), {})
-    return _Curves([_panel(signals, title, unit, known[name], beside) for unit in units])
+    return Curves("", [_panel(signals, title, unit, known[name], beside) for unit in units], columns=1)
 
 
 def _panel(signals: Signals, title: str, unit: str, columns: Mapping[str, str], beside: Mapping[str, str]) -> Panel:
@@ -89,4 +81,4 @@ def _panel(signals: Signals, title: str, unit: str, columns: Mapping[str, str], 
     ]
     if title == _TITLES["torque"] and unit == "N":
         title = "joint force"
-    return Panel(title[:1].upper() + title[1:], "time (s)", label_with_unit(title.split()[-1], unit), series)
+    return Panel(capital(title), "time (s)", label_with_unit(title.split()[-1], unit), series)

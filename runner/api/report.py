@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner.api import page
-from runner.api.door import door
+from runner.api.boundary import public
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
@@ -40,7 +40,7 @@ class Report:
         return [str(path) for path in (self.html, self.pdf) if path is not None]
 
 
-@door
+@public
 def report(
     things: Thing | Sequence[Thing], formats: str | Sequence[str] = ("html", "pdf"), metrics: str | Sequence[str] = ()
 ) -> Report:

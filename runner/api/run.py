@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from runner import store
 from runner.api import page
-from runner.api.door import door
+from runner.api.boundary import public
 from runner.api.metric import Metrics
 from runner.base.errors import RunnerError
 from runner.base.texts import one_line
@@ -36,11 +36,8 @@ class Run:
         >>> run.trace(repetition=2)[["t", "error_x"]].shape
         (11, 2)
 
-    Args:
-        stored: The run as it lies on the disk.
-
     Attributes:
-        stored: The same; what the other rooms of the package take.
+        stored: The run as it is stored, which other packages take.
     """
 
     def __init__(self, stored: store.Run) -> None:
@@ -121,7 +118,7 @@ class Run:
         frame = pd.DataFrame.from_dict(rows, orient="index", columns=["unit", "median", "min", "max", "n"])
         return frame.rename_axis("metric").astype({"median": float, "min": float, "max": float})
 
-    @door
+    @public
     def trace(self, repetition: int = 0) -> "pd.DataFrame":
         """Return the signals of a repetition, a row per tick; `units` tells the columns' units.
 
@@ -130,11 +127,11 @@ class Run:
         Raises:
             RunnerError: if there is no such repetition, or it cannot be had as the code has changed since.
         """
-        from runner.api.again import signals_of
+        from runner.api.resimulate import signals_of
 
         return signals_of(self.stored, repetition).frame
 
-    @door
+    @public
     def plot(self, signal: str = "error", repetition: int = 0) -> "Figure":
         """Return a signal over time as a figure of matplotlib, to be changed or saved.
 
@@ -145,12 +142,12 @@ class Run:
         Raises:
             RunnerError: if the run has no such signal; tells which it has.
         """
-        from runner.api.again import signals_of
         from runner.api.plots import figure_of
+        from runner.api.resimulate import signals_of
 
         return figure_of(signals_of(self.stored, repetition), signal)
 
-    @door
+    @public
     def sensitivity(self, parameters: str | Sequence[str] = (), repetition: int = 0) -> "Sensitivity":
         """Return the derivatives of its metrics by its parameters: what `runner sensitivity` prints, as arrays.
 
@@ -169,7 +166,7 @@ class Run:
         groups = [parameters] if isinstance(parameters, str) else parameters
         return of_run(self.stored, groups or GROUPS, repetition)
 
-    @door
+    @public
     def compare_recording(
         self, recording: str | Path, columns: str | Path, fill_gaps: float = 0.0
     ) -> "RecordingComparison":
@@ -222,8 +219,8 @@ class Run:
         return key_metrics(self.stored, most)
 
     def _picture(self) -> str:
-        from runner.api.again import Signals
         from runner.api.plots import svg_of
+        from runner.api.resimulate import Signals
 
         try:
             signals = Signals(self.stored.trace, self.stored.units)

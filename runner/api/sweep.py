@@ -9,7 +9,7 @@ import numpy as np
 
 from runner import store
 from runner.api import page
-from runner.api.door import door
+from runner.api.boundary import public
 from runner.api.run import Run
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.quantities import quantity
@@ -39,11 +39,8 @@ class Sweep:
         >>> sweep.run(robot="mini", controller="computed_torque").status
         'ok'
 
-    Args:
-        stored: The sweep as it lies on the disk.
-
     Attributes:
-        stored: The same; what the other rooms of the package take.
+        stored: The sweep as it is stored, which other packages take.
     """
 
     def __init__(self, stored: store.Sweep) -> None:
@@ -76,7 +73,7 @@ class Sweep:
         """
         return map(Run, self.stored.runs())
 
-    @door
+    @public
     def run(self, **values: object) -> Run:
         """Return the one run with some values of the axes; two underscores in a keyword stand for a dot.
 
@@ -96,7 +93,7 @@ class Sweep:
             raise RunnerError("no run of the sweep has these values together")
         return Run(store.Finished(self.stored.outputs).open(self.stored.hashes[int(cells[0])]))
 
-    @door
+    @public
     def to_frame(
         self, metrics: str | Sequence[str] | None = None, level: Literal["cells", "repetitions"] = "cells"
     ) -> "pd.DataFrame":
@@ -154,7 +151,7 @@ class Sweep:
         none = pd.DataFrame(columns=[*keys, "repetition", "metric", "unit", "value"])
         return pd.concat(parts, ignore_index=True) if parts else none
 
-    @door
+    @public
     def compare(
         self, *, by: str, within: str | Sequence[str] | None = None, metrics: str | Sequence[str] | None = None
     ) -> "pd.DataFrame":
@@ -174,9 +171,8 @@ class Sweep:
         Raises:
             RunnerError: if there is no such axis or metric, or no two runs share their seeds.
         """
-        from runner.api.comparison_frame import comparison_frame
-        from runner.reporting.answers import Asked
-        from runner.reporting.comparison.levels import levels
+        from runner.api.compare import comparison_frame
+        from runner.reporting.comparison.pairs import levels
         from runner.reporting.sweep.subject import first_screen, whole_metrics
 
         inside = [within] if isinstance(within, str) else within
@@ -186,8 +182,7 @@ class Sweep:
         labels = [
             {**known, **found.pair.at, "first": found.pair.first, "second": found.pair.second} for found in compared
         ]
-        asked = [Asked(found.metric, found.unit, found.comparison) for found in compared]
-        return comparison_frame(labels, asked, first)
+        return comparison_frame(labels, compared, first)
 
     def __repr__(self) -> str:
         told = _told(find_status(self.stored))

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from runner import store
 from runner.api import page
-from runner.api.door import door
+from runner.api.boundary import public
 from runner.api.run import Run
 from runner.base.errors import RunnerError
 from runner.base.quantities import quantity
@@ -20,11 +20,8 @@ if TYPE_CHECKING:
 class Tuning:
     """A stored tuning: `runner.tune` makes one, `runner.open_tuning` opens one.
 
-    Args:
-        stored: The tuning as it lies on the disk.
-
     Attributes:
-        stored: The same; what the other rooms of the package take.
+        stored: The tuning as it is stored, which other packages take.
     """
 
     def __init__(self, stored: "StoredTuning") -> None:
@@ -52,7 +49,7 @@ class Tuning:
         columns = [*(key.name for key in self.stored.study.keys), *objectives, "failure", "hash", "best"]
         return pd.DataFrame(rows, columns=columns).rename_axis("trial")
 
-    @door
+    @public
     def best(self) -> Run:
         """Return the run of the best trial; of several objectives, that of the Pareto front's first.
 

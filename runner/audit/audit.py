@@ -1,16 +1,20 @@
-"""Verdicts on every equation of a source, and their table as CSV."""
+"""Verdicts on every equation of a source, their table as CSV, and the inventory of the source."""
 
 import csv
 import io
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
-from runner.audit.entry import Form, Part, parts
-from runner.audit.sources import Where, sources
+from pydantic import Field
+
+from runner.audit.entry import Form, Part, entries, parts
+from runner.audit.sources import Where, source_of, sources
 from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
 from runner.base import progress
+from runner.base.data_file import read_data
 from runner.base.progress.stages import AUDITING
 from runner.base.texts import table_cell
+from runner.schema.model import StrictModel
 
 
 def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:
@@ -83,3 +87,55 @@ def _row(judged: Judged) -> dict[str, str]:
 
 def _plain(form: Form) -> str:
     return "; ".join(f"{name} = {text}" for name, text in form.elements.items()) or form.math
+
+
+class Place(StrictModel):
+    """A section or page.
+
+    Attributes:
+        place: Its name.
+        equations: Number or name of each equation printed there, in order.
+        lost: Those that must have stood there and are not in the text.
+    """
+
+    place: str
+    equations: list[str]
+    lost: list[str] = Field(default_factory=list)
+
+
+class Inventory(StrictModel):
+    """Equations of a source by section or page, as the reference for the audit's coverage.
+
+    It is written from the source's text in reading order, independently of the entries. The file is
+    `equations/inventory.yaml` in the study's folder:
+
+        counted: one line for each equation with a sign of equality; ...
+        places:
+          - place: Inverse kinematics, page 8
+            equations: [q1, p3, p4, q2, p1, p2, M, q4]
+            lost: [..]                 # equations that must have stood there and that the text does not show at all
+
+    Attributes:
+        title: How it is cited.
+        found: What is wrong with its equations, and why, in a few sentences; inline mathematics as in reports.
+        counted: What counts as an equation, in a sentence.
+        places: In order.
+    """
+
+    title: str
+    found: str
+    counted: str
+    places: list[Place]
+
+
+def inventory(where: Where) -> Inventory:
+    """Return the inventory of a source."""
+    return read_data(source_of(where).equations / "inventory.yaml", Inventory)
+
+
+def differences(where: Where) -> list[str]:
+    """Return what stands in the inventory and not in the audit, and the other way round, in words; empty when equal."""
+    listed = Counter((place.place, number) for place in inventory(where).places for number in place.equations)
+    audited = Counter((entry.place, entry.number) for _, entry in entries(where))
+    missing = [f"{place}: {number} is not audited" for place, number in (listed - audited).elements()]
+    return missing + [f"{place}: {number} is not in the inventory" for place, number in (audited - listed).elements()]

@@ -28,8 +28,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.audit.chains import jacobian_by_differences
-from runner.audit.truth import Symbols, Truth, along, columns, coordinates, whole_and_elements
+from runner.audit.truth import Symbols, Truth, along, columns, coordinates, jacobian_by_differences, whole_and_elements
 from runner.audit.urdf_chain import UrdfChain
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest

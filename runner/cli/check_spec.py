@@ -27,7 +27,7 @@ def check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | Non
     Raises:
         RunnerError: for a run that lacks a metric of its spec.
     """
-    from runner.reporting.spec_words import HEADER
+    from runner.reporting.spec_blocks import HEADER
 
     rows, good = [], []
     for run, named in zip(runs, [[cell] for cell in cells] or [[]], strict=True):
@@ -45,7 +45,7 @@ def check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | Non
 
 def _rows(run: "Run", at_most: float | None) -> Iterator[list[str]]:
     """Yield for each bound what is said of it, and its row."""
-    from runner.reporting.spec_words import lacking_text, spec_rows
+    from runner.reporting.spec_blocks import lacking_text, spec_rows
 
     if run.spec is None:
         raise RunnerError(f"{run.folder}: has no spec, which the others have; run it again with theirs")

@@ -7,11 +7,11 @@ from pathlib import Path
 from runner.base.texts import one_line
 from runner.cli.columns import COMPARED, align_columns, answer_cells
 from runner.reporting.answers import EXPLAINED, Asked, judge
-from runner.reporting.comparison.caveats import caveats_of
 from runner.reporting.comparison.cells import label_text
-from runner.reporting.comparison.levels import levels
-from runner.reporting.comparison.side import Side, open_side, stored_part
-from runner.reporting.comparison.words import NOISE_ALONE, format_count, noise_alone
+from runner.reporting.comparison.messages import NOISE_ALONE, format_count
+from runner.reporting.comparison.operand import Side, caveats_of, open_side, stored_part
+from runner.reporting.comparison.pairs import levels
+from runner.reporting.comparison.sweeps import noise_alone
 from runner.reporting.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep
 from runner.sweeps.finer_step import work_out_sweep

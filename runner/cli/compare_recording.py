@@ -26,7 +26,7 @@ def print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: flo
     from runner.base import progress
     from runner.base.progress.stages import READING, SOON, of_report
     from runner.recordings.compare import compare_recording
-    from runner.reporting.recording.report import recording_document, report_folder
+    from runner.reporting.recording_report import recording_document, report_folder
     from runner.reporting.render import write_report
     from runner.store.latest import note
 

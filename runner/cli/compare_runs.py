@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from runner.base.texts import one_line
 from runner.cli.columns import COMPARED, align_columns, answer_cells, number
-from runner.reporting.comparison.side import letter
+from runner.reporting.comparison.operand import letter
 
 if TYPE_CHECKING:
-    from runner.reporting.comparison.side import Side
+    from runner.reporting.comparison.operand import Side
     from runner.store import Run
 
 # What a result may follow from beside its config; date, machine and command tell nothing about the physics.
@@ -36,9 +36,9 @@ def print_runs(runs: "Sequence[Run]", metrics: Sequence[str]) -> None:
 
 def _print_two(a: "Run", b: "Run", name: str, metrics: Sequence[str], end: str) -> None:
     from runner import store
-    from runner.reporting.comparison.beyond import find_differences
     from runner.reporting.comparison.cells import one_cell
-    from runner.reporting.comparison.side import side_of_run
+    from runner.reporting.comparison.differences import find_differences
+    from runner.reporting.comparison.operand import side_of_run
     from runner.sweeps.finer_step import work_out
 
     for run in (a, b):
@@ -107,8 +107,9 @@ def _paired(a: "Side", b: "Side", metrics: Sequence[str]) -> str:
     """Return the comparison of two runs on the same seeds, repetition by repetition, or why there is none."""
     from runner.reporting.answers import EXPLAINED, Asked, judge
     from runner.reporting.comparison.cells import one_cell
+    from runner.reporting.comparison.messages import NOISE_ALONE
     from runner.reporting.comparison.pairs import compare, share_seeds
-    from runner.reporting.comparison.words import NOISE_ALONE, noise_alone
+    from runner.reporting.comparison.sweeps import noise_alone
     from runner.reporting.sweep.subject import first_screen, whole_metrics
     from runner.statistics import SMALLEST_SAMPLE
 

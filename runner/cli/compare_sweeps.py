@@ -7,13 +7,11 @@ from pathlib import Path
 from runner.base.texts import one_line
 from runner.cli.columns import COMPARED, align_columns, answer_cells, number
 from runner.reporting.answers import EXPLAINED, Asked, judge
-from runner.reporting.comparison.beyond import Beyond, Value
-from runner.reporting.comparison.caveats import SideCaveat, caveats_of
 from runner.reporting.comparison.cells import label_text
-from runner.reporting.comparison.side import letter, open_side, stored_part
-from runner.reporting.comparison.summary import cells_told, size_told
+from runner.reporting.comparison.differences import Beyond, Value
+from runner.reporting.comparison.messages import NOISE_ALONE, POOLED, cells_told, size_told
+from runner.reporting.comparison.operand import SideCaveat, caveats_of, letter, open_side, stored_part
 from runner.reporting.comparison.sweeps import MetricComparison, SweepComparison, compare_sweeps
-from runner.reporting.comparison.words import NOISE_ALONE, POOLED
 from runner.reporting.sweep.subject import first_screen, whole_metrics
 from runner.store import open_sweep
 from runner.sweeps.finer_step import work_out_sweep

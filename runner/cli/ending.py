@@ -59,7 +59,7 @@ def _tell_spec(run: "Run") -> None:
     if run.spec is None:
         return
     from runner.cli.columns import align_columns
-    from runner.reporting.spec_words import HEADER, lacking_text, spec_rows
+    from runner.reporting.spec_blocks import HEADER, lacking_text, spec_rows
 
     print(align_columns([HEADER, *spec_rows(run.spec)]), file=sys.stderr)
     lacking = lacking_text(run.spec, run.metrics)

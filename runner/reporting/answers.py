@@ -8,12 +8,11 @@ excludes zero exactly if the corrected p is below 5 %.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from runner.base.quantities import ROUNDING, number, quantity, with_ends
-from runner.reporting.metric_titles import title
+from runner.reporting.metric_titles import capital, title
 from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
 
 ALPHA = 0.05
@@ -44,8 +43,15 @@ HEADER = ("difference", "interval", "n", "effect", "p")
 _SMALLEST = 1e-3  # p-value that is told
 
 
-class Asked(NamedTuple):
-    """A comparison that is to be judged: of which metric, and its unit."""
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """A comparison in one metric.
+
+    Attributes:
+        metric: Name of the metric.
+        unit: Its unit.
+        comparison: The second against the first, draw by draw.
+    """
 
     metric: str
     unit: str
@@ -53,21 +59,15 @@ class Asked(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Answer:
-    """A comparison, judged beside the others of its family.
+class Answer(Asked):
+    """A comparison, judged with the others of its family.
 
     Attributes:
-        metric: Name of the metric.
-        unit: Its unit.
-        comparison: The comparison.
         p_value: Its p, corrected for the family; None with too few pairs for any p.
         level: The level at which it was decided.
         family: Number of comparisons in the family.
     """
 
-    metric: str
-    unit: str
-    comparison: Comparison
     p_value: float | None
     level: float
     family: int
@@ -132,8 +132,7 @@ class Answer:
             second: What the second is called.
             beside: A sentence between the two, with a space before it.
         """
-        name = title(self.metric)
-        head, told = f"{name[:1].upper()}{name[1:]}:", self._evidence()
+        head, told = f"{capital(title(self.metric))}:", self._evidence()
         if self.sign:
             unknown = "" if self.comparison.error is not None else "; the plant's own error in it is not known"
             return f"{head} {second} is {self.word} than {first} by {self.amount} ({told}{unknown}).{beside}"
@@ -190,8 +189,8 @@ def judge(asked: Sequence[Asked], first: Sequence[str]) -> list[Answer]:
         corrected = dict(zip(tested, holm(p_values).tolist(), strict=True))
         levels = dict(zip(tested, holm_levels(p_values, ALPHA).tolist(), strict=True))
         for place in family:
-            level = levels.get(place, ALPHA / max(len(family), 1))
-            answers[place] = Answer(*asked[place], corrected.get(place), level, len(family))
+            one, level = asked[place], levels.get(place, ALPHA / max(len(family), 1))
+            answers[place] = Answer(one.metric, one.unit, one.comparison, corrected.get(place), level, len(family))
     return [answers[place] for place in range(len(asked))]
 
 

@@ -13,10 +13,9 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.texts import plain
 from runner.reporting.charts import palette
+from runner.reporting.charts.axes import in_readable_units, marks
 from runner.reporting.charts.figure import shares_legend, upright
 from runner.reporting.charts.thinning import band, thin, usable
-from runner.reporting.charts.ticks import marks
-from runner.reporting.charts.units import in_readable_units
 from runner.reporting.document import Curves, Panel, Series
 
 Json = dict[str, Any]

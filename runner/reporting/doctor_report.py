@@ -7,7 +7,7 @@ from runner.base.quantities import number
 from runner.doctor.examination import Examination
 from runner.doctor.finding import GRADES
 from runner.reporting.bodies import playback_bodies
-from runner.reporting.charts import arm_motion
+from runner.reporting.charts.arm import arm_motion
 from runner.reporting.document import Document, Notice, Playback, Provenance, Section, Table
 from runner.reporting.markup import literal, literals
 from runner.robots.model import RobotModel

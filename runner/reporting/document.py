@@ -6,7 +6,7 @@ become markup. A literal dollar sign is written twice. `§2.1` is a link to that
 "table 2.1" are links if the report contains them.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
@@ -14,12 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray as FloatArray
+from runner.reporting.charts.figure import Curves as Curves
 from runner.reporting.charts.figure import Map as Map
+from runner.reporting.charts.figure import Maps as Maps
+from runner.reporting.charts.figure import Origin as Origin
 from runner.reporting.charts.figure import Panel as Panel
 from runner.reporting.charts.figure import Series as Series
-from runner.reporting.claim import Claim
+from runner.reporting.claims import Verdict
 from runner.reporting.equation import Equation as Equation
 from runner.reporting.equation import EquationForm as EquationForm
+from runner.reporting.equation import EquationVerdict
 from runner.reporting.equation import Matrix as Matrix
 
 
@@ -71,55 +75,6 @@ class Formula:
     typst: str
     spoken: str
     number: str = ""
-
-
-@dataclass(frozen=True)
-class Origin:
-    """Where a figure or table comes from: its number in the source, the command that makes it, the commit."""
-
-    number: str = ""
-    command: str = ""
-    commit: str = ""
-
-
-@dataclass(frozen=True)
-class Curves:
-    """A figure of curves: interactive in HTML (zoom, hover, legend toggles), a still in the PDF.
-
-    Attributes:
-        caption: What is seen, in a sentence; inline mathematics as in Text.
-        panels: The axes, in reading order.
-        columns: How many panels stand beside each other.
-        origin: Its number in the source, command and commit.
-    """
-
-    block: ClassVar[str] = "curves"
-    caption: str
-    panels: Sequence[Panel]
-    columns: int = 2
-    origin: Origin = field(default_factory=Origin)
-
-
-@dataclass(frozen=True)
-class Maps:
-    """Heat maps with one scale of colours: interactive in HTML, a still in the PDF.
-
-    Attributes:
-        caption: What is seen, in a sentence; inline mathematics as in Text.
-        value_label: What the colours mean, with unit.
-        panels: The maps, in reading order.
-        log: Whether the colours follow the logarithm.
-        columns: How many maps stand beside each other.
-        origin: Its number in the source, command and commit.
-    """
-
-    block: ClassVar[str] = "maps"
-    caption: str
-    value_label: str
-    panels: Sequence[Map]
-    log: bool = False
-    columns: int = 2
-    origin: Origin = field(default_factory=Origin)
 
 
 @dataclass(frozen=True)
@@ -195,6 +150,48 @@ class Table:
     code: Sequence[int] = ()
     folded: bool = False
     badges: Sequence[int] = ()
+
+
+@dataclass(frozen=True)
+class ClaimResult:
+    """What the runs give for one claim under one preset.
+
+    Attributes:
+        preset: Name of the preset; empty where there is one way to take the claim.
+        measured: Median and spread over the seeds, formatted with unit, such as "1.41 s (1.12 to 1.77)".
+        verdict: How it compares with what the source says.
+        words: What the preset is called.
+        hangs: What the verdict hangs on, such as the engine, and what it would be otherwise; empty for nothing.
+    """
+
+    preset: str
+    measured: str
+    verdict: Verdict | EquationVerdict
+    words: str = ""
+    hangs: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A published number beside ours, with a verdict for each preset.
+
+    Attributes:
+        number: Its number in our list of claims.
+        statement: What the source says.
+        place: Where it says so, such as "section 3.3.1, page 38".
+        printed: The printed value, formatted with unit; empty where it is a statement in words.
+        findings: One for each preset.
+        reason: Why the verdict is what it is; inline mathematics as in Text.
+        command: The command that makes the runs behind it.
+    """
+
+    number: str
+    statement: str
+    place: str
+    printed: str
+    findings: Sequence[ClaimResult]
+    reason: str
+    command: str = ""
 
 
 @dataclass(frozen=True)

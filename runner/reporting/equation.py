@@ -1,15 +1,23 @@
-"""Printed equations in a report: forms, verdict and reading order."""
+"""Printed equations in a report: forms, verdict, reading order and the scripts of their names."""
 
+import re
 from collections.abc import Iterable, Sequence, Set
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from runner.base.expressions.tree import Node, size
-from runner.reporting.claim import EquationVerdict
+
+EquationVerdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
 
 SHOWN: tuple[EquationVerdict, ...] = ("wrong as printed", "unreadable", "correct after repair")
 """Verdicts that need a look, in the order of reading."""
 FOLDED: tuple[EquationVerdict, ...] = ("correct", "definition")
 """Verdicts that need none: the page folds their equations, paper lists their names."""
+_NAME = re.compile(
+    r"(?<!\w)(?P<frame>\d?)(?P<letter>[^\W\d_])"
+    r"(?:_(?P<below>[^\W_]+(?:,\d\d)?)|(?P<digits>\d+)|(?P<difference>\(\d(?:-\d)+\)))?"
+    r"(?:\^(?P<above>[\w+]+))?(?![\w\^])"
+)
 
 
 @dataclass(frozen=True)
@@ -99,3 +107,40 @@ def by_place(rows: Iterable[Equation]) -> list[tuple[str, list[Equation]]]:
     for row in rows:
         found.setdefault(row.place, []).append(row)
     return list(found.items())
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A letter with its scripts; or plain text, which has none and no letter.
+
+    Attributes:
+        text: The letter, or the text.
+        frame: What stands above the line before it.
+        below: What stands below the line behind it.
+        above: What stands above the line behind it.
+    """
+
+    text: str
+    frame: str = ""
+    below: str = ""
+    above: str = ""
+
+    @property
+    def plain(self) -> bool:
+        """Whether it is text."""
+        return not (self.frame or self.below or self.above)
+
+
+def symbols_in(text: str) -> list[Symbol]:
+    """Return a name in pieces: letters that have scripts, and the text between them."""
+    found: list[Symbol] = []
+    end = 0
+    for match in _NAME.finditer(text):
+        below = match["below"] or match["digits"] or (match["difference"] or "").replace("-", "−")
+        if match["frame"] or below or match["above"]:
+            found += [
+                Symbol(text[end : match.start()]),
+                Symbol(match["letter"], match["frame"], below, match["above"] or ""),
+            ]
+            end = match.end()
+    return [each for each in (*found, Symbol(text[end:])) if each.text]

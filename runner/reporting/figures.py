@@ -1,17 +1,18 @@
-"""Figures of a stored run in the layout of the thesis."""
+"""Figures of a stored run in the layout of the thesis, and its picture on the first screen."""
 
 import numpy as np
 import pandas as pd
 
 from runner.reporting.bodies import playback_bodies
-from runner.reporting.charts import arm_motion
+from runner.reporting.charts.arm import arm_motion, moving_arm
 from runner.reporting.charts.thinning import spaced_indices
-from runner.reporting.document import Curves, Origin, Panel, Playback, Series
+from runner.reporting.document import Cover, Curves, Origin, Panel, Playback, Series
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
 
 AXES = ("x", "y", "z")
 _STILLS = 6  # instants in the still picture of a motion
+_FRAMES = 60
 
 
 def origin(job: Run | Calibration, number: str = "") -> Origin:
@@ -111,3 +112,54 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
     path = desired if moving else np.vstack([tip[0], desired[0]])
     still = arm_motion(model, q[stills], t[stills].tolist(), path=tip, desired=path, goal=desired[-1])
     return Playback(caption, t[shown], playback_bodies(run.urdf, model, q[shown]), tip, path, still, origin(run))
+
+
+def macro_mini_targets(
+    run: Run, number: str = "", caption: str = "", until: float | None = None, axis: str = "x"
+) -> Curves:
+    """Return how the way to the desired tip is shared between the carrying arm and the riding one, along one axis.
+
+    Args:
+        run: A run of a robot with two stages.
+        number: Number of the figure in the source.
+        caption: What is seen; "" takes a sentence of its own.
+        until: End of the time axis, in s; None shows the whole run.
+        axis: The axis of the base frame: x, y or z.
+    """
+    trace = until_time(run, until)
+    macro, mini = list(run.provenance["stages"])[:2]
+    t = trace["t"].to_numpy()
+    desired, tip, end_point = (trace[f"{stem}_{axis}"].to_numpy() for stem in ("desired", "tip", f"{macro}_tip"))
+    big, small = macro.capitalize(), mini.capitalize()
+    positions = (
+        Series("tip", t, tip, color=0),
+        Series(f"{big} end point", t, end_point, color=1),
+        Series("desired tip", t, desired, "dashed", color=7),
+    )
+    shares = (
+        Series(f"tip less {big} end point", t, tip - end_point, color=0),
+        Series(f"desired tip less {big} end point", t, desired - end_point, "dashed", color=7),
+    )
+    panels = (
+        Panel(f"Positions in {axis} direction", "time (s)", f"{axis} (m)", positions),
+        Panel(f"The {small}'s share of them", "time (s)", f"{axis} (m)", shares),
+    )
+    caption = caption or f"How {big} and {small} share the way to the desired tip, in {axis} direction."
+    return Curves(caption, panels, origin=origin(run, number))
+
+
+def cover(run: Run, caption: str, until: float | None = None) -> Cover:
+    """Return the picture of a run for the first screen.
+
+    Args:
+        run: The run.
+        caption: What moves.
+        until: End of the part shown, in s; None shows it all.
+    """
+    trace = until_time(run, until)
+    trace = trace[np.isfinite(joint_columns(trace, "q")).all(axis=1)]
+    q, t, tip = joint_columns(trace, "q"), trace["t"].to_numpy(), columns(trace, "tip")
+    few, path = spaced_indices(len(t), _FRAMES), spaced_indices(len(t), 5 * _FRAMES)
+    desired = columns(trace, "desired")[path]
+    moving = moving_arm(model_of(run), q[few], float(t[-1] - t[0]), tip[path], desired)
+    return Cover(caption, moving, playback(run, caption, until).still)

@@ -17,9 +17,9 @@ from runner.reporting import formulas, outline, playback
 from runner.reporting.charts import palette
 from runner.reporting.curves import plotly_spec
 from runner.reporting.document import Curves, Document, Maps, Playback, RunList
-from runner.reporting.formula_sheet import FormulaSheet
+from runner.reporting.formulas import FormulaSheet
 from runner.reporting.maps import maps_spec
-from runner.reporting.places import Places
+from runner.reporting.outline import Places
 from runner.reporting.run_list import run_list_spec
 from runner.reporting.tally import tallies
 from runner.reporting.templating import Code, html_environment
@@ -33,8 +33,7 @@ _SCRIPTS = ("report", *_OF_PLOTS, "figure_tools")
 def render(document: Document) -> str:
     """Return a document as an HTML page."""
     progress.begin(HTML)
-    displayed, inline = outline.formulas(document)
-    images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
+    images = formulas.draw_all(document)
     sheet = FormulaSheet()
     has_plots, has_run_list, has_playback = (
         any(isinstance(block, kinds) for block in outline.blocks(document))

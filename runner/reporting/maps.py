@@ -4,17 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from runner.reporting.charts.map_scale import (
-    CONTOURS,
-    MOST_PARTED,
-    OVERLAY,
-    printed_values,
-    prints_values,
-    scale_marks,
-    scale_values,
-    value_range,
-)
-from runner.reporting.charts.units import map_in_readable_units
+from runner.reporting.charts import map_scale
+from runner.reporting.charts.axes import map_in_readable_units
 from runner.reporting.curves import named_places, neutral
 from runner.reporting.document import Map, Maps
 
@@ -27,14 +18,14 @@ def maps_spec(block: Maps) -> list[Json]:
     Names of columns and rows go with them, and whether colours follow the logarithm: for keyboards and saved data.
     """
     block = map_in_readable_units(block)
-    low, high = value_range(block)
+    low, high = map_scale.value_range(block)
     return [_map(panel, block, low, high) for panel in block.panels]
 
 
 def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
     columns, rows = list(range(len(panel.x_names))), list(range(len(panel.y_names)))
-    colors = scale_values(panel.values, block.log)
-    places, marks = scale_marks(block)
+    colors = map_scale.scale_values(panel.values, block.log)
+    places, marks = map_scale.scale_marks(block)
     drawn: Json = {
         "type": "contour" if panel.contours else "heatmap",
         "x": columns,
@@ -53,11 +44,11 @@ def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
         "hoverinfo": "skip",
     }
     if panel.contours:
-        drawn |= {"ncontours": CONTOURS, "line": {"width": 0.7, "color": "#ffffff"}}
-    elif max(panel.values.shape) <= MOST_PARTED:
+        drawn |= {"ncontours": map_scale.CONTOURS, "line": {"width": 0.7, "color": "#ffffff"}}
+    elif max(panel.values.shape) <= map_scale.MOST_PARTED:
         drawn |= {"xgap": 1, "ygap": 1}
-    if prints_values(panel, block):
-        drawn |= {"text": printed_values(panel, block), "texttemplate": "%{text}"}
+    if map_scale.prints_values(panel, block):
+        drawn |= {"text": map_scale.printed_values(panel, block), "texttemplate": "%{text}"}
     if panel.hints:
         drawn |= {"hovertext": _by_rows([neutral(hint) for hint in panel.hints], len(columns)), "hoverinfo": "text"}
     if panel.runs:
@@ -70,7 +61,7 @@ def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
         "hovermode": "closest",
     }
     read = {"names": [list(map(neutral, names)) for names in (panel.x_names, panel.y_names)], "log": block.log}
-    return {"traces": traces, "colors": [OVERLAY] * len(traces), "layout": layout, **read}
+    return {"traces": traces, "colors": [map_scale.OVERLAY] * len(traces), "layout": layout, **read}
 
 
 def _overlay(panel: Map) -> list[Json]:

@@ -23,15 +23,16 @@ _WEB = re.compile(r"https?://\S+")
 
 
 @dataclass(frozen=True)
-class Literal:
-    """Characters shown as they are.
+class Span:
+    """A part of a text that is shown in one way; literally, unless one of the following is set.
 
     Attributes:
-        text: The characters.
-        math: False, as of all that is no mathematics.
-        anchor: Empty, as of all that is no link within the report.
-        mark: "emphasis" or "code" where they are set so.
-        address: Where a link to a page of the web leads to.
+        text: The characters; of mathematics, in Typst's notation without its dollar signs.
+        math: Whether it is mathematics.
+        anchor: Name of the section, claim, figure or table that it links to, as in outline.py. It is shown
+            literally if the report has no such place.
+        mark: "emphasis" or "code" if it is set so.
+        address: Web address that it links to.
     """
 
     text: str
@@ -39,36 +40,6 @@ class Literal:
     anchor: str = ""
     mark: str = ""
     address: str = ""
-
-
-@dataclass(frozen=True)
-class Link:
-    """A link to a section, a claim, a figure or a table; shown literally where the report has no such place.
-
-    Attributes:
-        text: What is shown.
-        anchor: Name of the place that it leads to; see runner/reporting/places.py.
-        math: False, as of all that is no mathematics.
-        mark: Empty, as of all that is not marked.
-        address: Empty, as of all that leads to no page of the web.
-    """
-
-    text: str
-    anchor: str
-    math: bool = False
-    mark: str = ""
-    address: str = ""
-
-
-@dataclass(frozen=True)
-class Math:
-    """Mathematics in Typst's notation, without its dollar signs."""
-
-    text: str
-    math: bool = True
-
-
-Span = Literal | Link | Math
 
 
 def anchor(number: str) -> str:
@@ -113,13 +84,13 @@ def spans(text: str) -> list[Span]:
     result: list[Span] = []
     for match in _SPAN.finditer(plain(text)):
         if match[1] is not None and match[1].strip():
-            result.append(Math(match[1].strip()))
+            result.append(Span(match[1].strip(), math=True))
             continue
         shown = "$" if match[0] == "$$" else match[0]
-        if result and isinstance(result[-1], Literal):
+        if result and not result[-1].math:
             shown = result.pop().text + shown
-        result.append(Literal(shown))
-    return [part for span in result for part in (_marks(span.text) if isinstance(span, Literal) else [span])]
+        result.append(Span(shown))
+    return [part for span in result for part in ([span] if span.math else _marks(span.text))]
 
 
 def _marks(text: str) -> list[Span]:
@@ -135,22 +106,22 @@ def _marks(text: str) -> list[Span]:
 def _marked_span(match: re.Match[str]) -> list[Span]:
     for mark in MARKS:
         if match[mark] is not None:
-            return [Literal(match[mark], mark=mark)]
+            return [Span(match[mark], mark=mark)]
     if _WEB.fullmatch(match["address"]):
-        return [Literal(match["text"], address=match["address"])]
-    return [Literal(f"{match['text']} ({match['address']})")]
+        return [Span(match["text"], address=match["address"])]
+    return [Span(f"{match['text']} ({match['address']})")]
 
 
 def _links(text: str) -> list[Span]:
     found: list[Span] = []
     end = 0
     for match in _LINK.finditer(text):
-        found += [Literal(text[end : match.start()]), _link(match)]
+        found += [Span(text[end : match.start()]), _link(match)]
         end = match.end()
-    return [span for span in [*found, Literal(text[end:])] if span.text]
+    return [span for span in [*found, Span(text[end:])] if span.text]
 
 
-def _link(match: re.Match[str]) -> Link:
+def _link(match: re.Match[str]) -> Span:
     if match["section"]:
-        return Link(f"section {match['section']}", anchor(match["section"]))
-    return Link(match[0], f"{match['kind'].lower()}-{match['number'].replace('.', '-')}")
+        return Span(f"section {match['section']}", anchor=anchor(match["section"]))
+    return Span(match[0], anchor=f"{match['kind'].lower()}-{match['number'].replace('.', '-')}")

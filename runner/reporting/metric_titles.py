@@ -50,6 +50,11 @@ def title(name: str) -> str:
     return f"{_spaced(stage).capitalize()}: {told}" if stage else told
 
 
+def capital(text: str) -> str:
+    """Return a text with a capital as its first letter."""
+    return text[:1].upper() + text[1:]
+
+
 def metric_label(name: str, unit: str) -> str:
     """Return the title of a metric with its unit, as on the axis of a figure."""
     return label_with_unit(title(name), unit)

@@ -11,7 +11,7 @@ from runner.base.progress.stages import FIGURES, PDF
 from runner.reporting import formulas, outline
 from runner.reporting.charts import map_stills, stills
 from runner.reporting.document import Curves, Document, Maps
-from runner.reporting.places import Places
+from runner.reporting.outline import Places
 from runner.reporting.run_list import table_header, table_rows
 from runner.reporting.tally import tallies
 from runner.reporting.templating import typst_environment
@@ -20,8 +20,7 @@ from runner.reporting.templating import typst_environment
 def render(document: Document) -> bytes:
     """Return a document as PDF; the same document gives the same bytes."""
     progress.begin(FIGURES, None, outline.count_figures(document), "figures")
-    displayed, inline = outline.formulas(document)
-    images = {True: formulas.draw(displayed, displayed=True), False: formulas.draw(inline, displayed=False)}
+    images = formulas.draw_all(document)
     with tempfile.TemporaryDirectory() as name:
         folder = _Folder(Path(name))
         source = (

@@ -7,9 +7,8 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.progress.stages import of_report
 from runner.reporting import html, outline, pdf
-from runner.reporting.column_units import in_readable_units
+from runner.reporting.consistency import color_series, in_readable_units
 from runner.reporting.document import Document
-from runner.reporting.series_colors import color_series
 from runner.store.atomic import write_atomically
 
 _RENDERERS: dict[str, Callable[[Document], bytes]] = {

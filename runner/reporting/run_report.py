@@ -1,20 +1,19 @@
-"""Report on one or more stored runs: config, results and provenance."""
+"""Report on one or more stored runs: config, changed keys, results and provenance."""
 
 import json
 import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from runner.base.errors import RunnerError
+from runner.base.errors import ConfigError, RunnerError
 from runner.base.quantities import above_rounding, number, quantity, with_powers
+from runner.config.compose.compose import compose
 from runner.metrics.caveats import changes_since
-from runner.reporting.changed_keys import changed_keys, flatten
-from runner.reporting.cover import cover
 from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text
-from runner.reporting.figures import desired_motion, playback, torque_and_error
+from runner.reporting.figures import cover, desired_motion, playback, torque_and_error
 from runner.reporting.key_metrics import key_metrics, shared_range
 from runner.reporting.markup import literal, literals
-from runner.reporting.metric_titles import title
+from runner.reporting.metric_titles import capital, title
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks, spec_of_several
 from runner.reporting.words import PLANT, in_words
@@ -40,7 +39,10 @@ def run_document(runs: Sequence[Run]) -> Document:
         abstract=f"{len(runs)} runs, {ends}.",
         sections=[
             Section("Overview", (_overview(runs), *spec_of_several(runs))),
-            *map(_section, runs, range(1, len(runs) + 1)),
+            *(
+                Section(f"Run {index}: {_name(run)}", [*_blocks(run), *_config(run), provenance([run])])
+                for index, run in enumerate(runs, start=1)
+            ),
         ],
         date=date,
         key_numbers=_numbers_of_several(runs),
@@ -82,8 +84,7 @@ def _name(run: Run) -> str:
     """Return robot, law, task and plant in words, such as "Macro, operational space, quintic, PyBullet"."""
     config = run.config
     kinds = (config["controller"]["kind"], config["trajectory"]["kind"], config["plant"]["kind"])
-    name = _spaced(config["robot"]["name"])
-    return ", ".join([name[:1].upper() + name[1:], *(_spaced(in_words(str(kind))) for kind in kinds)])
+    return ", ".join([capital(_spaced(config["robot"]["name"])), *(_spaced(in_words(str(kind))) for kind in kinds)])
 
 
 def _spaced(name: object) -> str:
@@ -151,10 +152,6 @@ def _overview(runs: Sequence[Run]) -> Table:
     return Table("Runs, with what distinguishes them; medians.", header, rows, tuple(range(first, len(header))))
 
 
-def _section(run: Run, index: int) -> Section:
-    return Section(f"Run {index}: {_name(run)}", [*_blocks(run), *_config(run), provenance([run])])
-
-
 def _blocks(run: Run) -> list[Block]:
     config = run.config
     blocks: list[Block] = []
@@ -182,7 +179,7 @@ def _blocks(run: Run) -> list[Block]:
 def caveat_notices(run: Run) -> list[Block]:
     """Return a notice for each reason why a run's result may not be what it seems, and of how these were looked for."""
     notices: list[Block] = [
-        Notice("warning", f"Caveat: {caveat['rule']}", literal(f"{_sentence(str(caveat['text']))}."))
+        Notice("warning", f"Caveat: {caveat['rule']}", literal(f"{capital(str(caveat['text']))}."))
         for caveat in run.caveats
     ]
     changes = changes_since(run.caveat_rules)
@@ -190,10 +187,6 @@ def caveat_notices(run: Run) -> list[Block]:
         text = f"This run's caveats were looked for by {'; '.join(changes)}. The same command would not look again."
         notices.append(Notice("warning", "Caveats by other rules than today's", literal(text)))
     return notices
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
 
 
 def _metrics(run: Run) -> Table:
@@ -297,3 +290,30 @@ def _yaml(value: Any) -> str:
     """Return a value as it is given in YAML or on the command line."""
     text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
     return re.sub(r"\b(\d)0{6,}\.0\b", lambda found: f"{float(found[0]):.0e}".replace("e+0", "e"), text)
+
+
+def changed_keys(run: Run) -> dict[str, tuple[Any, Any]] | None:
+    """Return the keys that differ from what the run's groups hold by themselves, each as (default, value).
+
+    Returns:
+        The keys; None where the groups cannot be composed here, as those of a config folder of one's own.
+    """
+    choices = run.provenance.get("choices", {})
+    try:
+        plain = compose([f"{group}={name}" for group, name in choices.items() if group != "experiment"])
+    except ConfigError:
+        return None
+    before, now = flatten(plain.resolved), flatten(run.config)
+    keys = [key for key in now if key != "outputs" and key in before and before[key] != now[key]]
+    return {key: (before[key], now[key]) for key in keys}
+
+
+def flatten(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Return the values of a config by their dotted keys."""
+    flat: dict[str, Any] = {}
+    for key, item in value.items():
+        if isinstance(item, Mapping) and item:
+            flat |= flatten(item, f"{prefix}{key}.")
+        else:
+            flat[f"{prefix}{key}"] = item
+    return flat

@@ -11,8 +11,8 @@ from runner.base.errors import RunnerError
 from runner.base.progress.stages import READING, SOON, of_report
 from runner.config.compose.user_settings import outputs_dir
 from runner.reporting import render
+from runner.reporting.comparison.operand import letter, open_side
 from runner.reporting.comparison.report import comparison_document
-from runner.reporting.comparison.side import letter, open_side
 from runner.reporting.document import Document
 from runner.reporting.run_report import run_document
 from runner.reporting.sweep.report import sweep_document
@@ -58,32 +58,21 @@ def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> tupl
     if metrics and (any(tunings) or not all(sweeps)):
         raise RunnerError("--metrics is for the report on sweeps")
     reports = _outputs(folders[0]) / "reports"
-    of_sweeps = _of_sweep if len(sweeps) == 1 else _of_sweeps
-    make = _of_tuning if any(tunings) else of_sweeps if all(sweeps) else _of_runs
-    document, name = make(folders, metrics, reports)
-    return document, reports / hashlib.sha256(name.encode()).hexdigest()[:24]
-
-
-def _of_runs(folders: Sequence[Path], _: Sequence[str], __: Path) -> tuple[Document, str]:
-    progress.begin(READING)
-    runs = [run for folder in folders for run in store.open_runs(folder)]
-    return run_document(runs), "".join(run.hash for run in runs)
-
-
-def _of_sweep(folders: Sequence[Path], metrics: Sequence[str], reports: Path) -> tuple[Document, str]:
-    sweep = store.open_sweep(folders[0])
-    address = os.path.relpath(sweep.outputs / "runs", reports / "any") + "/"
-    return sweep_document(sweep, metrics, address), " ".join([sweep.folder.name, *metrics])
-
-
-def _of_sweeps(folders: Sequence[Path], metrics: Sequence[str], _: Path) -> tuple[Document, str]:
-    sides = [open_side(letter(place), folder) for place, folder in enumerate(folders)]
     names = [folder.resolve().name for folder in folders]
-    return comparison_document(sides, metrics), " ".join(["compared", *names, *metrics])
-
-
-def _of_tuning(folders: Sequence[Path], _: Sequence[str], reports: Path) -> tuple[Document, str]:
-    return tuning_document(open_tuning(folders[0]), reports / "any"), folders[0].resolve().name
+    if any(tunings):
+        document, name = tuning_document(open_tuning(folders[0]), reports / "any"), names[0]
+    elif not all(sweeps):
+        progress.begin(READING)
+        runs = [run for folder in folders for run in store.open_runs(folder)]
+        document, name = run_document(runs), "".join(run.hash for run in runs)
+    elif len(sweeps) == 1:
+        sweep = store.open_sweep(folders[0])
+        address = os.path.relpath(sweep.outputs / "runs", reports / "any") + "/"
+        document, name = sweep_document(sweep, metrics, address), " ".join([sweep.folder.name, *metrics])
+    else:
+        sides = [open_side(letter(place), folder) for place, folder in enumerate(folders)]
+        document, name = comparison_document(sides, metrics), " ".join(["compared", *names, *metrics])
+    return document, reports / hashlib.sha256(name.encode()).hexdigest()[:24]
 
 
 def _outputs(folder: Path) -> Path:

@@ -5,12 +5,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from runner.reporting.claim import ClaimResult
 from runner.reporting.claims import CONTRADICTION
-from runner.reporting.document import Block, Document, Equations, Verdicts
+from runner.reporting.document import Block, ClaimResult, Document, Equations, Verdicts
 from runner.reporting.equation import FOLDED, SHOWN
-from runner.reporting.outline import blocks
-from runner.reporting.places import claim_place, verdict_place
+from runner.reporting.outline import blocks, claim_place, verdict_place
 
 _OF_SEVERAL = {"matches": "match", "differs": "differ"}
 
@@ -58,15 +56,12 @@ class Tally:
 
 def tallies(document: Document) -> list[Tally]:
     """Return the verdicts of a report: on its claims, for each way of simulating them, and on its equations."""
-    return list(_tallies(document))
-
-
-def _tallies(document: Document) -> Iterator[Tally]:
+    found = []
     for block in blocks(document):
         if isinstance(block, Verdicts):
             for number, way in enumerate(block.ways):
                 squares = tuple(_square(row.number, row.findings[number]) for row in block.rows)
-                yield Tally(way, squares, _counted(square.verdict for square in squares))
+                found.append(Tally(way, squares, _counted(square.verdict for square in squares)))
         if isinstance(block, Equations):
             counts = _counted(row.verdict for row in block.rows)
             squares = tuple(
@@ -74,7 +69,8 @@ def _tallies(document: Document) -> Iterator[Tally]:
                 for verdict in (*SHOWN, *FOLDED)
                 if (count := dict(counts).get(verdict, 0))
             )
-            yield Tally(block.source or "equations", squares, counts)
+            found.append(Tally(block.source or "equations", squares, counts))
+    return found
 
 
 def _square(claim: str, found: ClaimResult) -> Square:

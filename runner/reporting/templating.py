@@ -2,6 +2,7 @@
 
 import re
 from functools import cache
+from typing import Any
 
 import jinja2
 
@@ -9,11 +10,10 @@ from runner.base.expressions.typesetting import matrix, symbol, typeset
 from runner.base.paths import templates_dir
 from runner.base.texts import plain
 from runner.reporting.document import Origin
-from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, of_verdict
+from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, of_verdict, symbols_in
 from runner.reporting.markup import spans
-from runner.reporting.places import verdict_place
+from runner.reporting.outline import verdict_place
 from runner.reporting.spoken import spoken
-from runner.reporting.symbols import symbols_in
 
 VERDICT_SIGNS = {
     "matches": "=",
@@ -32,8 +32,6 @@ VERDICT_SIGNS = {
     "note": "–",
 }
 """A sign beside each verdict, for readers who see no colours."""
-
-
 _SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 
 
@@ -49,15 +47,7 @@ class Code(str):
 @cache
 def html_environment() -> jinja2.Environment:
     """Return the environment of the HTML templates: autoescape on, an unknown name is an error."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
-        autoescape=jinja2.select_autoescape(enabled_extensions=("html", "html.j2")),
-        undefined=jinja2.StrictUndefined,
-        finalize=html_value,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return _equip(environment)
+    return _environment(finalize=html_value)
 
 
 @cache
@@ -67,10 +57,7 @@ def typst_environment() -> jinja2.Environment:
     Its delimiters are `<% %>`, `<< >>` and `<# #>`. Whatever a template inserts becomes a Typst string or number, so
     that no text can become markup or code, not even where a template forgets a filter.
     """
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
+    return _environment(
         finalize=typst_value,
         block_start_string="<%",
         block_end_string="%>",
@@ -78,10 +65,7 @@ def typst_environment() -> jinja2.Environment:
         variable_end_string=">>",
         comment_start_string="<#",
         comment_end_string="#>",
-        trim_blocks=True,
-        lstrip_blocks=True,
     )
-    return _equip(environment)
 
 
 def html_value(value: object) -> object:
@@ -124,7 +108,16 @@ def aspect(svg: str) -> str:
     return f"{size[1]} / {size[2]}" if size else "auto"
 
 
-def _equip(environment: jinja2.Environment) -> jinja2.Environment:
+def _environment(**options: Any) -> jinja2.Environment:
+    """Return an environment of our templates with our filters; autoescape is on, an unknown name is an error."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        **options,
+    )
     environment.filters |= {
         "spans": spans,
         "origin_label": origin_label,

@@ -15,9 +15,8 @@ from runner.base.errors import RunnerError
 from runner.base.limits import CHAPTER, read_text
 from runner.base.progress.stages import CHAPTERS
 from runner.reporting.audit.report import rows
-from runner.reporting.claim import Claim
 from runner.reporting.claims import CLAIMS, FACTOR, Verdict, load_claims
-from runner.reporting.document import Equations, Origin, Section, Verdicts
+from runner.reporting.document import Claim, Equations, Origin, Section, Verdicts
 from runner.reporting.outline import number_sections
 from runner.store import Calibration, Run
 from runner.study.claims import judged_claims, legend

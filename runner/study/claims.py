@@ -9,18 +9,22 @@ import numpy as np
 
 from runner.base.quantities import format_range, quantity, spread
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.reporting.claim import Claim, ClaimResult, EquationVerdict
 from runner.reporting.claims import (
     CLAIMS,
     CONTRADICTION,
     FACTOR,
     PublishedClaim,
     PublishedStatement,
+    Simulated,
     Verdict,
     judge_motion,
     load_claims,
+    scale_bound,
+    simulated_by,
+    verdict_on,
 )
-from runner.reporting.claims.judging import Simulated, scale_bound, simulated_by, verdict_on
+from runner.reporting.document import Claim, ClaimResult
+from runner.reporting.equation import EquationVerdict
 from runner.reporting.figures import columns
 from runner.reporting.words import PLANT
 from runner.statistics.spec.history import merge_histories, set_after, today

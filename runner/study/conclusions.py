@@ -2,8 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from runner.reporting.claim import Claim
-from runner.reporting.document import Document, Equations, Verdicts
+from runner.reporting.document import Claim, Document, Equations, Verdicts
 from runner.reporting.outline import blocks
 from runner.store import Calibration, Run
 from runner.study.expected_caveats import ExpectedCaveat, caveats_as_data

@@ -202,7 +202,7 @@ class Study:
 
     def _cover(self, runs: Mapping[str, Run]) -> "Cover | None":
         """Return the picture of the first screen; None where there is none, or its run was not made."""
-        from runner.reporting.cover import cover
+        from runner.reporting.figures import cover
 
         wanted = self.manifest.cover
         if wanted is None or wanted.run not in runs or runs[wanted.run].status == "failed":

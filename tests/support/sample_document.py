@@ -3,9 +3,10 @@
 import numpy as np
 
 from runner.base.expressions.parser import parse
-from runner.reporting.claim import Claim, ClaimResult
 from runner.reporting.document import (
     Body,
+    Claim,
+    ClaimResult,
     Code,
     Curves,
     Document,

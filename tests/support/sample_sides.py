@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.reporting.comparison.side import Side
+from runner.reporting.comparison.operand import Side
 from runner.sweeps.measurements import Axis, Measurements
 
 LAWS = {"robot": ["macro", "xarm7"], "gravity": [9.6, 9.81]}

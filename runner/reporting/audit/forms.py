@@ -1,18 +1,17 @@
-"""Displayed forms of an audited equation, shortened, with differences marked."""
+"""Displayed forms of an audited equation, shortened, with differences marked and the elements it resembles."""
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from runner.audit.entry import Entry, Form
+from runner.audit.verdict import Judged
 from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
 from runner.base.expressions.shortening import holds, shorten_expression
-from runner.base.expressions.tree import Node, Sum, size
-from runner.base.expressions.typesetting import linear
-from runner.reporting.audit.formula_marks import marked_formulas
-from runner.reporting.audit.likeness import Likeness
-from runner.reporting.audit.matrices import gather_elements
-from runner.reporting.audit.pieces import LONG, cut, pieces
+from runner.base.expressions.tree import Name, Node, Sum, size
+from runner.base.expressions.typesetting import linear, typeset
+from runner.reporting.audit.marks import LONG, cut, marked_formulas, pieces
 from runner.reporting.equation import EquationForm, Matrix
 
 _SYMBOLS = 40  # symbols of a form that is shown whole
@@ -21,6 +20,44 @@ _FAULTS = 6  # differing parts up to which it is one with faults
 
 _Elements = Mapping[str, Node]
 _Shown = list[tuple[Node, Node | Matrix]]
+_ELEMENT = re.compile(r"(?P<name>\w+?)_(?P<place>\d\d|[xyz])")
+_VECTOR = ("x", "y", "z")
+
+
+class Likeness:
+    """The right forms of the elements of a source, by name.
+
+    Args:
+        judged: The equations of the source.
+    """
+
+    def __init__(self, judged: Iterable[Judged]) -> None:
+        self._right: dict[str, Node] = {}
+        for each in judged:
+            entry = each.entry
+            if each.verdict not in ("unreadable", "definition"):
+                right = entry.corrected or entry.repair or entry.printed
+                self._right |= {name: parse(text).root for name, text in right.elements.items()}
+
+    def words(self, entry: Entry, elements: Mapping[str, Node]) -> str:
+        """Return which other element a wrong one is, but for exchanged symbols, in a sentence; nothing if none.
+
+        Args:
+            entry: An equation that is wrong.
+            elements: What it says; one element can be another.
+        """
+        if len(elements) != 1:
+            return ""
+        ((name, node),) = elements.items()
+        if size(node) < 2 or difference(node, self._right[name]).symbols_alone:
+            return ""
+        found = [(other, difference(node, right)) for other, right in self._right.items() if size(right) == size(node)]
+        alike = [(other, each) for other, each in found if each.symbols_alone and other != name]
+        if not alike:
+            return ""
+        family = name.rpartition("_")[0]
+        other, best = min(alike, key=lambda each: (each[1].exchanged.total(), each[0].rpartition("_")[0] != family))
+        return f"It is the right ${_typeset_name(other)}${_exchanged(best)}."
 
 
 def forms_of(entry: Entry, likeness: Likeness) -> list[EquationForm]:
@@ -132,7 +169,10 @@ def _shown(
         return EquationForm(label, groups, marks, note=note)
     if like:
         return EquationForm(label, note=note, whole=whole)
-    shown = _short([(left, _cut(part, marks)) for left, part in groups if _holds(part, marks)] or _begun(groups))
+    shown = _short(
+        [(left, _cut(part, marks)) for left, part in groups if any(holds(node, marks) for node in _nodes(part))]
+        or _begun(groups)
+    )
     return EquationForm(label, shown, marks, note=note, whole=whole)
 
 
@@ -142,10 +182,6 @@ def _nodes(part: Node | Matrix) -> Iterator[Node]:
             yield from row
     else:
         yield part
-
-
-def _holds(part: Node | Matrix, marked: Set[Node]) -> bool:
-    return any(holds(node, marked) for node in _nodes(part))
 
 
 def _cut(part: Node | Matrix, marked: Set[Node]) -> Node | Matrix:
@@ -165,3 +201,47 @@ def _begun(groups: _Shown) -> _Shown:
 def _short(groups: _Shown) -> _Shown:
     """Return what is shown of a form, or nothing where it is still too long to be read."""
     return groups if sum(size(node) for _, part in groups for node in _nodes(part)) <= 2 * _SYMBOLS else []
+
+
+def gather_elements(elements: Mapping[str, Node]) -> list[tuple[Node, Node | Matrix]]:
+    """Return elements such as T_11 to T_44, or P_x, P_y and P_z, as one matrix, and the others as they are.
+
+    A matrix is whole: it has an element in each row and column, from 0 or 1 on.
+    """
+    families: dict[str, dict[str, Node]] = {}
+    for name, node in elements.items():
+        match = _ELEMENT.fullmatch(name)
+        family, place = (match["name"], match["place"]) if match else (name, "")
+        families.setdefault(family, {})[place] = node
+    found: list[tuple[Node, Node | Matrix]] = []
+    for family, members in families.items():
+        matrix = _matrix(members)
+        if matrix is not None:
+            found.append((Name(family, 0), matrix))
+            continue
+        found += [(Name(f"{family}_{place}" if place else family, 0), node) for place, node in members.items()]
+    return found
+
+
+def _matrix(members: Mapping[str, Node]) -> Matrix | None:
+    if tuple(members) == _VECTOR:
+        return Matrix([[node] for node in members.values()])
+    if len(members) < 4 or not all(len(place) == 2 for place in members):
+        return None
+    rows, columns = (sorted({place[axis] for place in members}) for axis in (0, 1))
+    whole = [f"{row}{column}" for row in rows for column in columns] == sorted(members)
+    if not (whole and rows[0] == columns[0] and rows[0] in "01" and len(rows) > 1):
+        return None
+    return Matrix([[members[f"{row}{column}"] for column in columns] for row in rows])
+
+
+def _exchanged(found: Difference) -> str:
+    told = [
+        f"${_typeset_name(ours)}$ for ${_typeset_name(theirs)}${f' ({count} times)' if count > 1 else ''}"
+        for (ours, theirs), count in found.exchanged.items()
+    ]
+    return f", with {', '.join(told)}" if told else ""
+
+
+def _typeset_name(name: str) -> str:
+    return typeset(Name(name, 0))

@@ -4,15 +4,13 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 
-from runner.audit.audit import counts
-from runner.audit.inventory import inventory
+from runner.audit.audit import counts, inventory
 from runner.audit.rollout import run_rollout
 from runner.audit.verdict import SAMPLES, VERDICTS, Judged
 from runner.base import progress
 from runner.base.progress.stages import BELIEVING
 from runner.base.quantities import quantity
-from runner.reporting.audit.forms import forms_of
-from runner.reporting.audit.likeness import Likeness
+from runner.reporting.audit.forms import Likeness, forms_of
 from runner.reporting.document import (
     Block,
     Curves,

@@ -1,8 +1,8 @@
 """Figures as plain data: curves on axes, and maps of coloured cells."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Literal, Protocol
+from dataclasses import dataclass, field
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,33 +105,50 @@ class Map:
     high: FloatArray | None = None
 
 
-class CurveFigure(Protocol):
-    """What is drawn of a figure of curves, whatever else it holds."""
+@dataclass(frozen=True)
+class Origin:
+    """Where a figure or table comes from: its number in the source, the command that makes it, the commit."""
 
-    @property
-    def panels(self) -> Sequence[Panel]:
-        """The axes, in reading order."""
-
-    @property
-    def columns(self) -> int:
-        """How many panels stand beside each other."""
+    number: str = ""
+    command: str = ""
+    commit: str = ""
 
 
-class MapFigure(Protocol):
-    """What is drawn of heat maps with one scale of colours, whatever else the figure holds."""
+@dataclass(frozen=True)
+class Curves:
+    """A figure of curves: interactive in HTML (zoom, hover, legend toggles), a still in the PDF.
 
-    @property
-    def panels(self) -> Sequence[Map]:
-        """The maps, in reading order."""
+    Attributes:
+        caption: What is seen, in a sentence; inline mathematics as in a report's Text.
+        panels: The axes, in reading order.
+        columns: How many panels stand beside each other.
+        origin: Its number in the source, command and commit.
+    """
 
-    @property
-    def value_label(self) -> str:
-        """What the colours mean, with unit."""
+    block: ClassVar[str] = "curves"
+    caption: str
+    panels: Sequence[Panel]
+    columns: int = 2
+    origin: Origin = field(default_factory=Origin)
 
-    @property
-    def log(self) -> bool:
-        """Whether the colours follow the logarithm."""
 
-    @property
-    def columns(self) -> int:
-        """How many maps stand beside each other."""
+@dataclass(frozen=True)
+class Maps:
+    """Heat maps with one scale of colours: interactive in HTML, a still in the PDF.
+
+    Attributes:
+        caption: What is seen, in a sentence; inline mathematics as in a report's Text.
+        value_label: What the colours mean, with unit.
+        panels: The maps, in reading order.
+        log: Whether the colours follow the logarithm.
+        columns: How many maps stand beside each other.
+        origin: Its number in the source, command and commit.
+    """
+
+    block: ClassVar[str] = "maps"
+    caption: str
+    value_label: str
+    panels: Sequence[Map]
+    log: bool = False
+    columns: int = 2
+    origin: Origin = field(default_factory=Origin)

@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import digits_between, number
-from runner.reporting.charts.figure import Map, MapFigure
+from runner.reporting.charts.figure import Map, Maps
 
 OVERLAY = 1
 """Palette index of what lies over the cells, red, which their colours do not hold."""
@@ -28,7 +28,7 @@ def scale_values(values: FloatArray, log: bool) -> FloatArray:
     return np.log10(values, out=np.full(values.shape, np.nan), where=positive)
 
 
-def value_range(figure: MapFigure) -> tuple[float, float]:
+def value_range(figure: Maps) -> tuple[float, float]:
     """Return the ends of the scale of colours, as scaled.
 
     The scale spans the intervals of the values and at least 2 % of the largest one, so that full contrast stands for a
@@ -49,7 +49,7 @@ def widen_range(low: float, high: float, least: float) -> tuple[float, float]:
     return low - room, high + room
 
 
-def scale_marks(figure: MapFigure) -> tuple[list[float], list[str]]:
+def scale_marks(figure: Maps) -> tuple[list[float], list[str]]:
     """Return where the scale of colours is marked, as scaled, and with which values."""
     low, high = value_range(figure)
     places = np.linspace(low, high, 5)
@@ -59,13 +59,13 @@ def scale_marks(figure: MapFigure) -> tuple[list[float], list[str]]:
     return places.tolist(), [number(float(value), digits, plain=plain) for value in values]
 
 
-def prints_values(panel: Map, figure: MapFigure) -> bool:
+def prints_values(panel: Map, figure: Maps) -> bool:
     """Return whether the cells of a map have room for their values."""
     beside = max(1, min(figure.columns, len(figure.panels)))
     return not panel.contours and beside * len(panel.x_names) <= _MOST_PRINTED
 
 
-def printed_values(panel: Map, figure: MapFigure) -> list[list[str]]:
+def printed_values(panel: Map, figure: Maps) -> list[list[str]]:
     """Return the value that is printed into each cell; nothing into an empty one, nor where a cross stands."""
     low, high = value_range(figure)
     digits = digits_between(10.0**low, 10.0**high) if figure.log else digits_between(low, high)

@@ -9,21 +9,11 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from runner.base.arrays import FloatArray
-from runner.reporting.charts import palette
-from runner.reporting.charts.figure import Map, MapFigure
-from runner.reporting.charts.map_scale import (
-    CONTOURS,
-    MOST_PARTED,
-    OVERLAY,
-    printed_values,
-    prints_values,
-    scale_marks,
-    scale_values,
-    value_range,
-)
+from runner.reporting.charts import map_scale, palette
+from runner.reporting.charts.axes import map_in_readable_units
+from runner.reporting.charts.figure import Map, Maps
 from runner.reporting.charts.names import Names, literal, names_below, names_beside, wrap_text
 from runner.reporting.charts.sheet import REPORT, Sheet, render_figure
-from runner.reporting.charts.units import map_in_readable_units
 
 # Measures in inches, for letters of the size of a report.
 _LEFT, _LABEL, _RIGHT, _BOTTOM, _BAR = 0.7, 0.3, 0.12, 0.42, 0.36  # the second and last without names and values
@@ -70,19 +60,19 @@ class _Frame:
         return sum(name.count("\n") + 1.2 for name in self.lines if name) * self.sheet.line
 
 
-def draw(maps: MapFigure, sheet: Sheet = REPORT) -> str:
+def draw(maps: Maps, sheet: Sheet = REPORT) -> str:
     """Return the maps as SVG; the same maps give the same text."""
     return render_figure(lambda: _figure(maps, sheet), sheet, "svg").decode()
 
 
-def draw_pdf(maps: MapFigure, sheet: Sheet = REPORT) -> bytes:
+def draw_pdf(maps: Maps, sheet: Sheet = REPORT) -> bytes:
     """Return the maps as PDF, a page of their size; the same maps give the same bytes."""
     return render_figure(lambda: _figure(maps, sheet), sheet, "pdf")
 
 
-def _figure(maps: MapFigure, sheet: Sheet) -> Figure:
+def _figure(maps: Maps, sheet: Sheet) -> Figure:
     maps = map_in_readable_units(maps)
-    places, marks = scale_marks(maps)
+    places, marks = map_scale.scale_marks(maps)
     widest = max(map(len, marks), default=0)
     label = _BAR * sheet.scale + 2 * sheet.line  # of the scale, in two lines at most
     room = sheet.width - label - widest * sheet.character
@@ -103,7 +93,7 @@ def _figure(maps: MapFigure, sheet: Sheet) -> Figure:
     ]
     total = sum(heights) or height
     figure = Figure(figsize=(sheet.width, total))
-    colors = Normalize(*value_range(maps))
+    colors = Normalize(*map_scale.value_range(maps))
     tops = [sum(heights[:index]) + max(frame.top for frame in row) for index, row in enumerate(rows)]
     for top, row in zip(tops, rows, strict=True):
         for number, frame in enumerate(row):
@@ -121,16 +111,16 @@ def _beside(panel: Map, height: float, sheet: Sheet) -> str:
     return wrap_text(panel.y_label, height / sheet.character)
 
 
-def _draw_map(axes: Axes, frame: _Frame, maps: MapFigure, colors: Normalize) -> None:
+def _draw_map(axes: Axes, frame: _Frame, maps: Maps, colors: Normalize) -> None:
     panel, sheet = frame.panel, frame.sheet
     literal(axes.set_title("", loc="left", y=1.0, pad=4), frame.title)
     literal(axes.xaxis.label, frame.x_label)
     literal(axes.yaxis.label, _beside(panel, frame.height, sheet))
-    values = scale_values(panel.values, maps.log)
+    values = map_scale.scale_values(panel.values, maps.log)
     axes.grid(False)
     rows, columns = values.shape
     if panel.contours:
-        levels = np.linspace(*value_range(maps), CONTOURS + 1)
+        levels = np.linspace(*map_scale.value_range(maps), map_scale.CONTOURS + 1)
         axes.contourf(values, levels, cmap=_COLORS, norm=colors)
         crossed = levels[(levels > np.nanmin(values)) & (levels < np.nanmax(values))]
         if crossed.size:
@@ -138,17 +128,19 @@ def _draw_map(axes: Axes, frame: _Frame, maps: MapFigure, colors: Normalize) -> 
     else:
         # Cells are centred on whole numbers, as curves over them expect.
         edges = np.arange(columns + 1) - 0.5, np.arange(rows + 1) - 0.5
-        parted = "white" if max(values.shape) <= MOST_PARTED else "face"  # no edge at all leaves seams
+        parted = "white" if max(values.shape) <= map_scale.MOST_PARTED else "face"  # no edge at all leaves seams
         axes.pcolormesh(*edges, values, cmap=_COLORS, norm=colors, edgecolor=parted, linewidth=0.4)
     axes.set_xlim(-0.5, columns - 0.5)
     axes.set_ylim(-0.5, rows - 0.5)
     frame.x_names.put(axes.xaxis, columns)
     frame.y_names.put(axes.yaxis, rows)
     for series in panel.lines:
-        axes.plot(series.x, series.y, "--", color=palette.color(OVERLAY), linewidth=1.4)
+        axes.plot(series.x, series.y, "--", color=palette.color(map_scale.OVERLAY), linewidth=1.4)
     failed_rows, failed_columns = np.nonzero(panel.failed)
-    axes.plot(failed_columns, failed_rows, "x", color=palette.color(OVERLAY), markersize=6, markeredgewidth=1.5)
-    if prints_values(panel, maps):
+    axes.plot(
+        failed_columns, failed_rows, "x", color=palette.color(map_scale.OVERLAY), markersize=6, markeredgewidth=1.5
+    )
+    if map_scale.prints_values(panel, maps):
         _print_values(axes, frame, maps, values, colors)
     named = [(line, name) for line, name in zip(axes.lines, frame.lines, strict=False) if name]
     if named:
@@ -165,9 +157,9 @@ def _draw_map(axes: Axes, frame: _Frame, maps: MapFigure, colors: Normalize) -> 
             literal(text, name)
 
 
-def _print_values(axes: Axes, frame: _Frame, maps: MapFigure, shades: FloatArray, colors: Normalize) -> None:
+def _print_values(axes: Axes, frame: _Frame, maps: Maps, shades: FloatArray, colors: Normalize) -> None:
     """Print the value of each cell, in white where the cell is dark; none where they are wider than the cells."""
-    values = printed_values(frame.panel, maps)
+    values = map_scale.printed_values(frame.panel, maps)
     letter = frame.sheet.character * frame.sheet.small / frame.sheet.font
     if letter * max((len(text) for row in values for text in row), default=0) > frame.width / max(1, shades.shape[1]):
         return

@@ -17,12 +17,11 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 from runner.base.texts import plain
 from runner.reporting.charts import palette
-from runner.reporting.charts.figure import CurveFigure, Panel, Series, shares_legend, upright
+from runner.reporting.charts.axes import Mark, at_2_and_5, in_readable_units, marks
+from runner.reporting.charts.figure import Curves, Panel, Series, shares_legend, upright
 from runner.reporting.charts.names import Names, literal, names_below, wrap_text
 from runner.reporting.charts.sheet import REPORT, Sheet, render_figure, style
 from runner.reporting.charts.thinning import thin, usable
-from runner.reporting.charts.ticks import Mark, at_2_and_5, marks
-from runner.reporting.charts.units import in_readable_units
 
 # Measures in inches, for letters of the size of a report; fixed margins, because a layout engine costs more time than
 # all the curves.
@@ -80,17 +79,17 @@ class _Frame:
         return math.ceil(len(named) / self.columns) * lines * self.sheet.line + 0.05
 
 
-def draw(curves: CurveFigure, sheet: Sheet = REPORT) -> str:
+def draw(curves: Curves, sheet: Sheet = REPORT) -> str:
     """Return the figure as SVG; the same figure gives the same text."""
     return render_figure(lambda: _figure(curves, sheet), sheet, "svg").decode()
 
 
-def draw_pdf(curves: CurveFigure, sheet: Sheet = REPORT) -> bytes:
+def draw_pdf(curves: Curves, sheet: Sheet = REPORT) -> bytes:
     """Return the figure as PDF, a page of its size; the same figure gives the same bytes."""
     return render_figure(lambda: _figure(curves, sheet), sheet, "pdf")
 
 
-def as_figure(curves: CurveFigure, sheet: Sheet = REPORT) -> Figure:
+def as_figure(curves: Curves, sheet: Sheet = REPORT) -> Figure:
     """Return the figure as one of matplotlib's, to be changed and saved; a notebook shows it."""
     with mpl.rc_context(style(sheet)):
         return _figure(curves, sheet, _Shown)
@@ -105,7 +104,7 @@ class _Shown(Figure):
         return stream.getvalue()
 
 
-def _figure(curves: CurveFigure, sheet: Sheet, kind: type[Figure] = Figure) -> Figure:
+def _figure(curves: Curves, sheet: Sheet, kind: type[Figure] = Figure) -> Figure:
     columns = sheet.beside(curves.columns, len(curves.panels), _LEAST)
     panels = in_readable_units(curves.panels, curves.columns)
     count, width = math.ceil(len(panels) / columns), sheet.width / columns

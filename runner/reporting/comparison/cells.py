@@ -9,8 +9,8 @@ import numpy as np
 import yaml
 
 from runner.base.errors import RunnerError
+from runner.reporting.comparison.operand import Side
 from runner.reporting.comparison.pairs import CellPairs, share_seeds
-from runner.reporting.comparison.side import Side
 from runner.sweeps.differing import value_text
 
 _NAMED = 6  # values of a key that a message names

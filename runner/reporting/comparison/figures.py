@@ -1,18 +1,19 @@
-"""Figures of two sweeps: differences with intervals, or scatter plots of medians."""
+"""Figures and tables of two sweeps: differences with intervals, medians, and the metrics over all cells."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.base.quantities import label_with_unit
-from runner.reporting.answers import Answer, Asked, judge
+from runner.base.quantities import label_with_unit, quantity
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, judge
 from runner.reporting.comparison.cells import Matched, label_text
-from runner.reporting.comparison.metrics import choose_metrics
-from runner.reporting.comparison.sweeps import SweepComparison, by_cell
-from runner.reporting.document import Block, Curves, Panel, Series, Table
+from runner.reporting.comparison.messages import POOLED
+from runner.reporting.comparison.sweeps import MetricComparison, SweepComparison, by_cell
+from runner.reporting.document import Block, Curves, Panel, Series, Table, Text
 from runner.reporting.markup import literal, literals
-from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import MOST_METRICS, spans_decades
+from runner.reporting.metric_titles import capital, title
+from runner.reporting.sweep.subject import MOST_METRICS, first_screen, spans_decades, whole_metrics
 
 _MOST_CHARACTERS = 36  # of the names of all cells below a panel
 _MOST_CELLS = 24
@@ -56,7 +57,7 @@ def _differences(found: SweepComparison, metric: str) -> Panel:
     labels = [label_text(label) for label in matched.labels]
     compared = by_cell(found, metric)
     x = np.array([labels.index(label_text(one.cell)) for one in compared], dtype=float)
-    answers = judge([Asked(one.metric, one.unit, one.comparison) for one in compared], [metric])
+    answers = judge(compared, [metric])
     ends = np.array([_ends(answer) for answer in answers], dtype=float).reshape(-1, 3)
     low, median, high = np.where(np.isfinite(ends), ends, np.nan).T
     gap = np.full(len(x), np.nan)
@@ -71,9 +72,8 @@ def _differences(found: SweepComparison, metric: str) -> Panel:
     names = [str(number) if numbered else _name(label) for number, label in enumerate(matched.labels, 1)]
     across = "cell" if numbered or not matched.keys else ", ".join(matched.keys)
     unit = found.a.measurements.units[metric]
-    name = title(metric)
     label = label_with_unit(f"{found.b.name} - {found.a.name}", unit)
-    return Panel(f"{name[:1].upper()}{name[1:]}", across, label, series, x_names=names)
+    return Panel(capital(title(metric)), across, label, series, x_names=names)
 
 
 def _ends(answer: Answer) -> tuple[float, float, float]:
@@ -94,12 +94,67 @@ def _against(found: SweepComparison, metric: str) -> Panel:
         Series("", ends, ends, "dotted", color=1),
         Series("", x[known], y[known], "points", color=0, hints=hints),
     ]
-    name = title(metric)
     return Panel(
-        f"{name[:1].upper()}{name[1:]}",
+        capital(title(metric)),
         label_with_unit(found.a.name, unit),
         label_with_unit(found.b.name, unit),
         series,
         log,
         log,
     )
+
+
+def choose_metrics(found: SweepComparison, wanted: Sequence[str]) -> list[MetricComparison]:
+    """Return those asked for, or all but those of one direction or joint, errors first."""
+    by_name = {one.metric: one for one in found.pooled}
+    return [by_name[name] for name in (wanted or whole_metrics(by_name)) if name in by_name]
+
+
+def answers(found: SweepComparison, wanted: Sequence[str]) -> dict[str, Answer]:
+    """Return the answer over all cells in each metric, those of the first screen first."""
+    first = first_screen([one.metric for one in choose_metrics(found, wanted)])
+    judged = {answer.metric: answer for answer in judge(found.pooled, first)}
+    return {name: judged[name] for name in dict.fromkeys([*first, *judged])}
+
+
+def table_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
+    """Return what is compared and how, the table over all cells, and that of those with the largest differences."""
+    a, b = found.a.name, found.b.name
+    whole = choose_metrics(found, wanted)
+    parts = [one for one in found.pooled if one not in whole]
+    text = f"The difference is {b} - {a}. {EXPLAINED} {POOLED}"
+    judged = answers(found, wanted)
+    tables: list[Block] = [Text(text), _table("Every metric over all cells that both have.", found, whole, judged)]
+    if parts:
+        tables.append(_table("Metrics of one direction or joint, likewise.", found, parts, judged, folded=True))
+    if found.cells:
+        caption = (
+            "Largest differences in one cell, in relation to the size of the metric: chosen from "
+            f"{found.candidates}, at most three of a metric; not tested."
+        )
+        rows = [[literal(label_text(one.cell)), *_row(one), _median(one.comparison.difference, one.unit)]
+                for one in found.cells]  # fmt: skip
+        tables.append(Table(caption, ["cell", "metric", a, b, "difference"], rows, (2, 3, 4)))
+    return tables
+
+
+def _table(
+    caption: str,
+    found: SweepComparison,
+    some: Sequence[MetricComparison],
+    judged: Mapping[str, Answer],
+    folded: bool = False,
+) -> Table:
+    a, b = found.a.name, found.b.name
+    many = len(found.matched.labels) > 1
+    header = ["metric", a, b, *HEADER, literal(f"{b} is"), *(["cells below, above 0"] if many else [])]
+    rows = [[*_row(one), *judged[one.metric].cells, *([f"{one.below}, {one.above}"] if many else [])] for one in some]
+    return Table(caption, header, rows, tuple(range(1, 3 + len(HEADER))), folded=folded)
+
+
+def _row(one: MetricComparison) -> list[str]:
+    return [literal(title(one.metric)), *(_median(median, one.unit) for median in one.comparison.medians)]
+
+
+def _median(value: float, unit: str) -> str:
+    return quantity(value, unit) if math.isfinite(value) else "beyond every number"

@@ -2,16 +2,16 @@
 
 from collections.abc import Sequence
 
-from runner.reporting.comparison import differing, figures, metrics
-from runner.reporting.comparison.caveats import caveats_of
-from runner.reporting.comparison.side import Side
-from runner.reporting.comparison.summary import cells_told, size_told
+from runner.reporting.comparison.figures import answers, blocks, choose_metrics, table_blocks
+from runner.reporting.comparison.messages import NOISE_ALONE, cells_told, format_count, size_told
+from runner.reporting.comparison.operand import Side, caveats_of
 from runner.reporting.comparison.sweeps import SweepComparison, compare_sweeps
-from runner.reporting.comparison.words import NOISE_ALONE, format_count
 from runner.reporting.document import Block, Code, Document, Items, Notice, Provenance, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import first_screen
+from runner.reporting.sweep.subject import first_screen, key_label, shorten
+
+_MOST_ROWS = 40
 
 
 def comparison_document(sides: Sequence[Side], wanted: Sequence[str] = ()) -> Document:
@@ -44,8 +44,8 @@ def _abstract(found: Sequence[SweepComparison], wanted: Sequence[str]) -> list[s
     noise = [NOISE_ALONE] if any(one.noise_alone for one in found) else []
     told = [one.beyond.in_words(one.a.name, one.b.name) for one in found]
     for one in found:
-        judged = metrics.answers(one, wanted)
-        first = first_screen([each.metric for each in metrics.choose_metrics(one, wanted)])
+        judged = answers(one, wanted)
+        first = first_screen([each.metric for each in choose_metrics(one, wanted)])
         told += [judged[name].sentence(one.a.name, one.b.name) for name in first]
     return [*told, *noise]
 
@@ -60,7 +60,7 @@ def _key_numbers(found: SweepComparison, wanted: Sequence[str]) -> list[tuple[st
     names = found.beyond.names
     more = f" and {len(names) - 1} more" if len(names) > 1 else ""
     numbers.append((f"{a} and {b} differ in", format_count(len(names), "value", "values"), "".join([*names[:1], more])))
-    first = next(iter(metrics.answers(found, wanted).values()))
+    first = next(iter(answers(found, wanted).values()))
     difference, interval, n, *_ = first.cells
     return [*numbers, (f"{title(first.metric)}, {b} - {a}", difference, f"{interval}, {n} pairs: {first.word}")]
 
@@ -77,9 +77,9 @@ def _sections(found: SweepComparison, wanted: Sequence[str]) -> list[Section]:
     first: Block = Text(told) if alone else Notice("warning", "More than one thing differs", told)
     cells = Items([literal(text) for text in cells_told(found)])
     return [
-        Section("What differs", [first, *differing.tables(found), cells]),
-        Section("Cell by cell", figures.blocks(found, wanted)),
-        Section("Every metric", metrics.blocks(found, wanted)),
+        Section("What differs", [first, *_difference_tables(found), cells]),
+        Section("Cell by cell", blocks(found, wanted)),
+        Section("Every metric", table_blocks(found, wanted)),
     ]
 
 
@@ -105,3 +105,23 @@ def _made(sides: Sequence[Side]) -> Section:
         same = len(set(texts.values())) == 1
         rows += [(name, texts[sides[0].name])] if same else [(f"{name}, {side}", text) for side, text in texts.items()]
     return Section("Provenance", [*blocks, Provenance(rows)])
+
+
+def _difference_tables(found: SweepComparison) -> list[Block]:
+    """Return the resolved values that differ, and what made the runs where that differs."""
+    a, b = found.a.name, found.b.name
+    values = [*found.beyond.options, *found.beyond.values]
+    blocks: list[Block] = []
+    if values:
+        left = len(values) - _MOST_ROWS
+        more = f" {left} more differ." if left > 0 else ""
+        caption = f"All resolved values that differ in the cells that both have.{more}"
+        rows = [
+            literals([key_label(value.key), shorten(value.a), shorten(value.b), value.cells or "all cells"])
+            for value in values[:_MOST_ROWS]
+        ]
+        blocks.append(Table(caption, ["key", a, b, "at"], rows))
+    if found.beyond.provenance:
+        rows = [literals([value.key, value.a, value.b]) for value in found.beyond.provenance]
+        blocks.append(Table("They were made by different versions.", ["made by", a, b], rows))
+    return blocks

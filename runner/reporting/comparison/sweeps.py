@@ -1,20 +1,20 @@
 """Comparison of two sweeps by cell and repetition."""
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
-from runner.reporting.comparison.beyond import Beyond, find_differences
+from runner.reporting.answers import Asked
 from runner.reporting.comparison.cells import Matched, match
+from runner.reporting.comparison.differences import Beyond, find_differences
+from runner.reporting.comparison.operand import Side
 from runner.reporting.comparison.pairs import CellPairs, compare
-from runner.reporting.comparison.side import Side
-from runner.reporting.comparison.words import noise_alone
-from runner.statistics import Comparison
 from runner.sweeps.metric_names import check_metrics, is_part
 
 MOST_MOVEMENTS = 12
@@ -23,22 +23,16 @@ MOST_MOVEMENTS = 12
 _MOST_OF_ONE = 3  # of them in one metric
 
 
-@dataclass(frozen=True)
-class MetricComparison:
+@dataclass(frozen=True, eq=False)
+class MetricComparison(Asked):
     """How the second sweep differs from the first in one metric.
 
     Attributes:
-        metric: Its name.
-        unit: Its unit.
-        comparison: The second against the first, draw by draw.
         below: Number of cells in which the median of the differences is below zero.
         above: Number of cells in which it is above zero.
         cell: Label of the cell, where it is of one; empty over all cells.
     """
 
-    metric: str
-    unit: str
-    comparison: Comparison
     below: int
     above: int
     cell: Mapping[str, str] = field(default_factory=dict)
@@ -153,3 +147,9 @@ def _median_differences(a: FloatArray, b: FloatArray, pairs: CellPairs) -> Float
         warnings.simplefilter("ignore", RuntimeWarning)
         found: FloatArray = np.nanmedian(np.where(first == second, 0.0, second - first), axis=1)
     return found
+
+
+def noise_alone(configs: Iterable[Mapping[str, Any]]) -> bool:
+    """Tell whether the repetitions of runs draw nothing but noise: nothing of the arm is drawn from the seed."""
+    mismatches = [config.get("mismatch", {}) for config in configs]
+    return all(not mismatch.get("spread") and "kind" not in mismatch for mismatch in mismatches)

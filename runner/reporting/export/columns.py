@@ -85,7 +85,8 @@ def column(title: str, unit: str, samples: FloatArray) -> Column:
         unit: Its SI unit.
         samples: Its values, shape (rows, values): infinite beyond every number, NaN where there is none.
     """
-    found = [_interval(row[~np.isnan(row)]) for row in samples]
+    present = [row[~np.isnan(row)] for row in samples]
+    found = [median_interval(values) if len(values) else None for values in present]
     shown = [value for each in found if each is not None for value in (each.median, each.low, each.high)
              if value is not None and math.isfinite(value) and abs(value) >= ROUNDING]  # fmt: skip
     largest = max(map(abs, shown), default=0.0)
@@ -95,10 +96,6 @@ def column(title: str, unit: str, samples: FloatArray) -> Column:
     lost = np.isinf(samples).sum(axis=1)
     cells = [_cell(each, scale, int(count)) for each, count in zip(found, lost, strict=True)]
     return Column(title, Unit(unit if factor == 1.0 else name, power), cells)
-
-
-def _interval(values: FloatArray) -> Interval | None:
-    return median_interval(values) if len(values) else None
 
 
 def _power(largest: float) -> int:

@@ -1,26 +1,32 @@
 """Figures of a report as separate files: SVG and PDF at column width, points as CSV."""
 
+import csv
+import io
+import math
 import re
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import typst
 
 from runner.base.errors import RunnerError, nearest
+from runner.base.texts import table_cell
 from runner.reporting.charts import map_stills, stills
+from runner.reporting.charts.axes import in_readable_units, map_in_readable_units
+from runner.reporting.charts.figure import Panel, Series
 from runner.reporting.charts.sheet import Sheet
+from runner.reporting.consistency import color_series
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
-from runner.reporting.export.points import Figure, as_csv
-from runner.reporting.markup import Literal, spans
-from runner.reporting.outline import blocks
-from runner.reporting.places import Places
-from runner.reporting.series_colors import color_series
+from runner.reporting.markup import spans
+from runner.reporting.outline import Places, blocks
 from runner.store.atomic import write_atomically
 
 _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')
 _POINTS = 72.0  # in an inch
 _WORDS = 6  # of the caption in the name of a file
+Figure = Curves | Maps | Picture | Playback
+Row = Sequence[object]
 
 
 def figures_of(document: Document) -> dict[str, Figure]:
@@ -46,15 +52,13 @@ def choose_figures(figures: Mapping[str, Figure], only: str | None) -> dict[str,
     """
     if not figures:
         raise RunnerError("the report has no figures")
-    found = {name: figure for name, figure in figures.items() if _is_asked(name, only)}
+    found = {
+        name: figure for name, figure in figures.items() if only is None or name == only or name.startswith(f"{only}-")
+    }
     if not found:
         known = "\n  ".join(figures)
         raise RunnerError(f"--only: no figure '{only}'{nearest(str(only), figures)}; there are:\n  {known}")
     return found
-
-
-def _is_asked(name: str, only: str | None) -> bool:
-    return only is None or name == only or name.startswith(f"{only}-")
 
 
 def write_figures(figures: Mapping[str, Figure], folder: Path, sheet: Sheet) -> Iterator[str]:
@@ -110,5 +114,52 @@ def _as_pdf(svg: str) -> bytes:
 
 def _slug(caption: str) -> str:
     """Return the first words of a caption as a part of a file's name; its numbers may be results, and are left out."""
-    text = " ".join(span.text for span in spans(caption) if isinstance(span, Literal))
+    text = " ".join(span.text for span in spans(caption) if not (span.math or span.anchor))
     return "-".join(re.findall(r"(?<![\w.])[a-z]+(?!\w)", text.partition(". ")[0].lower())[:_WORDS])
+
+
+def as_csv(figure: Figure) -> bytes | None:
+    """Return all points of a figure, none left out, in the units that it shows; None for a drawing without any."""
+    rows = list(_rows(figure))
+    if not rows:
+        return None
+    stream = io.StringIO(newline="")
+    writer = csv.writer(stream)
+    writer.writerows([table_cell(str(value)) for value in row] for row in rows)
+    return stream.getvalue().encode("utf-8", errors="replace")
+
+
+def _rows(figure: Figure) -> Iterator[Row]:
+    match figure:
+        case Curves():
+            yield ("panel", "curve", "x axis", "x", "y axis", "y")
+            for panel in in_readable_units(figure.panels, figure.columns):
+                for series in panel.series:
+                    yield from _of_curve(panel, series)
+        case Maps():
+            yield ("panel", "x axis", "x", "y axis", "y", "quantity", "value")
+            shown = map_in_readable_units(figure)
+            for each in shown.panels:
+                for y, row in zip(each.y_names, each.values.tolist(), strict=True):
+                    for x, value in zip(each.x_names, row, strict=True):
+                        yield (each.title, each.x_label, x, each.y_label, y, shown.value_label, _number(value))
+        case Playback():
+            yield ("curve", "x (m)", "y (m)", "z (m)")
+            for name, path in (("path of the tip", figure.path), ("desired path", figure.desired)):
+                for point in [] if path is None else path.tolist():
+                    yield (name, *map(_number, point))
+        case Picture():
+            pass
+
+
+def _of_curve(panel: Panel, series: Series) -> Iterator[Row]:
+    edges = (("", series.y), (" (lower edge of its band)", series.low), (" (upper edge of its band)", series.high))
+    for what, heights in edges:
+        for x, y in [] if heights is None else zip(series.x.tolist(), heights.tolist(), strict=True):
+            place = panel.x_names[int(x)] if panel.x_names and x == int(x) else _number(x)
+            yield (panel.title, f"{series.name or series.label}{what}", panel.x_label, place, panel.y_label, _number(y))
+
+
+def _number(value: float) -> object:
+    """Return a number with all its digits; nothing for one that is missing."""
+    return "" if math.isnan(value) else value

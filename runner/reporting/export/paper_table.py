@@ -3,19 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
-from runner.base.arrays import FloatArray
 from runner.base.quantities import ROUNDING
 from runner.reporting.export.columns import Column, Unit, column
 from runner.reporting.export.pooling import Pooled, failed_cells, pool
 from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import axis_label, choose
+from runner.reporting.sweep.subject import choose, key_label
 from runner.statistics import SMALLEST_SAMPLE
 from runner.statistics.interval import RESAMPLES
 from runner.store import Run
 from runner.sweeps.differing import in_words
-from runner.sweeps.measurements import Measurements
+from runner.sweeps.measurements import Measurements, measure
 
 Label = str | Unit
 
@@ -75,7 +72,7 @@ def of_sweep(
     fixed = f"The same in all rows: {', '.join(rows.fixed)}." if rows.fixed else ""
     commits = [text for key, texts in rows.provenance.items() if key == "commit" for text in texts]
     return PaperTable(
-        [axis_label(axis) for axis in rows.axes],
+        [key_label(axis.name) for axis in rows.axes],
         labels,
         columns,
         [*notes, *([fixed] if fixed else [])],
@@ -107,11 +104,7 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
 
 def measure_run(run: Run) -> Measurements:
     """Return one run as a sweep of one cell."""
-    values: dict[str, FloatArray] = {
-        name: np.where(np.isnan(own := run.values(name)), np.inf, own)[None] for name in run.metrics
-    }
-    units = {name: str(metric["unit"]) for name, metric in run.metrics.items()}
-    return Measurements([], [], [run.hash], [run.status], [run.failure_text], units, values, {}, [run.caveats])
+    return measure([()], [run])
 
 
 def _of_numbers(columns: Sequence[Column], seeds: Sequence[int]) -> list[str]:

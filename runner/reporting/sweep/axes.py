@@ -2,16 +2,13 @@
 
 import math
 
-from runner.base.quantities import label_with_unit
-from runner.config.compose.key_units import key_unit
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal, literals
-from runner.reporting.sweep.subject import Subject, axis_label, value_names
+from runner.reporting.sweep.subject import Subject, key_label, shorten, value_names
 from runner.statistics import SMALLEST_SAMPLE
-from runner.sweeps.resolved import UNITS
 
 _MOST_VALUES = 12
-_MOST_ROWS, _MOST_PLACES, _LONGEST = 16, 6, 60  # of the table of what also differs, and characters of a value
+_MOST_ROWS, _MOST_PLACES = 16, 6  # of the table of what also differs
 
 
 def section(subject: Subject, command: str) -> Section:
@@ -27,7 +24,7 @@ def section(subject: Subject, command: str) -> Section:
     for axis in subject.axes:
         names = value_names(axis)
         shown = names if len(names) <= _MOST_VALUES else [*names[: _MOST_VALUES - 2], "...", names[-1]]
-        rows.append([axis_label(axis), str(len(names)), ", ".join(shown)])
+        rows.append([key_label(axis.name), str(len(names)), ", ".join(shown)])
     blocks: list[Block] = []
     cells = len(measurements.hashes)
     if rows:
@@ -68,9 +65,9 @@ def _also_differs(subject: Subject) -> list[Block]:
     """Return the table of config values that are not the same in all cells, though nobody swept them."""
     rows = []
     for difference in subject.measurements.differences[:_MOST_ROWS]:
-        values = [f"{levels}: {_short(text)}" if levels else _short(text) for levels, text in difference.values]
+        values = [f"{levels}: {shorten(text)}" if levels else shorten(text) for levels, text in difference.values]
         shown = values if len(values) <= _MOST_PLACES else [*values[: _MOST_PLACES - 2], "...", values[-1]]
-        label = label_with_unit(difference.key, UNITS.get(difference.key) or key_unit(difference.key))
+        label = key_label(difference.key)
         rows.append([label, ", ".join(difference.axes) or "none", "; ".join(shown)])
     left = [difference.key for difference in subject.measurements.differences[_MOST_ROWS:]]
     if not rows:
@@ -81,7 +78,3 @@ def _also_differs(subject: Subject) -> list[Block]:
         f"seems to do may be done by what goes with it.{more}"
     )
     return [Table(caption, ["key", "goes with", "values"], [literals(row) for row in rows])]
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."

@@ -1,4 +1,4 @@
-"""Heat maps over two axes, with small multiples for further axes."""
+"""Heat maps over two axes, with small multiples for further axes and the stability limit of theory."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -8,10 +8,9 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.reporting import metric_titles
 from runner.reporting.charts.thinning import spaced_indices
-from runner.reporting.document import Block, Map, Maps, Section
+from runner.reporting.document import Block, Formula, Map, Maps, Section, Series, Text
 from runner.reporting.markup import literal
-from runner.reporting.sweep import theory
-from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
+from runner.reporting.sweep.subject import Subject, key_label, spans_decades, value_names
 from runner.sweeps.measurements import Axis
 
 POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
@@ -19,6 +18,8 @@ _FEWEST_FOR_CONTOURS = 3
 _MOST_MULTIPLES = 9
 _MOST_VALUES = 200  # of an axis of a map
 _MOST_POINTED = 5000  # cells that tell about themselves; a page with more would be slow
+_FREQUENCY, _PERIOD = "controller.natural_frequency", "controller.period"
+_POINTS = 400
 
 
 def section(subject: Subject) -> Section:
@@ -27,7 +28,7 @@ def section(subject: Subject) -> Section:
     blocks: list[Block] = [
         _maps(subject, metric, x, y, others) for metric in subject.metrics if np.isfinite(subject.medians[metric]).any()
     ]
-    return Section("Maps", [*blocks, *theory.explained([x, y])])
+    return Section("Maps", [*blocks, *theory_text([x, y])])
 
 
 def is_readable(subject: Subject) -> bool:
@@ -105,13 +106,13 @@ def _map(subject: Subject, of: Sequence[FloatArray], x: Axis, y: Axis, cells: Se
     pointed = [some[0] for some in members] if single and len(statuses) <= _MOST_POINTED else []
     return Map(
         title,
-        axis_label(x),
-        axis_label(y),
+        key_label(x.name),
+        key_label(y.name),
         value_names(x),
         value_names(y),
         values,
         failed,
-        theory.lines(x, y),
+        theory_lines(x, y),
         hints=subject.hints(pointed),
         runs=subject.hashes(pointed),
         low=low,
@@ -134,3 +135,49 @@ def _has_contours(x: Axis, y: Axis, values: FloatArray) -> bool:
         and 2 * finite.size > values.size
         and bool(finite.min() < finite.max())
     )
+
+
+def theory_lines(x: Axis, y: Axis) -> list[Series]:
+    """Return the lines over a map: omega_n h = 1 over natural frequency and sample time.
+
+    Coordinates count columns and rows from 0; between two of them a value lies where its logarithm does.
+    """
+    if not _sampling(x, y) or x.numbers is None or y.numbers is None:
+        return []
+    across = np.geomspace(x.numbers[0], x.numbers[-1], _POINTS)
+    upwards = 1.0 / across
+    inside = (upwards >= y.numbers[0]) & (upwards <= y.numbers[-1])
+    columns, rows = _place(x.numbers, across), _place(y.numbers, upwards)
+    return [Series("ω_n h = 1", columns[inside], rows[inside], "dashed")] if inside.any() else []
+
+
+def theory_text(axes: list[Axis]) -> list[Block]:
+    """Return what the line of a map means, where there is one."""
+    if len(axes) < 2 or not _sampling(axes[0], axes[1]):
+        return []
+    return [
+        Text(
+            "The dashed line is where theory ends the stability of a critically damped loop whose torque is held over "
+            "the sample time $h$: on a plant integrated exactly"
+        ),
+        Formula("omega_n h < 1", "omega n times h is less than one"),
+        Text(
+            "and on PyBullet with $n$ steps in a sample time $4 - 4 w - w^2 / n > 0$ for $w = omega_n h$, that is "
+            "$w < 0.83$ for one step and $w < 0.976$ for ten."
+        ),
+    ]
+
+
+def _sampling(x: Axis, y: Axis) -> bool:
+    """Return whether two axes are natural frequency and sample time, of the arm or of one and the same stage."""
+    for first, second in ((x, y), (y, x)):
+        if first.name.startswith(_FREQUENCY) and second.name.startswith(_PERIOD):
+            positive = all(axis.numbers is not None and bool(axis.numbers.min() > 0) for axis in (x, y))
+            return positive and first.name.removeprefix(_FREQUENCY) == second.name.removeprefix(_PERIOD)
+    return False
+
+
+def _place(values: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Return at which column or row values lie, between two of them by their logarithms."""
+    places: FloatArray = np.interp(np.log(wanted), np.log(values), np.arange(len(values), dtype=float))
+    return places

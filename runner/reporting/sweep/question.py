@@ -1,4 +1,4 @@
-"""Main question of a sweep: comparison of one axis's values, pooled and for each value of a second axis."""
+"""Paired comparisons of the values of an axis: the main question of a sweep, and the tables of all axes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,16 +6,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.quantities import quantity
-from runner.reporting.answers import Answer, Asked, judge
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, judge
+from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.comparison.cells import label_text
-from runner.reporting.comparison.levels import SEED, LevelPair, level_pairs
-from runner.reporting.comparison.pairs import compare
-from runner.reporting.metric_titles import title
+from runner.reporting.comparison.pairs import SEED, LevelPair, compare, level_pairs
+from runner.reporting.document import Block, Section, Table, Text
+from runner.reporting.markup import literal, literals
+from runner.reporting.metric_titles import capital, title
 from runner.reporting.sweep.subject import Subject, first_screen
 from runner.statistics import SMALLEST_SAMPLE
 from runner.sweeps.measurements import Axis
 
 _MOST_TOLD = 3  # pairs of values of an axis, and keys that go with it, that sentences tell
+_MOST_PAIRS = 24
 
 
 @dataclass(frozen=True)
@@ -50,22 +53,12 @@ def find_question(subject: Subject) -> Question | None:
     overall = level_pairs(measurements, axis.name, ())
     within = max(others, key=lambda each: _spread(subject, each)).name if others else ""
     at = level_pairs(measurements, axis.name, [within]) if within else []
-    asked, places = [], []
-    for pair in (*overall, *at):
-        for metric in metrics:
-            found = compare(measurements, measurements, metric, pair.cells)
-            if found is not None:
-                asked.append(Asked(metric, measurements.units[metric], found))
-                places.append(id(pair))
-    answers = judge(asked, metrics)
+    found = _answers(subject, [*overall, *at], metrics)
 
     def of(pairs: Sequence[LevelPair]) -> list[tuple[LevelPair, Sequence[Answer]]]:
-        return [
-            (pair, [answer for answer, place in zip(answers, places, strict=True) if place == id(pair)])
-            for pair in pairs
-        ]
+        return [(pair, [answer for other, answer in found if other is pair]) for pair in pairs]
 
-    return Question(axis.name, within, of(overall), of(at)) if asked else None
+    return Question(axis.name, within, of(overall), of(at)) if found else None
 
 
 def sentences(question: Question, subject: Subject) -> list[str]:
@@ -137,3 +130,63 @@ def _spread(subject: Subject, axis: Axis) -> float:
     finite = np.isfinite(medians)
     means = [medians[finite & (axis.level == level)] for level in np.unique(axis.level)]
     return float(np.var([some.mean() for some in means if some.size])) if finite.any() else 0.0
+
+
+def pairs_section(subject: Subject) -> Section | None:
+    """Return the comparisons of each metric, axis by axis; None where no two cells share their seeds."""
+    # Choices, such as controllers, are what is compared most.
+    axes = sorted(subject.axes, key=lambda axis: axis.numbers is not None)
+    tables: dict[str, list[Block]] = {metric: [] for metric in subject.metrics}
+    for axis in axes:
+        within = level_pairs(subject.measurements, axis.name)
+        overall = level_pairs(subject.measurements, axis.name, ()) if any(pair.at for pair in within) else []
+        chosen = [within[place] for place in spaced_indices(len(within), _MOST_PAIRS)]
+        fewer = (
+            f" ({len(chosen)} of {len(within)} pairs, spread evenly over the sweep)"
+            if len(chosen) < len(within)
+            else ""
+        )
+        found = _answers(subject, [*overall, *chosen], subject.metrics)
+        for metric, blocks in tables.items():
+            rows = [_row(pair, answer) for pair, answer in found if answer.metric == metric]
+            if rows:
+                blocks.append(_table(subject, axis, metric, rows, bool(overall), fewer))
+    sections = [Section(capital(title(metric)), blocks) for metric, blocks in tables.items() if blocks]
+    if not sections:
+        return None
+    text = (
+        "The cells of a pair differ in one axis alone, and in what goes with it (Also differs). "
+        f"{EXPLAINED} The option --metrics compares by other metrics."
+    )
+    return Section("Compared in pairs", [Text(text)], sections)
+
+
+def _answers(subject: Subject, pairs: Sequence[LevelPair], metrics: Sequence[str]) -> list[tuple[LevelPair, Answer]]:
+    measurements = subject.measurements
+    compared = [
+        (pair, Asked(metric, measurements.units[metric], found))
+        for metric in metrics
+        for pair in pairs
+        if (found := compare(measurements, measurements, metric, pair.cells))
+    ]
+    answers = judge([asked for _, asked in compared], first_screen(subject.metrics))
+    return [(pair, answer) for (pair, _), answer in zip(compared, answers, strict=True)]
+
+
+def _table(
+    subject: Subject, axis: Axis, metric: str, rows: Sequence[Sequence[str]], overall: bool, fewer: str
+) -> Table:
+    within = "over all other axes and within each level of them" if overall else "as the only axis"
+    if any(other.name == SEED for other in subject.axes):
+        within += ", over all seeds"
+    return Table(
+        literal(f"{capital(title(metric))} by {axis.name}, {within}{fewer}."),
+        ["at", literal(axis.name), *HEADER, "the second is"],
+        rows,
+        tuple(range(2, 2 + len(HEADER))),
+    )
+
+
+def _row(pair: LevelPair, answer: Answer) -> Sequence[str]:
+    at = ", ".join(f"{name}={text}" for name, text in pair.at.items()) or "all"
+    return [*literals([at, f"{pair.first}, {pair.second}"]), *answer.cells]

@@ -10,17 +10,14 @@ from runner.reporting.document import Document, Provenance, RunList, Section, Te
 from runner.reporting.markup import literal
 from runner.reporting.sweep import (
     axes,
-    caveats,
     distributions,
     effects,
-    extremes,
     failures,
     maps,
-    pairs,
     spec,
     tradeoff,
 )
-from runner.reporting.sweep.question import find_question, range_told, sentences, too_few
+from runner.reporting.sweep.question import find_question, pairs_section, range_told, sentences, too_few
 from runner.reporting.sweep.subject import Subject, choose
 from runner.store import Sweep
 from runner.sweeps.measurements import measure_sweep
@@ -46,14 +43,14 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     """
     subject = choose(measure_sweep(sweep), metrics)
     measurements = subject.measurements
-    doubts = [caveats.section(subject)] if caveats.is_needed(subject) else []
+    doubts = [failures.caveats_section(subject)] if failures.has_caveats(subject) else []
     sections = [*doubts, axes.section(subject, sweep.command)]
     if sweep.spec:
         sections.append(spec.section(subject, sweep))
     ranked = subject.ranked
     if subject.metrics and subject.axes:
         sections.append(effects.section(subject))
-        compared = pairs.section(subject)
+        compared = pairs_section(subject)
         sections += [compared] if compared is not None else []
     if subject.metrics and maps.is_readable(subject):
         sections.append(maps.section(subject))
@@ -63,7 +60,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     if ranked:
         sections.append(distributions.section(subject))
         low, high = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
-        sections.append(extremes.section(subject, low, high))
+        sections.append(distributions.extremes_section(subject, low, high))
     if any(status != "ok" for status in measurements.statuses):
         sections.append(failures.section(subject))
     sections.append(_all_runs(subject, sweep, runs_address))

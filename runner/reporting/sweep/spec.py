@@ -12,10 +12,9 @@ from runner.config.spec import Bound
 from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
-from runner.reporting.spec_blocks import RULE
-from runner.reporting.spec_words import bound_text, late_text, probability
+from runner.reporting.spec_blocks import RULE, bound_text, late_text, probability
 from runner.reporting.sweep import maps
-from runner.reporting.sweep.subject import Subject, axis_label, spans_decades, value_names
+from runner.reporting.sweep.subject import Subject, key_label, spans_decades, value_names
 from runner.statistics.spec import bounds_of
 from runner.statistics.spec.history import merge_histories, settings
 from runner.statistics.spec.kept import within
@@ -141,7 +140,7 @@ def _curve(one: Failing, axis: Axis) -> Curves:
         series.append(Series(_FEW, x[few], pooled.share[few], "points"))
     panel = Panel(
         "",
-        axis_label(axis),
+        key_label(axis.name),
         _LABEL,
         series,
         numbers is not None and spans_decades(numbers),
@@ -185,7 +184,7 @@ def _row(one: Failing, x: Axis, y: Axis, cells: NDArray[np.intp], start: str) ->
     ]
     unmarked = np.zeros(shape, dtype=bool)
     drawn = (("share that failed", pooled.share, few), ("upper end of the 95 % interval", high, unmarked))
-    names = (axis_label(x), axis_label(y), value_names(x), value_names(y))
+    names = (key_label(x.name), key_label(y.name), value_names(x), value_names(y))
     return [Map(start + title, *names, values.reshape(shape), marks, hints=hints) for title, values, marks in drawn]
 
 

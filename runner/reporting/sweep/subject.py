@@ -14,6 +14,7 @@ from runner.config.compose.key_units import key_unit
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.measurements import Axis, Measurements
 from runner.sweeps.metric_names import is_part
+from runner.sweeps.resolved import UNITS
 
 if TYPE_CHECKING:
     from runner.statistics import EffectAnalysis
@@ -43,6 +44,7 @@ COSTS = ("peak_torque", "rms_torque", "control_effort", "energy")
 """Metrics of what a motion costs."""
 
 _DECADE = 10.0
+_LONGEST = 60  # characters of a value in a table
 
 
 @dataclass(frozen=True)
@@ -137,9 +139,14 @@ def group_levels(axis: Axis) -> NDArray[np.intp]:
     return axis.level * MOST_GROUPS // count if count > MOST_GROUPS else axis.level
 
 
-def axis_label(axis: Axis) -> str:
-    """Return the key of an axis with its unit, as on the axis of a figure."""
-    return label_with_unit(axis.name, key_unit(axis.name))
+def key_label(name: str) -> str:
+    """Return a key of a config, such as that of an axis, with its unit, as on the axis of a figure."""
+    return label_with_unit(name, UNITS.get(name) or key_unit(name))
+
+
+def shorten(text: str) -> str:
+    """Return a value of a config, cut to the width of a table's column."""
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
 
 
 def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:

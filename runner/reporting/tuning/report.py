@@ -11,12 +11,13 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.config.compose.key_units import key_unit
 from runner.reporting.answers import CHOSEN
-from runner.reporting.cover import cover
 from runner.reporting.document import Document, Notice, Origin, Provenance, RunList, Section, Table, Text
+from runner.reporting.figures import cover
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
-from runner.reporting.tuning import best_trials, front, history, keys
-from runner.reporting.tuning.subject import Subject, key_label, key_value
+from runner.reporting.sweep.subject import key_label
+from runner.reporting.tuning.sections import front_section, history_section, keys_section, trials_section
+from runner.reporting.tuning.subject import Subject, key_value
 from runner.store import Sweep, open_run
 from runner.sweeps.measurements import Measurements, measure_sweep
 from runner.sweeps.tuning.study import Tuning, at_ends
@@ -41,21 +42,22 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     measurements = measure_sweep(sweep)
     sections, shown = [_what(subject)], None
     if subject.good:
-        sections += [history.section(subject), keys.section(subject)]
+        sections += [history_section(subject), keys_section(subject)]
         if len(subject.objectives) > 1:
-            sections.insert(2, front.section(subject))
+            sections.insert(2, front_section(subject))
         places = list(subject.best_by_objective())
         runs = {place: open_run(sweep.outputs / "runs" / subject.trials[place].run) for place in places}
         commands = {place: _command(tuning.study.trial_overrides(subject.trials[place])) for place in places}
-        sections.append(best_trials.section(subject, runs, commands))
+        sections.append(trials_section(subject, runs, commands))
         shown = cover(runs[places[0]], f"The motion of trial {places[0]}, the chosen one.")
     if len(subject.good) < len(subject.trials):
         sections.append(_failures(subject))
     sections.append(_all_runs(subject, sweep, made, measurements, folder))
     made_by = [(name, ", ".join(values)) for name, values in measurements.provenance.items()]
     sections.append(Section("Provenance", (Provenance([*made_by, ("tuning", tuning.folder.name)]),)))
+    goals = " and ".join(f"{objective.direction} the {title(objective.metric)}" for objective in subject.objectives)
     return Document(
-        title=f"Tuning to {_goals(subject)}",
+        title=f"Tuning to {goals}",
         subtitle=", ".join(tuning.study.overrides),
         abstract=literal(_abstract(subject)),
         sections=sections,
@@ -89,14 +91,10 @@ def _abstract(subject: Subject) -> str:
     return " ".join([text, *at_ends(subject.tuning), *([CHOSEN] if subject.best else [])])
 
 
-def _goals(subject: Subject) -> str:
-    return " and ".join(f"{objective.direction} the {title(objective.metric)}" for objective in subject.objectives)
-
-
 def _what(subject: Subject) -> Section:
     rows = [
         [
-            key_label(key),
+            key_label(key.name),
             key_value(key.low),
             key_value(key.high),
             "logarithmic" if key.log else "linear",

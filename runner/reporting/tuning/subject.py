@@ -7,8 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import label_with_unit, number, quantity
-from runner.config.compose.key_units import key_unit
+from runner.base.quantities import number, quantity
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective
@@ -86,11 +85,6 @@ class Subject:
 def label(objective: Objective) -> str:
     """Return the title of an objective's metric with its unit, as on the axis of a figure."""
     return metric_label(objective.metric, objective.unit)
-
-
-def key_label(key: Key) -> str:
-    """Return the name of a key with its unit, as on the axis of a figure."""
-    return label_with_unit(key.name, key_unit(key.name))
 
 
 def key_value(value: float) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.reporting.charts import top_view
+from runner.reporting.charts.arm import top_view
 from runner.reporting.document import Picture
 from runner.reporting.figures import columns, model_of, origin
 from runner.store import Run

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import above_rounding, number
-from runner.reporting.charts import workspace_sphere
+from runner.reporting.charts.workspace import workspace_sphere
 from runner.reporting.document import Picture, Table
 from runner.reporting.figures import model_of, origin
 from runner.robots.denavit_hartenberg import denavit_hartenberg

@@ -6,10 +6,10 @@ from dataclasses import replace
 from runner.base.quantities import spread
 from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
 from runner.controllers.operational_space.whole_body_graph import whole_body_graph
-from runner.reporting.charts import block_diagram, control_steps
+from runner.reporting.charts.block_diagram import block_diagram
+from runner.reporting.charts.control_steps import control_steps
 from runner.reporting.document import Curves, Picture
-from runner.reporting.figures import origin
-from runner.reporting.figures_staged import macro_mini_targets
+from runner.reporting.figures import macro_mini_targets, origin
 from runner.store import Run
 from runner.studies.thesis.folding import singular_value
 from runner.study.job import PRESETS

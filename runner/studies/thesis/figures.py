@@ -8,7 +8,8 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding
 from runner.controllers.operational_space.operational_space_graph import operational_space_graph
-from runner.reporting.charts import block_diagram, frame_assignment
+from runner.reporting.charts.block_diagram import block_diagram
+from runner.reporting.charts.frames import frame_assignment
 from runner.reporting.claims import load_claims
 from runner.reporting.document import Block, Curves, Picture, Series, Table, Text
 from runner.reporting.figures import AXES, columns, joint_columns, model_of, origin

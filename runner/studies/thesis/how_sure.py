@@ -8,7 +8,7 @@ from runner.base.quantities import number, quantity, with_ends
 from runner.reporting.claims import FACTOR, load_claims
 from runner.reporting.document import Curves, Panel, Series, Table
 from runner.reporting.figures import origin
-from runner.reporting.sweep.intervals import at_texts
+from runner.reporting.sweep.effects import at_texts
 from runner.reporting.words import PRESET
 from runner.statistics.share import count_share
 from runner.store import Run

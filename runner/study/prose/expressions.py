@@ -17,8 +17,7 @@ from runner.base.errors import RunnerError
 from runner.base.expressions.evaluator import Budget, Scope
 from runner.base.expressions.grammar import ExpressionError, parse
 from runner.base.expressions.insertions import insertions
-from runner.reporting.claim import Claim
-from runner.reporting.document import Block, Panel, Section, Series
+from runner.reporting.document import Block, Claim, Panel, Section, Series
 from runner.study.job import MissingError
 from runner.study.measured import Condition, Measured
 from runner.study.prose.tables import Column

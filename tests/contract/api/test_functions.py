@@ -59,7 +59,7 @@ def test_a_bad_config_raises_all_its_problems_and_none_of_our_frames(tmp_path):
     with pytest.raises(ConfigError) as raised:
         runner.run("seed=-1", "torque_limits.max=[1,2]")
     assert len(raised.value.problems) == 2
-    assert len(raised.traceback) == 2  # this line, and the door
+    assert len(raised.traceback) == 2  # this line, and the wrapper
     assert raised.value.__cause__ is None
     assert raised.value.__suppress_context__
     assert list(tmp_path.iterdir()) == []

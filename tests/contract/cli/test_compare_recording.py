@@ -13,7 +13,7 @@ from runner.base.paths import examples_dir
 from runner.recordings.compare import compare_recording
 from runner.reporting import html
 from runner.reporting.formulas import faulty
-from runner.reporting.recording.report import recording_document, report_folder
+from runner.reporting.recording_report import recording_document, report_folder
 from runner.sweeps.execution import run
 
 HERE = examples_dir() / "recording"

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from runner.config.compose.compose import compose
-from runner.reporting.changed_keys import changed_keys, flatten
+from runner.reporting.run_report import changed_keys, flatten
 
 
 @dataclass

@@ -11,8 +11,7 @@ from support.sample_document import HOSTILE, SVG, curves, document, maps, playba
 from runner.base.errors import RunnerError
 from runner.reporting.charts.sheet import column
 from runner.reporting.document import Curves, Document, Maps, Origin, Panel, Picture, Section, Series
-from runner.reporting.export.figures import choose_figures, figures_of, write_figures
-from runner.reporting.export.points import as_csv
+from runner.reporting.export.figures import as_csv, choose_figures, figures_of, write_figures
 
 SHEETS = {88.0: column(88.0), 180.0: column(180.0)}
 POINTS = 72.0 / 25.4  # in a millimetre

@@ -14,8 +14,7 @@ from support.sample_document import HOSTILE, curves, document, playback
 
 from runner.base.texts import plain
 from runner.reporting import html, outline
-from runner.reporting.claim import Claim, ClaimResult
-from runner.reporting.document import Block, Document, Origin, Section, Text, Verdicts
+from runner.reporting.document import Block, Claim, ClaimResult, Document, Origin, Section, Text, Verdicts
 from runner.reporting.markup import spans
 from runner.reporting.templating import html_environment
 

@@ -7,7 +7,7 @@ import pytest
 from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.reporting.document import Section, Table
-from runner.reporting.sweep import extremes, pairs
+from runner.reporting.sweep import distributions, question
 from runner.reporting.sweep.subject import choose
 
 ROBOTS = {"robot": ["macro", "xarm7"], "controller": ["computed_torque", "operational_space"]}
@@ -26,7 +26,7 @@ def tables(section, metric=0):
 
 def test_laws_are_compared_within_each_robot():
     subject = robots()
-    table = tables(pairs.section(subject))["controller"]
+    table = tables(question.pairs_section(subject))["controller"]
     assert [row[:2] for row in table.rows] == [
         [at, "computed_torque, operational_space"] for at in ("all", "robot=macro", "robot=xarm7")
     ]
@@ -36,7 +36,7 @@ def test_laws_are_compared_within_each_robot():
 
 def test_every_metric_that_is_compared_is_compared_in_pairs():
     subject = two_axes()
-    section = pairs.section(subject)
+    section = question.pairs_section(subject)
     assert [part.title for part in section.sections] == ["Largest tracking error", "Largest torque"]
     for metric, _ in enumerate(subject.metrics):
         found = tables(section, metric)
@@ -49,15 +49,15 @@ def test_every_metric_that_is_compared_is_compared_in_pairs():
 def test_cells_of_different_seeds_are_no_pair():
     subject = robots()
     apart = choose(replace(subject.measurements, seeds=[0, 0, 1, 1]))
-    assert list(tables(pairs.section(apart))) == ["controller"]
-    assert pairs.section(choose(replace(subject.measurements, seeds=range(4)))) is None
+    assert list(tables(question.pairs_section(apart))) == ["controller"]
+    assert question.pairs_section(choose(replace(subject.measurements, seeds=range(4)))) is None
 
 
 def test_swept_seeds_are_pooled_as_repetitions_are():
     grid = {"seed": [0.0, 1.0], "controller": ["a", "b"]}
     sample = measurements(grid, {"rms": noisy(lambda seed, law: 1.0 + law)})
     subject = choose(replace(sample, seeds=[0, 0, 1, 1]))
-    table = tables(pairs.section(subject))["controller"]
+    table = tables(question.pairs_section(subject))["controller"]
     (row,) = table.rows
     assert (row[0], row[4]) == ("all", "16")
     assert table.caption.endswith("by controller, as the only axis, over all seeds.")
@@ -65,13 +65,13 @@ def test_swept_seeds_are_pooled_as_repetitions_are():
 
 def test_of_many_pairs_some_are_shown_and_the_caption_says_so():
     grid = {"a": np.arange(10.0), "b": np.arange(10.0)}
-    table = tables(pairs.section(choose(measurements(grid, {"rms": noisy(lambda a, b: 1.0 + a + b)}))))["a"]
+    table = tables(question.pairs_section(choose(measurements(grid, {"rms": noisy(lambda a, b: 1.0 + a + b)}))))["a"]
     assert len(table.rows) == 9 + 24  # over all else, and some within
     assert "(24 of 90 pairs, spread evenly over the sweep)" in table.caption
 
 
 def test_few_repetitions_have_no_interval_and_say_how_many_they_are():
-    row = tables(pairs.section(robots(5)))["controller"].rows[0]
+    row = tables(question.pairs_section(robots(5)))["controller"].rows[0]
     assert row[3:5] == ["–", "5"]
     assert row[-1] == "too few pairs to say (5 of 6)"
 
@@ -80,10 +80,10 @@ def test_missing_repetitions_are_left_out_and_failed_ones_are_beyond_every_numbe
     subject = robots()
     values = subject.measurements.values["rms"]
     values[0, :2], values[1, 2:] = np.nan, np.inf
-    _, row, _ = tables(pairs.section(subject))["controller"].rows
+    _, row, _ = tables(question.pairs_section(subject))["controller"].rows
     assert [row[2], *row[4:6]] == ["beyond every number", "6", "1.00"]
     values[1] = np.nan
-    table = tables(pairs.section(subject))["controller"]
+    table = tables(question.pairs_section(subject))["controller"]
     assert [row[0] for row in table.rows] == ["all", "robot=xarm7"]
     assert "spread evenly" not in table.caption
 
@@ -91,8 +91,8 @@ def test_missing_repetitions_are_left_out_and_failed_ones_are_beyond_every_numbe
 @pytest.fixture(name="blocks")
 def _blocks(monkeypatch):
     """Return the blocks on the first and the last cell, whose runs are not stored: no motion is shown."""
-    monkeypatch.setattr(extremes, "_motion", lambda title, _: Section(title, ()))
-    return lambda subject: extremes.section(subject, None, None).blocks
+    monkeypatch.setattr(distributions, "_motion", lambda title, _: Section(title, ()))
+    return lambda subject: distributions.extremes_section(subject, None, None).blocks
 
 
 def test_n_stands_beside_the_intervals_of_both_ends(blocks):

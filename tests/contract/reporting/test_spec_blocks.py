@@ -8,7 +8,7 @@ from runner.reporting.document import Notice, Table
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
 from runner.reporting.run_report import run_document
-from runner.reporting.spec_words import HEADER, bound_text
+from runner.reporting.spec_blocks import HEADER, bound_text
 
 
 @pytest.fixture(scope="module")

@@ -10,10 +10,11 @@ from matplotlib.patches import FancyBboxPatch, Polygon
 
 from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
 from runner.controllers.operational_space.whole_body_graph import whole_body_graph
-from runner.reporting.charts import block_diagram, frame_assignment
+from runner.reporting.charts.block_diagram import block_diagram
 from runner.reporting.charts.control_steps import control_steps, steps
+from runner.reporting.charts.frames import frame_assignment
 from runner.reporting.charts.stills import draw
-from runner.reporting.figures_staged import macro_mini_targets
+from runner.reporting.figures import macro_mini_targets
 
 SCHEDULES = [(schedule, beyond) for schedule in ("both", "turns") for beyond in ("hold", "stretch")]
 GRAPH = ("two_way", "minus_home", "full", "real", True, True, True, False, "turns")

@@ -9,8 +9,8 @@ import pytest
 from runner.base.errors import StoreError
 from runner.reporting.document import Curves, Notice, Playback, RunList, Table, Text
 from runner.reporting.markup import literal
-from runner.reporting.tuning import history
 from runner.reporting.tuning.report import tuning_document
+from runner.reporting.tuning.sections import history_section
 from runner.reporting.tuning.subject import Subject
 from runner.sweeps.tuning.objective import Objective
 from runner.sweeps.tuning.run import tune
@@ -107,7 +107,7 @@ def test_the_first_paragraph_says_which_key_ends_at_the_end_of_its_range(tuning)
 
 
 def test_the_history_never_gets_worse(tuning):
-    less, more = blocks(history.section(Subject(tuning)), Curves)[0].panels
+    less, more = blocks(history_section(Subject(tuning)), Curves)[0].panels
     for panel, sign in ((less, 1.0), (more, -1.0)):
         trials, so_far = panel.series
         assert (np.diff(sign * so_far.y) <= 0).all()

@@ -9,7 +9,7 @@ import pytest
 from runner.config.spec import Bound
 from runner.reporting.document import Notice
 from runner.reporting.outline import blocks
-from runner.reporting.spec_words import spec_rows
+from runner.reporting.spec_blocks import spec_rows
 from runner.reporting.sweep.report import sweep_document
 from runner.store import judge_run, open_run, open_sweep, write_sweep
 from runner.sweeps.execution import run

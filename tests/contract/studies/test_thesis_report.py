@@ -8,7 +8,7 @@ import pytest
 from runner.reporting import outline
 from runner.reporting.document import Curves, Picture, Table, Text, Verdicts
 from runner.reporting.formulas import faulty
-from runner.reporting.places import Places
+from runner.reporting.outline import Places
 from runner.reporting.render import write_report
 from runner.reporting.tally import tallies
 from runner.reporting.words import PRESET

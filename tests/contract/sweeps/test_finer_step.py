@@ -6,8 +6,8 @@ from support.engines import ASKED
 
 from runner.base.errors import StoreError
 from runner.reporting.comparison.cells import one_cell
+from runner.reporting.comparison.operand import side_of_run
 from runner.reporting.comparison.pairs import compare
-from runner.reporting.comparison.side import side_of_run
 from runner.store.finer import finer_names, read_finer
 from runner.sweeps.execution import run
 from runner.sweeps.finer_step import DRAWS, work_out

@@ -2,9 +2,9 @@
 
 import pytest
 
-from runner.audit import inventory as module
+from runner.audit import audit as module
+from runner.audit.audit import differences, inventory
 from runner.audit.entry import entries
-from runner.audit.inventory import differences, inventory
 from runner.audit.sources import sources
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from runner.audit.chains import derivative, jacobian_by_differences, rotation
 from runner.audit.entry import entries, parts
 from runner.audit.evaluation import evaluate
 from runner.audit.sources import sources, truth_of
+from runner.audit.truth import derivative, jacobian_by_differences, rotation
 from runner.audit.verdict import Judge, error
 from runner.base.expressions.parser import parse
 from runner.studies.meca500.equations.truths import meca500

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from support.sample_sides import LAWS, side
 
-from runner.reporting.comparison.caveats import SideCaveat, caveats_of
+from runner.reporting.comparison.operand import SideCaveat, caveats_of
 
 
 def test_each_rule_is_counted_and_its_worst_is_told():

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.quantities import number
-from runner.reporting.column_units import in_readable_units, readable
+from runner.reporting.consistency import in_readable_units, readable
 from runner.reporting.document import Document, Section, Table
 
 

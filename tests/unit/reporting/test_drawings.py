@@ -10,10 +10,11 @@ from support.arms import model_of, urdf_of
 
 from runner.controllers.graph import ControlGraph, Edge, Node
 from runner.controllers.operational_space.operational_space_graph import operational_space_graph
-from runner.reporting.charts import arm_motion, block_diagram, frame_assignment, top_view, workspace_sphere
-from runner.reporting.charts.arm import _nearest
+from runner.reporting.charts.arm import _nearest, arm_motion, top_view
+from runner.reporting.charts.block_diagram import block_diagram
 from runner.reporting.charts.canvas import Camera, circle
-from runner.reporting.charts.workspace import _best_samples
+from runner.reporting.charts.frames import frame_assignment
+from runner.reporting.charts.workspace import _best_samples, workspace_sphere
 from runner.robots import RobotModel
 from runner.robots.workspace import analyse
 

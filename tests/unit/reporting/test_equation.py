@@ -1,8 +1,17 @@
 """Audited equations of a report: order, verdicts, folding."""
 
 from runner.base.expressions.parser import parse
-from runner.reporting.claim import EquationVerdict
-from runner.reporting.equation import FOLDED, SHOWN, Equation, EquationForm, Matrix, by_finding, by_place, of_verdict
+from runner.reporting.equation import (
+    FOLDED,
+    SHOWN,
+    Equation,
+    EquationForm,
+    EquationVerdict,
+    Matrix,
+    by_finding,
+    by_place,
+    of_verdict,
+)
 
 
 def equation(number, finding="", notes=(), place="page 1", verdict="wrong as printed"):

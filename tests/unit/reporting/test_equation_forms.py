@@ -6,8 +6,7 @@ from runner.audit.entry import Entry, Form, Repair
 from runner.audit.verdict import Judged
 from runner.base.expressions.tree import symbols
 from runner.base.expressions.typesetting import typeset
-from runner.reporting.audit.forms import forms_of
-from runner.reporting.audit.likeness import Likeness
+from runner.reporting.audit.forms import Likeness, forms_of
 
 LONG = " + ".join(f"x{i}*y{i}*z{i}" for i in range(20))
 

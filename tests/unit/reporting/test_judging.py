@@ -4,8 +4,16 @@ from collections.abc import Mapping
 
 import pytest
 
-from runner.reporting.claims import CONTRADICTION, PublishedClaim, load_claims
-from runner.reporting.claims.judging import Simulated, compared_with, expected_value, simulated_by, verdict_on
+from runner.reporting.claims import (
+    CONTRADICTION,
+    PublishedClaim,
+    Simulated,
+    compared_with,
+    expected_value,
+    load_claims,
+    simulated_by,
+    verdict_on,
+)
 
 CLAIMS = load_claims("thesis")
 TIME, ERROR, BOUNDED, ALIKE = (next(each for each in CLAIMS if each.number == number) for number in (1, 4, 5, 16))

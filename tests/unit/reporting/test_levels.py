@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.reporting.comparison.levels import level_pairs, levels
-from runner.reporting.comparison.pairs import MOST_PAIRS, CellPairs, compare
+from runner.reporting.comparison.pairs import MOST_PAIRS, CellPairs, compare, level_pairs, levels
 from runner.statistics import compare_paired
 from runner.sweeps.measurements import Axis, Measurements
 

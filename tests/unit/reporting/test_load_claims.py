@@ -4,13 +4,14 @@ import pytest
 import yaml
 
 from runner.base.errors import RunnerError
-from runner.reporting.claims import claim, load_claims, load_statements, studies_with_claims
+from runner.reporting import claims
+from runner.reporting.claims import load_claims, load_statements, studies_with_claims
 
 
 @pytest.fixture
 def entries(tmp_path, monkeypatch):
     """The thesis' claims 1 to 5 as data, and a function that stores what was made of them."""
-    monkeypatch.setattr(claim, "studies_dir", lambda: tmp_path)
+    monkeypatch.setattr(claims, "studies_dir", lambda: tmp_path)
     (tmp_path / "study").mkdir()
 
     def store(content):

@@ -3,11 +3,11 @@
 import pytest
 
 from runner.base.texts import plain
-from runner.reporting.markup import Link, Literal, Math, spans
+from runner.reporting.markup import Span, spans
 
 
 def test_dollars_enclose_mathematics():
-    assert spans("sag $g / omega_n^2$ here") == [Literal("sag "), Math("g / omega_n^2"), Literal(" here")]
+    assert spans("sag $g / omega_n^2$ here") == [Span("sag "), Span("g / omega_n^2", math=True), Span(" here")]
 
 
 @pytest.mark.parametrize(
@@ -16,19 +16,19 @@ def test_dollars_enclose_mathematics():
 )
 def test_other_dollars_are_literal(text, shown):
     assert "".join(span.text for span in spans(text)) == shown
-    assert not any(isinstance(span, Math) for span in spans(text))
+    assert not any(span.math for span in spans(text))
 
 
 def test_a_section_sign_with_a_number_is_a_link():
-    assert spans("see §2.1, not § 3") == [Literal("see "), Link("section 2.1", "s2-1"), Literal(", not § 3")]
+    assert spans("see §2.1, not § 3") == [Span("see "), Span("section 2.1", anchor="s2-1"), Span(", not § 3")]
 
 
 def test_claims_figures_and_tables_are_links():
     assert spans("Claim 3 and figure 5.12, not figures 2") == [
-        Link("Claim 3", "claim-3"),
-        Literal(" and "),
-        Link("figure 5.12", "figure-5-12"),
-        Literal(", not figures 2"),
+        Span("Claim 3", anchor="claim-3"),
+        Span(" and "),
+        Span("figure 5.12", anchor="figure-5-12"),
+        Span(", not figures 2"),
     ]
 
 

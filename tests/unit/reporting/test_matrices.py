@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.expressions.parser import parse
 from runner.base.expressions.tree import Name
-from runner.reporting.audit.matrices import gather_elements
+from runner.reporting.audit.forms import gather_elements
 from runner.reporting.equation import Matrix
 
 

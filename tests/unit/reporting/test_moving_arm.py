@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from runner.reporting.charts.moving_arm import moving_arm
+from runner.reporting.charts.arm import moving_arm
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -1,7 +1,7 @@
 """Texts of equations compared piece by piece, and cut to what differs."""
 
 from runner.base.expressions.shortening import ELLIPSIS
-from runner.reporting.audit.pieces import LONG, cut, pieces
+from runner.reporting.audit.marks import LONG, cut, pieces
 
 
 def test_a_lost_bracket_leaves_a_mark_where_it_was():

@@ -8,7 +8,7 @@ from support.sample_document import SVG, playback
 
 from runner.base.paths import templates_dir
 from runner.reporting.document import Curves, Map, Maps, Panel, Picture, Series
-from runner.reporting.export.points import as_csv
+from runner.reporting.export.figures import as_csv
 
 T = np.array([0.0, 1.0, 2.0])
 

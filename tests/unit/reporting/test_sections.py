@@ -8,7 +8,7 @@ from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.reporting.document import Curves, Maps, Notice, Table, Text
 from runner.reporting.sweep import axes, distributions, effects, failures, maps
-from runner.reporting.sweep.intervals import cells_with_intervals
+from runner.reporting.sweep.effects import cells_with_intervals
 from runner.reporting.sweep.subject import choose
 from runner.sweeps.differing import Difference
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.reporting.symbols import Symbol, symbols_in
+from runner.reporting.equation import Symbol, symbols_in
 
 
 @pytest.mark.parametrize(

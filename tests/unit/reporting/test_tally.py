@@ -2,8 +2,7 @@
 
 from support.sample_document import equations
 
-from runner.reporting.claim import Claim, ClaimResult
-from runner.reporting.document import Document, Section, Verdicts
+from runner.reporting.document import Claim, ClaimResult, Document, Section, Verdicts
 from runner.reporting.tally import find_conditional_claims, tallies
 
 

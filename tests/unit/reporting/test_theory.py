@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.reporting.sweep.theory import explained, lines
+from runner.reporting.sweep.maps import theory_lines, theory_text
 from runner.sweeps.measurements import Axis
 
 
@@ -17,7 +17,7 @@ PERIOD = axis("controller.period", [0.0125, 0.025, 0.05, 0.1])
 
 @pytest.mark.parametrize(("x", "y"), [(FREQUENCY, PERIOD), (PERIOD, FREQUENCY)])
 def test_the_product_is_one_along_the_line(x, y):
-    (line,) = lines(x, y)
+    (line,) = theory_lines(x, y)
     along = [np.exp(np.interp(places, np.arange(4), np.log(axis.values)))
              for places, axis in ((line.x, x), (line.y, y))]  # fmt: skip
     assert along[0] * along[1] == pytest.approx(np.ones(len(line.x)), rel=1e-9)
@@ -26,7 +26,7 @@ def test_the_product_is_one_along_the_line(x, y):
 
 
 def test_a_line_outside_the_grid_is_not_drawn():
-    assert lines(FREQUENCY, axis("controller.period", [0.001, 0.002])) == []
+    assert theory_lines(FREQUENCY, axis("controller.period", [0.001, 0.002])) == []
 
 
 @pytest.mark.parametrize(
@@ -40,9 +40,9 @@ def test_a_line_outside_the_grid_is_not_drawn():
 )
 def test_only_frequency_and_sample_time_of_one_loop_have_it(x, y, drawn):
     first, second = axis(x, FREQUENCY.values), axis(y, PERIOD.values)
-    assert bool(lines(first, second)) is drawn
-    assert bool(explained([first, second])) is drawn
+    assert bool(theory_lines(first, second)) is drawn
+    assert bool(theory_text([first, second])) is drawn
 
 
 def test_texts_have_no_line():
-    assert lines(axis(FREQUENCY.name, ["a", "b"]), PERIOD) == []
+    assert theory_lines(axis(FREQUENCY.name, ["a", "b"]), PERIOD) == []

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 
-from runner.audit.chains import derivative, product
 from runner.audit.rollout import Run
+from runner.audit.truth import derivative, product
 from runner.base.arrays import FloatArray
 from runner.studies.meca500.equations.truths import meca500
 from runner.studies.meca500.equations.truths.meca500_admittance import summed

@@ -11,9 +11,19 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.audit.chains import jacobian_by_differences, product, rotation, translation
 from runner.audit.model_truths import audited_arm, by_model
-from runner.audit.truth import Elements, Symbols, Truth, Way, columns, whole_and_elements
+from runner.audit.truth import (
+    Elements,
+    Symbols,
+    Truth,
+    Way,
+    columns,
+    jacobian_by_differences,
+    product,
+    rotation,
+    translation,
+    whole_and_elements,
+)
 from runner.base.arrays import FloatArray
 from runner.robots.denavit_hartenberg import ModifiedRow
 

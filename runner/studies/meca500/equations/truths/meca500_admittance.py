@@ -7,8 +7,17 @@ import pinocchio as pin
 from scipy.linalg import expm
 from scipy.spatial.transform import Rotation
 
-from runner.audit.chains import derivative, jacobian_by_differences, rotation
-from runner.audit.truth import Elements, Symbols, Truth, along, columns, elements
+from runner.audit.truth import (
+    Elements,
+    Symbols,
+    Truth,
+    along,
+    columns,
+    derivative,
+    elements,
+    jacobian_by_differences,
+    rotation,
+)
 from runner.base.arrays import FloatArray
 from runner.studies.meca500.equations.truths import meca500
 

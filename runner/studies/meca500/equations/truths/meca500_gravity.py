@@ -10,8 +10,7 @@ from operator import or_
 import numpy as np
 import pinocchio as pin
 
-from runner.audit.chains import rotation
-from runner.audit.truth import Elements, Symbols, Truth, columns, coordinates
+from runner.audit.truth import Elements, Symbols, Truth, columns, coordinates, rotation
 from runner.base.arrays import FloatArray
 from runner.studies.meca500.equations.truths.meca500 import BY_MODEL, JOINTS
 

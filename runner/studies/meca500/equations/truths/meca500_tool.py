@@ -3,8 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
-from runner.audit.chains import rotation
-from runner.audit.truth import Elements, Symbols, Truth, along
+from runner.audit.truth import Elements, Symbols, Truth, along, rotation
 from runner.base.arrays import FloatArray
 from runner.studies.meca500.equations.truths.meca500 import BY_MODEL, JOINTS
 

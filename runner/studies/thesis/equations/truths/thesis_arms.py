@@ -6,9 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from runner.audit.chains import derivative, product, rotation, translation
 from runner.audit.model_truths import AuditedArm, Dynamics, audited_arm, by_model, by_urdf
-from runner.audit.truth import Elements, Symbols, Truth, along
+from runner.audit.truth import Elements, Symbols, Truth, along, derivative, product, rotation, translation
 from runner.base.arrays import FloatArray
 from runner.base.paths import studies_dir
 from runner.robots.model import RobotModel

@@ -5,9 +5,8 @@ from itertools import combinations
 
 import numpy as np
 
-from runner.audit.chains import derivative
 from runner.audit.model_truths import by_model
-from runner.audit.truth import Elements, Symbols, along
+from runner.audit.truth import Elements, Symbols, along, derivative
 from runner.base.arrays import FloatArray
 from runner.studies.thesis.equations.truths import thesis_printed as printed
 from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, GRAVITY, MACRO

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from runner.audit.chains import derivative, jacobian_by_differences
 from runner.audit.model_truths import Dynamics, by_model
-from runner.audit.truth import Elements, Symbols, Truth, Way, along, coordinates
+from runner.audit.truth import Elements, Symbols, Truth, Way, along, coordinates, derivative, jacobian_by_differences
 from runner.base.arrays import FloatArray
 from runner.studies.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm
 from runner.studies.thesis.equations.truths.thesis_kinematics import model_frame, tip_pose

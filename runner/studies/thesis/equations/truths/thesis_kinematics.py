@@ -10,9 +10,8 @@ from functools import lru_cache
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from runner.audit.chains import product, rotation
 from runner.audit.model_truths import by_model
-from runner.audit.truth import Elements, Symbols, Truth, Way, elements
+from runner.audit.truth import Elements, Symbols, Truth, Way, elements, product, rotation
 from runner.base.arrays import FloatArray
 from runner.robots.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames, transform
 from runner.studies.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm

@@ -4,8 +4,7 @@ from itertools import combinations
 
 import numpy as np
 
-from runner.audit.chains import product, rotation
-from runner.audit.truth import Elements, Symbols, Truth, along, coordinates
+from runner.audit.truth import Elements, Symbols, Truth, along, coordinates, product, rotation
 from runner.base.arrays import FloatArray
 from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, GRAVITY, MACRO, MINI, Arm
 from runner.studies.thesis.equations.truths.thesis_kinematics import tip_pose

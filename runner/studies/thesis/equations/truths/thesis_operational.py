@@ -8,9 +8,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runner.audit.chains import derivative
 from runner.audit.model_truths import Dynamics, by_model, by_urdf
-from runner.audit.truth import Elements, Symbols, Truth, along, columns
+from runner.audit.truth import Elements, Symbols, Truth, along, columns, derivative
 from runner.base.arrays import FloatArray
 from runner.studies.thesis.equations.truths import thesis_printed as printed
 from runner.studies.thesis.equations.truths.thesis_arms import MACRO

@@ -9,9 +9,19 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.audit.chains import product, rotation, translation
 from runner.audit.model_truths import audited_arm, by_model
-from runner.audit.truth import Elements, Symbols, Truth, Way, columns, coordinates, whole_and_elements
+from runner.audit.truth import (
+    Elements,
+    Symbols,
+    Truth,
+    Way,
+    columns,
+    coordinates,
+    product,
+    rotation,
+    translation,
+    whole_and_elements,
+)
 from runner.base.arrays import FloatArray
 
 L1, L2, L3, L4, L5 = 26.7, 29.3, 5.25, 35.12, 12.32  # cm

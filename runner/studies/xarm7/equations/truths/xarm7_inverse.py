@@ -9,8 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runner.audit.chains import derivative
-from runner.audit.truth import Elements, Symbols, Truth, Way, columns, coordinates
+from runner.audit.truth import Elements, Symbols, Truth, Way, columns, coordinates, derivative
 from runner.base.arrays import FloatArray
 from runner.studies.xarm7.equations.truths.xarm7 import BY_MODEL, JOINTS, L1, constants, pose
 from runner.studies.xarm7.kinematics import CENTIMETRES, printed_inverse

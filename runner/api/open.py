@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner import store
-from runner.api.door import door
+from runner.api.boundary import public
 from runner.store.latest import find_folder
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from runner.api.tuning import Tuning
 
 
-@door
+@public
 def open_run(folder: str | Path) -> "Run":
     """Open a stored run.
 
@@ -32,7 +32,7 @@ def open_run(folder: str | Path) -> "Run":
     return Run(store.open_run(find_folder(folder, ("run",))))
 
 
-@door
+@public
 def open_sweep(folder: str | Path) -> "Sweep":
     """Open a stored sweep, at work or ended.
 
@@ -47,7 +47,7 @@ def open_sweep(folder: str | Path) -> "Sweep":
     return Sweep(store.open_sweep(find_folder(folder, ("sweep", "tuning"))))
 
 
-@door
+@public
 def open_tuning(folder: str | Path) -> "Tuning":
     """Open a stored tuning.
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from runner.reporting.charts.axes import in_readable_units
 from runner.reporting.charts.figure import Panel, Series
-from runner.reporting.charts.units import in_readable_units
 
 X = np.linspace(0.0, 2.0, 5)
 

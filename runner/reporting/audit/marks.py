@@ -1,12 +1,18 @@
-"""Marked differences between two formulas in Typst mathematics."""
+"""Marked differences between two formulas, or between two strings that cannot be parsed."""
 
 import difflib
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+
+from runner.base.expressions.shortening import ELLIPSIS
 
 _CALL = re.compile(r"(mat|vec|cases)\((.*)\)", re.DOTALL)
 _SEPARATORS = (",", ";")
 _OPEN, _CLOSE = "([{", ")]}"
+Pieces = list[tuple[bool, str]]
+LONG = 130
+"""Characters of a text that is shown whole."""
+_AROUND = 24  # characters shown before and after each difference in a longer one
 
 
 def marked_formulas(first: str, second: str) -> tuple[str, str]:
@@ -71,3 +77,31 @@ def _atoms(text: str, ends: str) -> list[str]:
         found += [each for each in (atom, letter) if each.strip()]
         atom = ""
     return [each.strip() for each in (*found, atom) if each.strip()]
+
+
+def pieces(text: str, beside: str) -> Pieces:
+    """Return a text in pieces, each with whether the other text lacks it; dots stand for long stretches in common."""
+    found: Pieces = []
+    matcher = difflib.SequenceMatcher(None, text, beside, autojunk=False)
+    for kind, start, end, other_start, other_end in matcher.get_opcodes():
+        if kind == "equal":
+            found.append((False, text[start:end]))
+        elif end > start:
+            found.append((True, text[start:end]))
+        elif other_end > other_start:
+            found.append((True, "\u200a"))  # what the other has more leaves a mark of no width
+    return found if len(text) <= LONG else list(_around(found))
+
+
+def cut(text: str) -> Pieces:
+    """Return the beginning of a text."""
+    return [(False, text if len(text) <= LONG else f"{text[:LONG]} {ELLIPSIS}")]
+
+
+def _around(found: Pieces) -> Iterator[tuple[bool, str]]:
+    for place, (marked, piece) in enumerate(found):
+        before, behind = place > 0, place + 1 < len(found)
+        if marked or len(piece) <= _AROUND * (before + behind) + 3:
+            yield marked, piece
+            continue
+        yield False, (piece[:_AROUND] if before else "") + f" {ELLIPSIS} " + (piece[-_AROUND:] if behind else "")

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.reporting import formulas
-from runner.reporting.audit.formula_marks import marked_formulas
+from runner.reporting.audit.marks import marked_formulas
 
 
 @pytest.mark.parametrize(

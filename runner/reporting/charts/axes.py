@@ -1,18 +1,20 @@
-"""Axes in readable units: mm for errors below 0.1 m, ms for times below 0.1 s."""
+"""Axes in readable units, such as mm below 0.1 m, and their tick labels in one notation."""
 
+import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import choose_unit
-from runner.reporting.charts.figure import MapFigure, Panel, Series
+from runner.base.quantities import SUPERSCRIPT, choose_unit
+from runner.reporting.charts.figure import Maps, Panel, Series
 
-MapOf = TypeVar("MapOf", bound=MapFigure)
 _UNIT = re.compile(r"\((m|s)\)$")
+_SMALLEST, _LARGEST = 1e-3, 1e4  # of what is written without a power of ten
+Mark = Callable[[float], str]
 
 
 def in_readable_units(panels: Sequence[Panel], columns: int) -> list[Panel]:
@@ -28,8 +30,8 @@ def in_readable_units(panels: Sequence[Panel], columns: int) -> list[Panel]:
     return [_in_unit(_in_unit(panel, row, "x"), row, "y") for row in rows for panel in row]
 
 
-def map_in_readable_units(figure: MapOf) -> MapOf:
-    """Return a figure of maps, a dataclass, with values that are lengths or times in the unit that fits the largest."""
+def map_in_readable_units(figure: Maps) -> Maps:
+    """Return a figure of maps with values that are lengths or times in the unit that fits the largest."""
     found = _UNIT.search(figure.value_label)
     if found is None:
         return figure
@@ -43,8 +45,7 @@ def map_in_readable_units(figure: MapOf) -> MapOf:
         for panel in figure.panels
     ]
     label = f"{figure.value_label[: found.start()]}({unit})"
-    scaled: MapOf = replace(figure, value_label=label, panels=panels)  # type: ignore[type-var]
-    return scaled
+    return replace(figure, value_label=label, panels=panels)
 
 
 def _in_unit(panel: Panel, row: Sequence[Panel], axis: str) -> Panel:
@@ -81,3 +82,34 @@ def _channels(series: Series, axis: str) -> dict[str, FloatArray]:
 def _scaled(series: Series, axis: str, factor: float) -> Series:
     changed: dict[str, Any] = {name: factor * values for name, values in _channels(series, axis).items()}
     return replace(series, **changed)
+
+
+def marks(low: float, high: float, log: bool = False) -> Mark:
+    """Return what writes the labels of an axis that goes from one value to another.
+
+    They are plain decimals where the largest of them is from 0.001 to 10,000; on a logarithmic axis the smallest, too.
+    """
+    ends = (abs(low), abs(high))
+    small = min(ends) if log else max(ends)
+    return plain_mark if small >= 0.999 * _SMALLEST and max(ends) <= 1.001 * _LARGEST else power_mark
+
+
+def plain_mark(value: float) -> str:
+    """Return a value in as many decimals as it needs, such as 0.05."""
+    text = f"{float(f'{value:.6g}'):.12f}".rstrip("0").rstrip(".")  # a locator's 0.3 is off by rounding
+    return "0" if text in ("-0", "") else text
+
+
+def power_mark(value: float) -> str:
+    """Return a value with a power of ten, such as 5·10⁻⁴."""
+    if value == 0.0:
+        return "0"
+    value = float(f"{value:.6g}")
+    digits = next(count for count in range(6) if math.isclose(float(f"{value:.{count}e}"), value, rel_tol=1e-6))
+    mantissa, _, exponent = f"{value:.{digits}e}".partition("e")
+    return f"{mantissa}·10{str(int(exponent)).translate(SUPERSCRIPT)}".replace("-1·10", "-10").removeprefix("1·")
+
+
+def at_2_and_5(write: Mark) -> Mark:
+    """Return what labels the marks between two powers of ten: at 2 and 5 alone."""
+    return lambda value: write(value) if f"{value:.0e}"[0] in "25" else ""

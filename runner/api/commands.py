@@ -5,9 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from runner import store
-from runner.api.door import door
+from runner.api.boundary import public, workers_only_work
 from runner.api.overrides import config_folders, run_overrides, sweep_overrides, tuning_overrides
-from runner.api.processes import workers_only_work
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
@@ -18,7 +17,7 @@ from runner.plugins.discovery import named_parts, use_plugins
 Folders = Sequence[str | Path] | str | Path
 
 
-@door
+@public
 def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (), **values: object) -> Run:
     """Make one run, or find it stored: what `runner OVERRIDES` does.
 
@@ -45,7 +44,7 @@ def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (),
     return Run(execution.run(*texts, config_dirs=config_folders(config_dirs)))
 
 
-@door
+@public
 def sweep(
     *overrides: str,
     workers: int = 2,
@@ -93,7 +92,7 @@ def sweep(
     return Sweep(sweep)
 
 
-@door
+@public
 def tune(
     *overrides: str,
     minimize: str | Sequence[str] = (),
@@ -147,7 +146,7 @@ def tune(
     return Tuning(made)
 
 
-@door
+@public
 def calibrate(
     *overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (), **values: object
 ) -> store.Calibration:

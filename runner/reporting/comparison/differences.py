@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from runner.reporting.comparison.cells import Matched, label_text
-from runner.reporting.comparison.side import Side
+from runner.reporting.comparison.operand import Side
 from runner.store import simulated_part
 from runner.sweeps.differing import entries, is_of_option
 from runner.sweeps.measurements import Measurements
@@ -91,7 +91,7 @@ def find_differences(a: Side, b: Side, matched: Matched) -> Beyond:
         if group not in groups:
             values += _values(key, texts, matched)
         elif rest in _OPTION:
-            if (group, rest) == (group, _called(group, found)):
+            if rest == ("name" if f"{group}.name" in found else "kind"):
                 options += _values(key, texts, matched, group)
         elif not is_of_option(key):
             values += _values(key, {both: pairs for both, pairs in texts.items() if None not in both}, matched)
@@ -123,11 +123,6 @@ def _differing(a: Side, b: Side, matched: Matched) -> dict[str, Texts]:
 def _part(side: Side, place: int) -> Mapping[str, Any]:
     config = simulated_part(side.measurements.configs[place][0])
     return {key: value for key, value in config.items() if key not in _OF_REPETITIONS}
-
-
-def _called(group: str, found: Mapping[str, Texts]) -> str:
-    """Return the key by which an option of a group is told: its name where that differs, else its kind."""
-    return "name" if f"{group}.name" in found else "kind"
 
 
 def _values(key: str, texts: Texts, matched: Matched, name: str = "") -> list[Value]:

@@ -3,30 +3,37 @@
 import hashlib
 from pathlib import Path
 
-from runner.base.quantities import above_rounding, quantity
+import numpy as np
+
+from runner.base.quantities import above_rounding, label_with_unit, quantity
 from runner.config.compose.user_settings import outputs_dir
 from runner.plugins.metric_units import unit_of
 from runner.recordings import files_of, words
 from runner.recordings.compare import RecordingComparison
 from runner.recordings.recording import Recording
-from runner.reporting.document import Block, Document, Notice, Provenance, Section, Table, Text
+from runner.recordings.residuals import Residual
+from runner.reporting.charts.thinning import spaced_indices
+from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
+from runner.reporting.figures import origin
 from runner.reporting.markup import literal, literals
-from runner.reporting.metric_titles import title
-from runner.reporting.recording import figures
+from runner.reporting.metric_titles import capital, title
 from runner.reporting.run_report import provenance
+
+_MOST_POINTS = 600
+_RECORDED, _SIMULATED = 0, 1  # colours
 
 
 def recording_document(found: RecordingComparison) -> Document:
     """Return the report on a recording beside a run."""
     robot = str(found.run.config["robot"]["name"]).replace("_", " ")
     return Document(
-        title=f"{robot[:1].upper()}{robot[1:]}: a recording beside a run",
+        title=f"{capital(robot)}: a recording beside a run",
         subtitle=literal(f"{found.recording.path.name} against run {found.run.hash}"),
         abstract=literal(_abstract(found)),
         sections=[
-            Section("Both signals", [figures.both(found)]),
-            Section("Residuals", [_residuals(found), figures.residuals(found), Text(f"The {words.FIT}.")]),
-            Section("Time offset", [Text(literal(f"{_sentence(words.aligned_text(found))}.")), figures.lags(found)]),
+            Section("Both signals", [_both_curves(found)]),
+            Section("Residuals", [_residuals(found), _residual_curves(found), Text(f"The {words.FIT}.")]),
+            Section("Time offset", [Text(literal(f"{capital(words.aligned_text(found))}.")), _lag_curves(found)]),
             Section("Friction", _friction(found)),
             Section("Metrics of both", _metrics(found)),
             Section("Provenance", _made(found)),
@@ -55,10 +62,6 @@ def _abstract(found: RecordingComparison) -> str:
     return text
 
 
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:]
-
-
 def _bytes_of(recording: Recording) -> bytes:
     return b"".join(file.read_bytes() for file in files_of(recording.path))
 
@@ -81,12 +84,8 @@ def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
     return numbers
 
 
-def _number(value: float | None) -> str:
-    return above_rounding(value)
-
-
 def _residuals(found: RecordingComparison) -> Table:
-    rows = [literals(row) for row in words.residual_rows(found, _number)]
+    rows = [literals(row) for row in words.residual_rows(found, above_rounding)]
     return Table("Recorded less simulated, at the run's ticks.", words.RESIDUAL_HEADER, rows, (2, 3, 4, 5))
 
 
@@ -94,7 +93,7 @@ def _friction(found: RecordingComparison) -> list[Block]:
     blocks: list[Block] = [Text(literal(text)) for text in words.friction_lines(found)]
     if found.friction is None or not found.friction.joints:
         return [Notice("warning", "No friction was identified", literal(" ".join(words.friction_lines(found))))]
-    rows = [literals(row) for row in words.friction_rows(found, _number)]
+    rows = [literals(row) for row in words.friction_rows(found, above_rounding)]
     caption = "Friction of the recorded arm; beside it what the run simulates."
     method = (
         "Residual torque $tau - (M dot.double(q) + V + G)$ with the run's model, regressed on $dot(q)$, "
@@ -102,7 +101,7 @@ def _friction(found: RecordingComparison) -> list[Block]:
         f"of {quantity(found.friction.frequency, 'Hz')} without delay, rows near standstill left out. The intervals "
         "allow for what these terms leave over to be correlated within half a second."
     )
-    return [*blocks, Table(caption, words.FRICTION_HEADER, rows, (3, 4, 5)), figures.friction(found), Text(method)]
+    return [*blocks, Table(caption, words.FRICTION_HEADER, rows, (3, 4, 5)), _friction_curves(found), Text(method)]
 
 
 def _metrics(found: RecordingComparison) -> list[Block]:
@@ -141,3 +140,79 @@ def _made(found: RecordingComparison) -> list[Block]:
         Table(caption, ["column", "signal", "factor", "unit"], columns, (2,), code=(0,)),
         provenance([found.run]),
     ]
+
+
+def _both_curves(found: RecordingComparison) -> Curves:
+    """Return each signal of the recording and of the run over time."""
+    panels = [
+        Panel(
+            literal(capital(one.signal.words)),
+            "time of the run (s)",
+            label_with_unit(one.signal.kind, one.unit),
+            [
+                Series("recorded", one.t, one.recorded, color=_RECORDED),
+                Series("run", one.t, one.simulated, "dashed", color=_SIMULATED),
+            ],
+        )
+        for one in found.residuals
+    ]
+    return Curves("Each recorded signal, and that of the run.", panels, origin=origin(found.run))
+
+
+def _residual_curves(found: RecordingComparison) -> Curves:
+    """Return what is recorded less what was simulated: positions, torques and the tip, each together."""
+    groups: dict[tuple[str, str], list[Residual]] = {}
+    for one in found.residuals:
+        groups.setdefault((one.signal.kind, one.unit), []).append(one)
+    panels = [
+        Panel(
+            f"{capital(kind)}, recorded - run",
+            "time of the run (s)",
+            label_with_unit("residual", unit),
+            [Series(literal(one.signal.of), one.t, one.values) for one in group],
+        )
+        for (kind, unit), group in groups.items()
+    ]
+    return Curves("Residuals over time.", panels, origin=origin(found.run))
+
+
+def _lag_curves(found: RecordingComparison) -> Curves:
+    """Return the correlation of the speeds over the time of the recording at which the run begins."""
+    offset = found.offset
+    best = int(np.argmax(offset.correlations))
+    shown = np.unique(
+        np.append(spaced_indices(len(offset.lags), _MOST_POINTS), np.arange(max(0, best - 50), best + 50))
+    )
+    shown = shown[shown < len(offset.lags)]
+    found_at = np.full(2, offset.start)
+    panel = Panel(
+        "Correlation of the speeds",
+        "begin of the run in the recording (s)",
+        "correlation",
+        [
+            Series("", offset.lags[shown], offset.correlations[shown], color=_RECORDED),
+            Series("", found_at, np.array([min(0.0, float(offset.correlations.min())), 1.0]), "dotted", color=1),
+        ],
+    )
+    caption = "Where the speeds of the recording and of the run correlate best; the dotted line is the time found."
+    return Curves(caption, [panel], columns=1, origin=origin(found.run))
+
+
+def _friction_curves(found: RecordingComparison) -> Curves:
+    """Return the residual torque of each joint against its speed, and the friction identified."""
+    panels = []
+    for joint in () if found.friction is None else found.friction.joints:
+        turns = joint.unit == "rad"
+        order = np.argsort(joint.speed)
+        speed = joint.speed[order]
+        line = joint.viscous * speed + joint.coulomb * np.sign(speed)
+        gap = int(np.searchsorted(speed, 0.0))  # the line jumps at rest
+        x, y = np.insert(speed, gap, np.nan), np.insert(line, gap, np.nan)
+        series = [
+            Series("residual torque", joint.speed, joint.torque, "points", color=_RECORDED),
+            Series("friction", x, y, color=_SIMULATED),
+        ]
+        label = label_with_unit("torque" if turns else "force", "N m" if turns else "N")
+        panels.append(Panel(literal(joint.joint), label_with_unit("speed", f"{joint.unit}/s"), label, series))
+    caption = "Torque that the run's model and other masses leave over, against the speed, and the friction identified."
+    return Curves(caption, panels, origin=origin(found.run))

@@ -5,9 +5,9 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from runner.reporting.consistency import color_series
 from runner.reporting.document import Curves, Document, Panel, Section, Series
 from runner.reporting.export.figures import figures_of
-from runner.reporting.series_colors import color_series
 
 X = np.arange(2.0)
 

@@ -1,13 +1,26 @@
-"""Summary of a comparison: sizes of both sweeps, and matched and unmatched cells."""
+"""Messages of a comparison: sizes of both sweeps, matched and unmatched cells, and limits of what is shown."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
 from runner.reporting.comparison.cells import label_text
-from runner.reporting.comparison.side import Side
+from runner.reporting.comparison.operand import Side
 from runner.reporting.comparison.sweeps import SweepComparison
-from runner.reporting.comparison.words import format_count
 
+NOISE_ALONE = (
+    "Repetitions differ in their noise draws alone (mismatch.spread is 0): the intervals tell what other draws would "
+    "do, not what another arm or another error of the model would."
+)
+
+POOLED = (
+    "Over all cells each draw counts once, by the mean of its cells. If the difference is above zero in some cells and "
+    "below in others, that number describes none of them."
+)
 _NAMED = 3  # cells of one sweep alone
+
+
+def format_count(count: int, one: str, many: str) -> str:
+    """Return a number with what is counted, such as "1 cell is" or "2 cells are"."""
+    return f"{count} {one if count == 1 else many}"
 
 
 def size_told(side: Side) -> str:

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from support.sample_sides import LAWS, side
 
-from runner.reporting.comparison.beyond import ABSENT, Value, find_differences
 from runner.reporting.comparison.cells import match
+from runner.reporting.comparison.differences import ABSENT, Value, find_differences
 
 
 def nothing(*_):

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from runner.base.errors import StoreError
-from runner.reporting.comparison.side import open_side, side_of_run
+from runner.reporting.comparison.operand import open_side, side_of_run
 
 
 def test_what_is_stored_of_a_sweep_is_opened_and_what_is_missing_counted(copy_run, copy_sweep):

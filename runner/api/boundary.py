@@ -1,0 +1,48 @@
+"""Progress line, short errors and worker processes of the public functions."""
+
+import functools
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, ParamSpec, TypeVar
+
+from runner.base.errors import RunnerError
+from runner.base.progress import show_progress
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+_GO_ON = "interrupted; finished runs are stored; the same call continues"
+
+
+def public(function: Callable[P, T]) -> Callable[P, T]:
+    """Show the progress of a function; raise errors of the user, and interruptions, without the frames within it."""
+
+    @functools.wraps(function)
+    def through(*args: P.args, **kwargs: P.kwargs) -> T:
+        try:
+            with show_progress():
+                return function(*args, **kwargs)
+        except RunnerError as error:
+            raise error.with_traceback(None) from None
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(_GO_ON) from None
+
+    return through
+
+
+@contextmanager
+def workers_only_work() -> Iterator[None]:
+    """Keep processes that are started within from running the user's program, as Python else lets each of them do.
+
+    A new process imports what `__main__` came from; a plain script would begin again there, and its sweep with it. Our
+    workers need nothing of it.
+    """
+    main = sys.modules["__main__"].__dict__
+    kept: dict[str, Any] = {name: main[name] for name in ("__file__", "__spec__") if name in main}
+    main.pop("__file__", None)
+    main["__spec__"] = None
+    try:
+        yield
+    finally:
+        main.update(kept)

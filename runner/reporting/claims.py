@@ -1,0 +1,274 @@
+"""Published claims as data, and verdicts on them from printed and simulated values."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
+
+from runner.base.data_file import read_data
+from runner.base.errors import RunnerError
+from runner.base.paths import studies_dir, studies_with
+from runner.schema.model import StrictModel
+
+CLAIMS = "claims.yaml"
+_STATEMENTS = "statements.yaml"
+FACTOR = 1.5
+"""By which factor a simulated value may differ from a printed one that it matches: sources read theirs off plots."""
+Verdict = Literal[
+    "matches", "differs", "smaller than printed", "larger than printed", "source contradicts itself", "undecided"
+]
+CONTRADICTION: Verdict = "source contradicts itself"
+Simulated = Callable[[str, str], float | None]
+"""Gives the simulated value of a metric of an experiment, or of a run by the begin of its name; None for none."""
+
+
+class Bound(StrictModel):
+    """What another number of the same source leads one to expect at most.
+
+    Attributes:
+        claim: Number of the claim that has the other number.
+        scale: What that is multiplied by.
+        name: What the simulated number, so multiplied, is called at the start of a sentence.
+        reason: Why the one follows from the other, and how strictly; inline mathematics between dollar signs.
+    """
+
+    claim: int
+    scale: PositiveFloat
+    name: str
+    reason: str
+
+
+class Likeness(StrictModel):
+    """What a claim without a number is compared with: another run.
+
+    Attributes:
+        experiment: The other experiment, or the begin of its run's name.
+        metric: The metric there.
+    """
+
+    experiment: str
+    metric: str
+
+
+class Extent(StrictModel):
+    """Where the tip moves along one axis of the base.
+
+    Attributes:
+        axis: The axis.
+        span: Distance between its least and its largest coordinate, in m.
+        middle: What lies half way between them, in m; None where nothing is said of it.
+        tolerance: How far the simulated ones may be from these, in m: half a unit of the last printed digit.
+    """
+
+    axis: Literal["x", "y", "z"]
+    span: NonNegativeFloat
+    middle: float | None = None
+    tolerance: PositiveFloat
+
+    def met(self, path: NDArray[np.float64]) -> bool:
+        """Tell whether a path, shape (T, 3), in m, has this extent; one that has gaps (NaN) has not."""
+        values = path[:, "xyz".index(self.axis)]
+        low, high = values.min(), values.max()
+        wide = bool(abs(high - low - self.span) <= self.tolerance)
+        ends = (low + 0.5 * self.span, high - 0.5 * self.span)
+        return wide and (self.middle is None or all(abs(end - self.middle) <= self.tolerance for end in ends))
+
+
+class PublishedClaim(StrictModel):
+    """One published number.
+
+    Attributes:
+        number: Its number in the list.
+        statement: What the source says.
+        place: Where.
+        printed: The printed value, or the two ends of the printed range; empty where the source compares in words.
+        unit: Its unit.
+        experiment: The experiment that makes it: of "study/name" the run of the study is name/PRESET.
+        run: Where no experiment makes it: begin of the run's name, name for name/PRESET.
+        metric: The metric that it is compared with; a range is compared by its upper end, the worst axis.
+        extents: Where it says how the tip moves, in place of a metric.
+        fails: Whether it says that this motion is not met.
+        reason: What the comparison shows; inline mathematics between dollar signs.
+        like: Set where the source compares in words: the run that it is said to be like.
+        bound: Set where another number of the source speaks against this one.
+        longer: Begin of the name of a run of the same motion that lasts longer, which shows whether the verdict hangs
+            on the end of the run; empty for none.
+    """
+
+    number: int
+    statement: str
+    place: str
+    printed: Annotated[list[NonNegativeFloat], Field(max_length=2)]
+    unit: str
+    experiment: str = ""
+    run: str = ""
+    metric: str = ""
+    extents: list[Extent] = Field(default_factory=list)
+    fails: bool = False
+    reason: str
+    bound: Bound | None = None
+    like: Likeness | None = None
+    longer: str = ""
+
+    @model_validator(mode="after")
+    def _check_comparison(self) -> Self:
+        if bool(self.metric) == bool(self.extents):
+            raise ValueError("is compared by metric or by extents, one of the two")
+        if bool(self.experiment) == bool(self.run):
+            raise ValueError("names an experiment or a run, one of the two")
+        return self
+
+    @property
+    def value(self) -> float | None:
+        """The printed value that is compared with: the upper end of a range; None where there is no number."""
+        return self.printed[-1] if self.printed else None
+
+
+def studies_with_claims() -> list[str]:
+    """Return the names of the studies that have claims, sorted."""
+    return studies_with(CLAIMS)
+
+
+def load_claims(study: str | Path) -> list[PublishedClaim]:
+    """Return the published numbers of a study in order.
+
+    Args:
+        study: One of ours by its name, such as "thesis", or the whole path of a study's folder.
+
+    Raises:
+        RunnerError: if its file does not fit, or a bound names no claim of it; names the file, the entries and keys.
+    """
+    path = studies_dir() / study / CLAIMS
+    claims = read_data(path, list[PublishedClaim])
+    numbers = [claim.number for claim in claims]
+    for claim in claims:
+        if claim.bound is not None and claim.bound.claim not in numbers:
+            raise RunnerError(f"{path}: claim {claim.number}: bound.claim: there is no claim {claim.bound.claim}")
+    return claims
+
+
+class PublishedStatement(StrictModel):
+    """One statement, which findings on many runs judge.
+
+    Attributes:
+        name: A short name, by which its judgement is found.
+        statement: What the source says.
+        place: Where.
+        reason: What is to be said of the verdict; inline mathematics between dollar signs.
+    """
+
+    name: str
+    statement: str
+    place: str
+    reason: str = ""
+
+
+def studies_with_statements() -> list[str]:
+    """Return the names of the studies that have statements, sorted."""
+    return studies_with(_STATEMENTS)
+
+
+def load_statements(study: str | Path) -> list[PublishedStatement]:
+    """Return the statements of a study in order.
+
+    Args:
+        study: One of ours by its name, such as "meca500", or the whole path of a study's folder.
+
+    Raises:
+        RunnerError: if its file does not fit; names the file, the entries and keys.
+    """
+    return read_data(studies_dir() / study / _STATEMENTS, list[PublishedStatement])
+
+
+def judge(printed: float, measured: float | None, bound: float | None = None) -> Verdict:
+    """Return the verdict on a published number, a time or an error.
+
+    Args:
+        printed: The printed value.
+        measured: The simulated median; None where most runs have no value, such as a tip that never settles.
+        bound: What other numbers of the same source lead one to expect at most, where there is such a bound.
+
+    Returns:
+        "source contradicts itself" when even the bound, widened by FACTOR, stays below the printed value; else
+        "matches" within FACTOR, "smaller than printed" below it, and "larger than printed" above it.
+    """
+    if bound is not None and bound * FACTOR < printed:
+        return CONTRADICTION
+    if measured is None or measured > printed * FACTOR:
+        return "larger than printed"
+    return "smaller than printed" if measured < printed / FACTOR else "matches"
+
+
+def judge_motion(
+    extents: Sequence[Extent], fails: bool, tip: NDArray[np.float64], desired: NDArray[np.float64]
+) -> Verdict:
+    """Return the verdict on what a source says of the tip's motion.
+
+    Args:
+        extents: The motion that it tells.
+        fails: Whether it says that this motion is not met.
+        tip: Path of the tip, shape (T, 3), in m.
+        desired: Desired path at the same times, shape (T, 3), in m.
+
+    Returns:
+        "source contradicts itself" when its own desired path is another motion; else "matches" where the tip moves as
+        told, or fails to where the source says so, and "differs" where not.
+    """
+    met = all(extent.met(tip) for extent in extents)
+    if not fails and not all(extent.met(desired) for extent in extents):
+        return CONTRADICTION
+    return "matches" if met != fails else "differs"
+
+
+def simulated_by(claim: PublishedClaim) -> tuple[str, str]:
+    """Return the experiment, or the begin of the run's name, that makes a claim's number, and the metric."""
+    return claim.experiment or claim.run, claim.metric
+
+
+def compared_with(claim: PublishedClaim, simulated: Simulated) -> float | None:
+    """Return what a claim's simulated value is held against: the printed value, or the run that it is said to be like.
+
+    None where that run has no value.
+    """
+    return claim.value if claim.like is None else simulated(claim.like.experiment, claim.like.metric)
+
+
+def scale_bound(bound: Bound, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
+    """Return what the simulated number of the other claim that a bound names leads one to expect."""
+    value = simulated(*simulated_by(_other(bound, claims)))
+    return None if value is None else value * bound.scale
+
+
+def expected_value(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
+    """Return what the source's other number, or the simulated one in its place where larger, lets one expect.
+
+    None where the claim has no bound.
+    """
+    bound = claim.bound
+    if bound is None:
+        return None
+    printed = _other(bound, claims).value
+    both = [None if printed is None else printed * bound.scale, scale_bound(bound, claims, simulated)]
+    return max((value for value in both if value is not None), default=None)
+
+
+def verdict_on(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulated: Simulated) -> Verdict | None:
+    """Return the verdict on a claim that is compared by a metric; None where it is like a run without a value.
+
+    Args:
+        claim: The claim.
+        claims: All claims of its study: a bound names another.
+        simulated: Gives the simulated values.
+    """
+    printed = compared_with(claim, simulated)
+    if printed is None:
+        return None
+    verdict = judge(printed, simulated(*simulated_by(claim)), expected_value(claim, claims, simulated))
+    return "differs" if claim.like is not None and verdict != "matches" else verdict
+
+
+def _other(bound: Bound, claims: Sequence[PublishedClaim]) -> PublishedClaim:
+    return next(claim for claim in claims if claim.number == bound.claim)

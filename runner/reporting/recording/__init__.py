@@ -1,1 +1,0 @@
-"""Report that compares a recording of a real arm with a run."""
