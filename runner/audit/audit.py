@@ -10,7 +10,7 @@ from runner.audit.sources import Where, sources
 from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
 from runner.base import progress
 from runner.base.progress.stages import AUDITING
-from runner.base.texts import table_cell
+from runner.base.sanitize import table_cell
 
 
 def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:

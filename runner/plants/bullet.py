@@ -11,8 +11,8 @@ from runner.base.engine_output import quiet_stderr
 from runner.plants.armature import LinksTorque
 from runner.plants.bullet_servers import SERVERS
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
-from runner.plants.flexible_around import flexible_around
 from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_wrapper import flexible_around
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.modes import Mode

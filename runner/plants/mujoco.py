@@ -10,8 +10,8 @@ from pydantic import Field
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
-from runner.plants.flexible_around import flexible_around
 from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_wrapper import flexible_around
 from runner.plants.mujoco_model import FORCE, MOMENT, WALL, compiled, read_spec
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel

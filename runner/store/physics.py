@@ -40,15 +40,16 @@ _TABLE = """
     controllers/macro_mini: inertial_damping macro_mini macro_mini_graph stage_law stage_loops
     controllers/operational_space: null_space operational_space operational_space_graph tip_task whole_body
         whole_body_graph whole_body_posture
-    environments: __init__=environments.__init__ environment=environments.environment free hand interaction push
-        pushed_links wall
+    environments: __init__=environments.__init__ environment=environments.environment external_wrench=interaction free
+        hand link_forces=pushed_links push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact context effort family plant_error positioning reaching
         summary tracking
     plants: __init__=plants.__init__ armature=plants.armature bullet bullet_servers compiled_flexible=flexible
-        compiled_motion=compiled.motion computation=plants.computation decoupled end_points=plants.end_points
-        flexible_around flexible_config flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links
-        friction kinds=plants.kinds kinematic load motion=plants.motion motor_friction motors=sensing.motors mujoco
-        mujoco_model payload_changes plant=plants.plant rk4 rk4_flexible_links servo set_points touched
+        compiled_motion=compiled.motion computation=plants.computation contact_plant=touched decoupled
+        end_points=plants.end_points flexible_config flexible_joints=plants.flexible_joints
+        flexible_links=plants.flexible_links flexible_wrapper=flexible_around friction kinds=plants.kinds kinematic
+        load motion=plants.motion motor_friction motors=sensing.motors mujoco mujoco_model payload_changes
+        plant=plants.plant rk4 rk4_flexible_links servo set_points
     plugins: metric_units registry
     plugins/guard: __init__=guard.__init__ belief controller=guard.controller environment=guard.environment faults
         metrics plant=guard.plant read_only sensing trajectory=guard.trajectory

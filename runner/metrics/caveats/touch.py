@@ -16,7 +16,7 @@ from runner.environments.wall import WallConfig
 from runner.plants import PLANTS
 from runner.plants.kinds import HasServo
 from runner.plants.servo import ServoLaw
-from runner.plants.servo_contact import ServoContact
+from runner.plants.servo_contact_stability import ServoContact
 from runner.robots.effective_mass import mass_along, tip_mobility
 
 

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting.charts import palette
 from runner.reporting.charts.figure import CurveFigure, Panel, Series, shares_legend, upright
 from runner.reporting.charts.names import Names, literal, names_below, wrap_text

@@ -5,7 +5,7 @@ import io
 import math
 from collections.abc import Iterator, Sequence
 
-from runner.base.texts import table_cell
+from runner.base.sanitize import table_cell
 from runner.reporting.charts.figure import Panel, Series
 from runner.reporting.charts.units import in_readable_units, map_in_readable_units
 from runner.reporting.document import Curves, Maps, Picture, Playback
