@@ -8,8 +8,8 @@ from runner.base import engines
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plants.computation import ComputationConfig
+from runner.plants.decoupled import Motion
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.motion import Motion
 from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
 from runner.plugins.guard import watch_plant

@@ -7,11 +7,10 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.plants.compiled_motion import compile_motion
-from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.decoupled import Motion, TorquePlantConfig, assemble_plant, find_motion
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import FlexibleJoints, links_of
-from runner.plants.motion import Motion, find_motion
-from runner.plants.motor_friction import MotorFriction
+from runner.plants.motors import MotorFriction
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.modes import Mode

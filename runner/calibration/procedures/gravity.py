@@ -10,8 +10,7 @@ from pydantic import Field, NonNegativeFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.limits import READINGS
-from runner.calibration.compensation import WrenchCompensation
-from runner.calibration.gravity import PARAMETERS, GravityCalibration, identify_gravity
+from runner.calibration.gravity import PARAMETERS, GravityCalibration, WrenchCompensation, identify_gravity
 from runner.calibration.orientations import choose_orientations
 from runner.calibration.procedures.bench import Bench
 from runner.calibration.procedures.procedure import Outcome, Procedure

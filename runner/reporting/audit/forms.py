@@ -6,8 +6,7 @@ from runner.audit.entry import Entry, Form
 from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
-from runner.base.expressions.shortening import holds, shorten_expression
-from runner.base.expressions.tree import Node, Sum, size
+from runner.base.expressions.tree import Node, Sum, holds, shorten_expression, size
 from runner.base.expressions.typesetting import linear
 from runner.reporting.audit.formula_marks import marked_formulas
 from runner.reporting.audit.likeness import Likeness

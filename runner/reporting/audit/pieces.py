@@ -3,7 +3,7 @@
 import difflib
 from collections.abc import Iterator
 
-from runner.base.expressions.shortening import ELLIPSIS
+from runner.base.expressions.tree import ELLIPSIS
 
 Pieces = list[tuple[bool, str]]
 LONG = 130
