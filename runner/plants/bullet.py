@@ -15,7 +15,6 @@ from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_wrapper import flexible_around
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
-from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 from runner.robots.tool_link import TOOL_MOUNT
 
@@ -247,11 +246,6 @@ def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) 
         return flexible_around(*parts, lambda links: Bullet(robot.urdf, links, step, 1))
     tick = step * steps_per_tick
     return assemble_plant(config, robot, tick, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))
-
-
-def modes(config: BulletConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-    """Return how flexible joints ring with their motors held; see HasModes."""
-    return [] if config.flexible_joints is None else config.flexible_joints.modes(robot, q)
 
 
 def default_step(tick: float, stages: int) -> float:

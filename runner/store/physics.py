@@ -68,7 +68,7 @@ _TABLE = """
         program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation
         joint_motion=trajectories.joint_motion joint_quintic joint_sinusoids joint_waypoints kinds=trajectories.kinds
-        line lissajous nearest quintic sampled_curve shaped shifted square table trajectory=trajectories.trajectory
+        line lissajous nearest quintic sampled_curve shaped square table trajectory=trajectories.trajectory
         vectors=trajectories.vectors waypoints
 """  # fmt: skip
 

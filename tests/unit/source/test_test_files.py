@@ -141,7 +141,6 @@ SHARED = {
     "trajectories/joint_quintic": "physics/trajectories/test_joint_motion.py",
     "trajectories/joint_waypoints": "physics/trajectories/test_joint_motion.py",
     "trajectories/kinds": "physics/trajectories/test_trajectory_kinds.py",
-    "trajectories/shifted": "physics/trajectories/test_every_kind.py",
 }
 """Test file of each module that has none of its name: that of the module to which it belongs."""
 
