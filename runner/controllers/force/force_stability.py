@@ -4,7 +4,6 @@ from typing import Protocol
 
 import numpy as np
 from scipy.linalg import expm
-from scipy.optimize import brentq
 
 from runner.base.arrays import FloatArray
 
@@ -121,6 +120,8 @@ def miss_radius(rate: float, missed: float, damping: float = 1.0) -> float:
 
 def miss_limit(rate: float, damping: float = 1.0) -> float:
     """Return the largest probability of a miss that a loop bears in the mean square; 0 where it bears none."""
+    from scipy.optimize import brentq  # takes longer to import than a short run to simulate
+
     if miss_radius(rate, 0.0, damping) >= 1.0:
         return 0.0
     return float(brentq(lambda missed: miss_radius(rate, missed, damping) - 1.0, 0.0, 1.0 - 1e-9))
