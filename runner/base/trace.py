@@ -165,7 +165,7 @@ class Traces(Signals):
         return replace(self, **self._own(own))
 
     def _own(self, runs: int | slice | list[int]) -> dict[str, Any]:
-        """Return what is not common to all runs, of one or some."""
+        """Return the signals of one run or some that are not common to all."""
         return {
             "q": self.q[runs],
             "dq": self.dq[runs],

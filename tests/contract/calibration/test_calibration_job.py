@@ -93,7 +93,7 @@ def test_the_band_narrows_with_the_repetitions_and_is_left_out_where_nothing_err
     bands = [calibrate(f"repetitions={n}", f"outputs={tmp_path}").consistency for n in (5, 40)]
     widths = [band["upper"] - band["lower"] for band in bands]
     assert widths[0] > 2.0 * widths[1]
-    assert calibrate("calibration.uncertainty=0", "repetitions=2", f"outputs={tmp_path}").consistency is None
+    assert calibrate("calibration.repeatability=0", "repetitions=2", f"outputs={tmp_path}").consistency is None
     exact_sensor = ("calibration=gravity", "wrist_sensor=ideal")  # the centre of mass is then exact
     assert calibrate(*exact_sensor, "repetitions=2", f"outputs={tmp_path}").consistency is None
 

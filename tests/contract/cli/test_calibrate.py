@@ -23,7 +23,7 @@ def test_the_bare_command_finds_the_tool_centre_point_of_the_meca500(cli):
 
 
 def test_without_noise_there_is_nothing_to_judge(cli):
-    ending = cli("calibrate", "calibration.uncertainty=0", *SHORT)
+    ending = cli("calibrate", "calibration.repeatability=0", *SHORT)
     assert ending.code == 0
     assert "normalised" not in ending.out
 

@@ -35,7 +35,7 @@ SOME = {
                    "seed=0"),
         "tool_centre_point/repeatability/2e-05": (
             "calibration=tool_centre_point", "calibration.posture=[0,0.2,0.3,0,1.2,0]", "calibration.spread=0.5236",
-            "calibration.uncertainty=2e-05", "seed=3"),
+            "calibration.repeatability=2e-05", "seed=3"),
         "gravity/noise/0.25": (
             "calibration=gravity", "wrist_sensor.noise=[0.003625,0.003625,0.00725,0.000125,0.000125,0.000125]",
             "seed=22"),

@@ -10,7 +10,7 @@ from runner.config.compose.compose import compose
 from runner.sweeps.calibration_job import LEVEL, judge
 
 KINDS = ("tool_centre_point", "tool_direction", "gravity")
-EXACT = ("calibration.uncertainty=0", "wrist_sensor.noise=[0,0,0,0,0,0]", "wrist_sensor.resolution=[0,0,0,0,0,0]")
+EXACT = ("calibration.repeatability=0", "wrist_sensor.noise=[0,0,0,0,0,0]", "wrist_sensor.resolution=[0,0,0,0,0,0]")
 WIDE = ("calibration.posture=[0,0.2,0.3,0,1.2,0]", "calibration.spread=0.5")
 
 
