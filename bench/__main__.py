@@ -4,7 +4,7 @@ import sys
 from importlib import import_module
 
 from runner.base.engines import has_pybullet
-from runner.base.quiet import quiet_environment
+from runner.base.environment_variables import quiet_environment
 
 NAMES = (
     "tick",

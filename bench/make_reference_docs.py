@@ -34,7 +34,7 @@ from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
-from runner.controllers.notch_config import NotchConfig
+from runner.controllers.notch import NotchConfig
 from runner.environments import ENVIRONMENTS
 from runner.plants import PLANTS
 from runner.plugins.metric_units import families

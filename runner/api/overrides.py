@@ -8,7 +8,7 @@ import numpy as np
 from hydra.core.override_parser.types import Quote, QuotedString
 
 from runner.base.errors import ConfigError
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 _KEY = re.compile(r"[A-Za-z_][\w.@/]*")
 _PLAIN = re.compile(r"[\w./+-]+")

@@ -4,7 +4,7 @@ import base64
 import html
 from collections.abc import Iterable, Sequence
 
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 
 
 def text(value: object) -> str:

@@ -9,7 +9,7 @@ from runner.api import page
 from runner.api.boundary import public
 from runner.api.metric import Metrics
 from runner.base.errors import RunnerError
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 
 if TYPE_CHECKING:
     import pandas as pd

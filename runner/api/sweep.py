@@ -13,7 +13,7 @@ from runner.api.boundary import public
 from runner.api.run import Run
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.quantities import quantity
-from runner.base.texts import few, one_line, quoted
+from runner.base.sanitize import few, one_line, quoted
 from runner.sweeps.measurements import Axis, Measurements, axes_of, measure_sweep
 from runner.sweeps.status import Status, find_status
 

@@ -9,7 +9,7 @@ from runner.api.boundary import public
 from runner.api.run import Run
 from runner.base.errors import RunnerError
 from runner.base.quantities import quantity
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 
 if TYPE_CHECKING:
     import pandas as pd

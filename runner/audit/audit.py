@@ -13,7 +13,7 @@ from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
 from runner.base import progress
 from runner.base.data_file import read_data
 from runner.base.progress.stages import AUDITING
-from runner.base.texts import table_cell
+from runner.base.sanitize import table_cell
 from runner.schema.model import StrictModel
 
 

@@ -40,7 +40,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from runner.audit.sources import Source, Where, source_of
 from runner.base.data_file import read_data
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
 
 

@@ -16,7 +16,7 @@ from runner.base.errors import RunnerError
 from runner.base.interpolation import calls_function
 from runner.base.limits import Limit
 from runner.base.paths import ships
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base.texts import VALUE, lines, one_line
+from runner.base.sanitize import VALUE, lines, one_line
 
 if TYPE_CHECKING:
     import traceback

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 
@@ -43,8 +44,8 @@ class ContactSignals:
 
 
 @dataclass(frozen=True)
-class Trace:
-    """Signals of one run, a row for each control tick from t = 0 to the end, true values unless said.
+class Signals:
+    """Signals of one or several runs, true values unless said; shapes are those of one run, see Traces for several.
 
     Attributes:
         t: Times, shape (T,), in s.
@@ -62,9 +63,6 @@ class Trace:
         tick_seconds: Wall-clock time that each tick took, shape (T - 1,), in s.
         q_command: Joint positions commanded, held until the next row, shape (T, nq), in rad; None under torques.
         contact: What the tip felt, by what is meant; None where there was nothing to feel.
-        failure: Why the run ended early, or None.
-        law_seconds: Wall-clock time that all control loops took in each tick, shape (T,), in s, encoders included; None
-            where plant and loops are one piece of code.
     """
 
     t: FloatArray
@@ -81,6 +79,24 @@ class Trace:
     tick_seconds: FloatArray
     q_command: FloatArray | None = None
     contact: ContactSignals | None = None
+
+    def at_stage(self, index: int) -> Self:
+        """Return the signals with a stage's end point in the tip's place; its home offset is taken off x_d."""
+        desired = self.desired.copy()
+        desired[..., 0, :] -= self.offsets[index]
+        return replace(self, end_points=self.end_points[index : index + 1], desired=desired)
+
+
+@dataclass(frozen=True)
+class Trace(Signals):
+    """Signals of one run, a row for each control tick from t = 0 to the end.
+
+    Attributes:
+        failure: Why the run ended early, or None.
+        law_seconds: Wall-clock time that all control loops took in each tick, shape (T,), in s, encoders included; None
+            where plant and loops are one piece of code.
+    """
+
     failure: Failure | None = None
     law_seconds: FloatArray | None = None
 
@@ -89,12 +105,6 @@ class Trace:
         """Tip positions in the base frame, shape (T, 3), in m."""
         tip: FloatArray = self.end_points[-1]
         return tip
-
-    def at_stage(self, index: int) -> "Trace":
-        """Return the trace with a stage's end point in the tip's place, and x_d less its home offset desired of it."""
-        desired = self.desired.copy()
-        desired[:, 0] -= self.offsets[index]
-        return replace(self, end_points=self.end_points[index : index + 1], desired=desired)
 
     def ended(self, failure: Failure) -> "Trace":
         """Return the trace of a run under torques up to the time of a failure."""
@@ -119,62 +129,26 @@ class Trace:
 
 
 @dataclass(frozen=True)
-class Traces:
-    """Signals of several runs, none of which failed, that have ticks, path, arm and band in common; see Trace.
+class Traces(Signals):
+    """Signals of several runs, none of which failed, that have ticks, path, arm and band in common.
 
     A run's results are the same to the last bit in whatever company, so that what looks at several runs reduces by rows
-    that lie in one piece.
-
-    Attributes:
-        t: Times, shape (T,), in s.
-        q: Joint positions, shape (runs, T, nq), in rad.
-        dq: Joint velocities, likewise, in rad/s.
-        tau: Torques after the limit, held until the next row, likewise, in N m.
-        end_points: End point of each stage, shape (stages, runs, T, 3), in m; the last is the tip.
-        offsets: Offset of the tip at home from each stage's end point, shape (stages, 3), in m.
-        stage_names: Names of the stages.
-        desired: Desired tip position, velocity, acceleration, shape (T, 3, 3) for all alike or (runs, T, 3, 3).
-        limits: Torque limit of each joint, shape (runs, nq), in N m.
-        joint_names: Names of the joints.
-        joint_units: Unit of each joint's position.
-        tick_seconds: Wall-clock time of each tick, of one run, shape (T - 1,), in s.
-        q_command: Joint positions commanded, shape (runs, T, nq), in rad; None under torques.
-        contact: What the tip of a single run felt; None where there was nothing to feel.
+    that lie in one piece. The runs are an axis of q, dq, tau, limits and q_command before the others, and of end_points
+    after the stages; desired has it where the runs differ. The contact is that of a single run, tick_seconds of one.
     """
-
-    t: FloatArray
-    q: FloatArray
-    dq: FloatArray
-    tau: FloatArray
-    end_points: FloatArray
-    offsets: FloatArray
-    stage_names: tuple[str, ...]
-    desired: FloatArray
-    limits: FloatArray
-    joint_names: tuple[str, ...]
-    joint_units: tuple[str, ...]
-    tick_seconds: FloatArray
-    q_command: FloatArray | None = None
-    contact: ContactSignals | None = None
 
     @classmethod
     def of(cls, trace: Trace) -> "Traces":
         """Return one run that did not fail as a batch of one."""
         return cls(
-            t=trace.t,
+            **_in_common(trace),
             q=trace.q[None],
             dq=trace.dq[None],
             tau=trace.tau[None],
             end_points=trace.end_points[:, None],
-            offsets=trace.offsets,
-            stage_names=trace.stage_names,
             desired=trace.desired,
             limits=trace.limits[None],
-            joint_names=trace.joint_names,
-            joint_units=trace.joint_units,
-            tick_seconds=trace.tick_seconds,
             q_command=None if trace.q_command is None else trace.q_command[None],
-            contact=trace.contact,
         )
 
     @property
@@ -184,41 +158,23 @@ class Traces:
 
     def run(self, index: int) -> Trace:
         """Return the trace of one run."""
-        return Trace(
-            t=self.t,
-            q=self.q[index],
-            dq=self.dq[index],
-            tau=self.tau[index],
-            end_points=self.end_points[:, index],
-            offsets=self.offsets,
-            stage_names=self.stage_names,
-            desired=self.desired if self.desired.ndim == 3 else self.desired[index],
-            limits=self.limits[index],
-            joint_names=self.joint_names,
-            joint_units=self.joint_units,
-            tick_seconds=self.tick_seconds,
-            q_command=None if self.q_command is None else self.q_command[index],
-            contact=self.contact,
-        )
+        return Trace(**_in_common(self), **self._own(index))
 
     def part(self, own: slice | list[int]) -> "Traces":
         """Return some of the runs."""
-        return replace(
-            self,
-            q=self.q[own],
-            dq=self.dq[own],
-            tau=self.tau[own],
-            end_points=self.end_points[:, own],
-            desired=self.desired if self.desired.ndim == 3 else self.desired[own],
-            limits=self.limits[own],
-            q_command=None if self.q_command is None else self.q_command[own],
-        )
+        return replace(self, **self._own(own))
 
-    def at_stage(self, index: int) -> "Traces":
-        """Return the runs with a stage's end point in the tip's place; see Trace."""
-        desired = self.desired.copy()
-        desired[..., 0, :] -= self.offsets[index]
-        return replace(self, end_points=self.end_points[index : index + 1], desired=desired)
+    def _own(self, runs: int | slice | list[int]) -> dict[str, Any]:
+        """Return the signals of one run or some that are not common to all."""
+        return {
+            "q": self.q[runs],
+            "dq": self.dq[runs],
+            "tau": self.tau[runs],
+            "end_points": self.end_points[:, runs],
+            "desired": self.desired if self.desired.ndim == 3 else self.desired[runs],
+            "limits": self.limits[runs],
+            "q_command": None if self.q_command is None else self.q_command[runs],
+        }
 
     @cached_property
     def tip(self) -> FloatArray:
@@ -235,6 +191,12 @@ class Traces:
         """Tip error, desired minus actual, by axes, shape (runs, 3, T), in m."""
         difference: FloatArray = self.target - self.tip
         return difference
+
+
+def _in_common(signals: Signals) -> dict[str, Any]:
+    """Return the signals that several runs have in common."""
+    names = ("t", "offsets", "stage_names", "joint_names", "joint_units", "tick_seconds", "contact")
+    return {name: getattr(signals, name) for name in names}
 
 
 def by_rows(values: FloatArray) -> FloatArray:

@@ -10,9 +10,9 @@ from argparse import Namespace
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
-from runner.base.quiet import quiet_environment
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 from runner.cli.arguments import ActionParser, Parser
 from runner.plugins.discovery import in_use, use_plugins
 

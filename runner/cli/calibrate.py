@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base.quiet import quiet_environment
-from runner.base.texts import one_line
+from runner.base.environment_variables import quiet_environment
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.cli.columns import align_columns, number
 

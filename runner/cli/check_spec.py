@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 from runner.cli.columns import align_columns
 
 if TYPE_CHECKING:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 
 if TYPE_CHECKING:
     from runner.reporting.answers import Answer

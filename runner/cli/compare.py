@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
-from runner.base.quiet import quiet_environment
 from runner.cli.arguments import Parser, Stored, name_list
 from runner.recordings import is_bag
 from runner.schema.units import read_quantity

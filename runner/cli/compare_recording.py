@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:

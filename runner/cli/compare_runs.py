@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 from runner.cli.columns import COMPARED, align_columns, answer_cells, number
 from runner.reporting.comparison.operand import letter
 

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 from runner.cli.columns import COMPARED, align_columns, answer_cells, number
 from runner.reporting.answers import EXPLAINED, Asked, judge
 from runner.reporting.comparison.cells import label_text

@@ -12,9 +12,9 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
+from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
-from runner.base.quiet import quiet_environment
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, name_list
 
 _FORMATS = ("config", "html")

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 from runner.config.compose.user_settings import outputs_dir
 from runner.store.latest import WORD
 

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
-from runner.base.quiet import quiet_environment
 from runner.cli.arguments import Parser, Stored
 from runner.config.compose.user_settings import outputs_dir
 from runner.study.names import study_names

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from runner.base import engines
 from runner.base.errors import RunnerError, nearest
 from runner.base.former_names import TOPICS as FORMER_TOPICS
-from runner.base.texts import escaped, one_line
+from runner.base.sanitize import escaped, one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.options import group_options
 

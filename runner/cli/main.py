@@ -15,7 +15,7 @@ from typing import NoReturn
 from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, nearest, user_place
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import show_progress
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 from runner.cli.completion import answer, is_asked
 
 HELP = """\
@@ -199,7 +199,7 @@ def _choose(arguments: Sequence[str]) -> int:
 
 def _run(arguments: Sequence[str]) -> int:
     """Make a run or a sweep, or tell again of the run that the same line gave before."""
-    from runner.base.quiet import quiet_environment
+    from runner.base.environment_variables import quiet_environment
     from runner.store.recall.runs import find_again, line_key
 
     quiet_environment()

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from runner.base.quiet import quiet_environment
+from runner.base.environment_variables import quiet_environment
 from runner.cli.arguments import Parser, name_list, stored_folder
 
 

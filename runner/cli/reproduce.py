@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base import progress
+from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.progress.stages import of_audit, of_study
-from runner.base.quiet import quiet_environment
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
 from runner.plugins.discovery import in_use, named_parts

@@ -16,8 +16,8 @@ import hydra
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig, OmegaConf
 
+from runner.base.environment_variables import quiet_environment
 from runner.base.paths import conf_dir
-from runner.base.quiet import quiet_environment
 from runner.cli.ending import tell_run, tell_sweep
 from runner.config.compose.compose import from_hydra
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from runner.base import progress
-from runner.base.quiet import quiet_environment
+from runner.base.environment_variables import quiet_environment
 from runner.cli.arguments import Parser, name_list, stored_folder
 from runner.cli.columns import align_columns, number
 

@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Sequence
 
-from runner.base.quiet import quiet_environment
+from runner.base.environment_variables import quiet_environment
 from runner.cli.arguments import Parser, stored_folder
 
 

@@ -15,8 +15,8 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from runner.base.quiet import quiet_environment
-from runner.base.texts import one_line
+from runner.base.environment_variables import quiet_environment
+from runner.base.sanitize import one_line
 from runner.cli.arguments import ActionParser, Parser
 from runner.config.compose.user_settings import outputs_dir
 from runner.study.changes import KINDS, Change, Value, changes, read_conclusions

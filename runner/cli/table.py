@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError, StoreError
-from runner.base.quiet import quiet_environment
-from runner.base.texts import one_line
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, name_list, stored_folder
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base import progress
+from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.progress.stages import PREPARING, READING, REPORT_CODE, SIMULATING, SOON, of_report
-from runner.base.quiet import quiet_environment
 from runner.cli import report
 from runner.cli.arguments import Parser
 

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
 from runner.base.errors import ConfigError, nearest
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
 from runner.config.arms import build_robot

@@ -6,10 +6,9 @@ from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
 from runner.controllers.joint_space.motor_pd import MotorPdConfig
 from runner.plants import Plant
-from runner.plants.decoupled import TorquePlantConfig
+from runner.plants.decoupled import TorquePlantConfig, find_motion
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
 from runner.plants.kinds import HasFlexibleJoints
-from runner.plants.motion import find_motion
 from runner.plants.motors import MotorSide
 from runner.plants.plant import unwrapped
 from runner.robots.armature import with_armature

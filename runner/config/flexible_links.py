@@ -7,7 +7,7 @@ from runner.config.flexible_joints import find_flexibility
 from runner.config.run import RunConfig
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
 from runner.robots.armature import with_armature
-from runner.robots.beams import stiffen_robot
+from runner.robots.chain import stiffen_robot
 from runner.robots.robot import Robot
 
 _FASTEST = 0.5  # step times the largest rate; see runner/config/flexible_joints.py

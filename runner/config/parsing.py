@@ -6,12 +6,12 @@ from typing import TypeVar
 from pydantic import ValidationError
 
 from runner.base.errors import ConfigError
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.config.compose.messages import describe
 from runner.config.robot import OneArmConfig, RobotConfig, StagedRobotConfig
 from runner.plugins.registry import Kinds
-from runner.schema.magnitudes import absurd
 from runner.schema.model import StrictModel
+from runner.schema.plausibility import absurd
 
 M = TypeVar("M", bound=StrictModel)
 

@@ -13,7 +13,7 @@ from runner.config.sweep import SweepConfig
 from runner.config.timing import Timing
 from runner.controllers import ControllerConfig, Loop
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
-from runner.controllers.notch_config import NotchConfig
+from runner.controllers.notch import NotchConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.plugins.registry import Commands, KindConfig
 from runner.robots.mismatch import MismatchConfig

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from runner.base.cache import Memory
 from runner.base.errors import ConfigError
-from runner.base.memory import Memory
-from runner.base.texts import few
+from runner.base.sanitize import few
 from runner.config.arms import build_loaded, build_robot
 from runner.config.compose.problems import Problems, require
 from runner.config.computation import check_computation, computation_of, count_late

@@ -5,7 +5,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from runner.base.memory import Memory
+from runner.base.cache import Memory
 from runner.controllers.controller import Loop
 from runner.robots.robot import Robot
 from runner.trajectories import Trajectory

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from runner.base.errors import ConfigError
-from runner.base.texts import few
+from runner.base.sanitize import few
 from runner.doctor.engines import compare_engines
 from runner.doctor.finding import Finding, together
 from runner.doctor.joints import check_joints

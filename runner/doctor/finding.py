@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
-from runner.base.texts import few
+from runner.base.sanitize import few
 
 Grade = Literal["refused", "fixed", "note"]
 GRADES: tuple[Grade, ...] = ("refused", "fixed", "note")

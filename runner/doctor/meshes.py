@@ -4,7 +4,7 @@ import contextlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from runner.base.texts import few, quoted
+from runner.base.sanitize import few, quoted
 from runner.doctor.finding import Finding
 from runner.robots.tree import UrdfTree
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.texts import few
+from runner.base.sanitize import few
 from runner.doctor.finding import Finding
 from runner.robots.model import RobotModel
 from runner.robots.task_space import task_basis

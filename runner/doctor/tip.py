@@ -3,7 +3,7 @@
 import re
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.texts import few
+from runner.base.sanitize import few
 from runner.doctor.finding import Finding
 from runner.robots.tree import UrdfTree, end_of, moves
 

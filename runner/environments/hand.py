@@ -6,7 +6,6 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.environments.environment import Environment
 from runner.schema.model import StrictModel
 from runner.trajectories.blend import quintic_blend
 
@@ -53,8 +52,4 @@ class Hand:
 
 
 CONFIG = HandConfig
-
-
-def build(config: HandConfig) -> Environment:
-    """Make the hand that a config describes."""
-    return Hand(config)
+build = Hand

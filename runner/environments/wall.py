@@ -6,7 +6,6 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from runner.base.arrays import FloatArray
-from runner.environments.environment import Environment
 from runner.schema.model import StrictModel
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
@@ -100,8 +99,4 @@ class Wall:
 
 
 CONFIG = WallConfig
-
-
-def build(config: WallConfig) -> Environment:
-    """Make the wall that a config describes."""
-    return Wall(config)
+build = Wall

@@ -14,7 +14,7 @@ from runner.metrics.context import MetricContext
 from runner.metrics.family import OwnFamily
 from runner.plugins import metric_units
 from runner.plugins.guard import watch_metrics
-from runner.trajectories.shifted import Shifted
+from runner.trajectories.shaped import Shifted
 
 _FAMILIES: list[OwnFamily] = [import_module(name) for name in metric_units.FAMILIES]
 MOST_LISTED = 2000

@@ -1,12 +1,12 @@
 """Plants (simulated arms): true motion from joint torques or commanded joint positions."""
 
-from runner.plants.end_points import TellsEndPoints
 from runner.plants.kinds import PlantConfig, Plants
 from runner.plants.plant import (
     ContactPlant,
     Plant,
     PositionPlant,
     ReportsContact,
+    TellsEndPoints,
     ToolReactionPlant,
     unwrapped,
 )

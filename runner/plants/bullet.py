@@ -8,16 +8,48 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.engine_output import quiet_stderr
-from runner.plants.armature import LinksTorque
 from runner.plants.bullet_servers import SERVERS
+from runner.plants.compiled_motion import compile_links_torque
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
-from runner.plants.flexible_around import flexible_around
 from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_wrapper import flexible_around
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
-from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 from runner.robots.tool_link import TOOL_MOUNT
+
+
+class LinksTorque:
+    r"""Torques that give links without armature the accelerations of an arm with it.
+
+    .. math:: \tau' = \tau - A \ddot q, \qquad (M + A) \ddot q + h = \tau
+        \quad\Rightarrow\quad M \ddot q + h = \tau'
+
+    h is the bias and gravity torque. It is exact in free motion, in each state for itself. Accelerations are compiled
+    code's where that is to be had, else those of Pinocchio's articulated-body algorithm.
+
+    Args:
+        model: The arm, with its armature A.
+    """
+
+    def __init__(self, model: RobotModel) -> None:
+        self._compiled = compile_links_torque(model)
+        self._model = pin.Model(model.pin_model)
+        self._data, self._armature = self._model.createData(), model.armature
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Take another gravity vector in the base frame, shape (3,), in m/s^2."""
+        self._model.gravity.linear = gravity
+        if self._compiled is not None:
+            self._compiled.set_gravity(gravity)
+
+    def at(self, q: FloatArray, dq: FloatArray, tau: FloatArray) -> FloatArray:
+        """Return the torques of the links in a state, shape (nq,), in N m; valid until it is asked again."""
+        if self._compiled is not None:
+            return self._compiled.at(q, dq, tau)
+        links: FloatArray = tau - self._armature * pin.aba(self._model, self._data, q, dq, tau)
+        return links
+
 
 with quiet_stderr():  # PyBullet announces its build time
     import pybullet
@@ -214,11 +246,6 @@ def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) 
         return flexible_around(*parts, lambda links: Bullet(robot.urdf, links, step, 1))
     tick = step * steps_per_tick
     return assemble_plant(config, robot, tick, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))
-
-
-def modes(config: BulletConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-    """Return how flexible joints ring with their motors held; see HasModes."""
-    return [] if config.flexible_joints is None else config.flexible_joints.modes(robot, q)
 
 
 def default_step(tick: float, stages: int) -> float:

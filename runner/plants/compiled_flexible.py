@@ -10,9 +10,8 @@ from runner.plants.compiled_motion import ArmCode, Mover
 from runner.robots.model import RobotModel
 from runner.symbolic.algebra import ArmAlgebra
 from runner.symbolic.arm import to_scalars
-from runner.symbolic.code import ROWS, STATE, Part
+from runner.symbolic.code import ROWS, STATE, Part, Slots
 from runner.symbolic.engine import MOST_JOINTS, evaluator
-from runner.symbolic.places import Slots
 from runner.symbolic.structure import any_number, arm_pattern
 from runner.symbolic.vectors import Vector
 

@@ -10,16 +10,15 @@ from runner.robots.model import RobotModel
 from runner.robots.robot import StageBase
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import ArmConstants, constants_of, to_scalars
-from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat
+from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat, Slots
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, absolute, both, equal, less, places, select
-from runner.symbolic.places import Slots
 from runner.symbolic.program import Expressed, Frame, program
 from runner.symbolic.structure import Values, any_number, arm_pattern
 from runner.symbolic.vectors import Matrix, Vector, add, product, scale, subtract, times, transpose
 
 if TYPE_CHECKING:  # plants with springs are moved by what stands here
-    from runner.plants.motion import Motion
+    from runner.plants.decoupled import Motion
 
 _PIVOTS, _ROUNDING = 100, 1e-12  # as in runner/plants/friction.py
 
@@ -293,7 +292,7 @@ class CompiledStep(ArmCode):
 
 
 class CompiledLinksTorque(ArmCode):
-    """The torques of links whose motors take A ddq of them, as compiled code; see runner/plants/armature.py."""
+    """The torques of links whose motors take A ddq of them, as compiled code; see runner/plants/bullet.py."""
 
     def _names(self) -> tuple[str, str]:
         return f"links' torque {arm_pattern(self._model)}", f"the armature of {self._model.nq} joints"

@@ -7,11 +7,10 @@ from pydantic import NonNegativeFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.plants.flexible_joints import Flexibility, links_of
-from runner.robots.by_joint import by_joint
 from runner.robots.modes import Mode, find_modes
-from runner.robots.robot import Robot
+from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import SpringPerStage
 

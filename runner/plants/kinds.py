@@ -8,8 +8,8 @@ from runner.base import engines
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plants.computation import ComputationConfig
+from runner.plants.decoupled import Motion
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.motion import Motion
 from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
 from runner.plugins.guard import watch_plant
@@ -82,7 +82,7 @@ class MovesByRungeKutta(Protocol):
 
 @runtime_checkable
 class HasModes(Protocol):
-    """A module whose plants may be flexible, and tells how they ring."""
+    """A module whose plants are flexible, and tells how they ring; springs in joints are known by HasFlexibleJoints."""
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
         """Return the modes of a robot about a posture with its motors held, by frequency; see find_modes."""
@@ -144,8 +144,12 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
         """Return the modes of a built-in plant about a posture with its motors held, if it may ring; see HasModes."""
+        if not self.is_ours(config.kind):
+            return []
+        if isinstance(config, HasFlexibleJoints) and config.flexible_joints is not None:
+            return config.flexible_joints.modes(robot, q)
         module = self.module(config.kind)
-        return module.modes(config, robot, q) if self.is_ours(config.kind) and isinstance(module, HasModes) else []
+        return module.modes(config, robot, q) if isinstance(module, HasModes) else []
 
     def moves_exactly(self, config: PlantConfig) -> bool:
         """Tell whether a step moves positions exactly under a held force; see MovesExactly."""

@@ -8,7 +8,7 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.plants.computation import ComputationConfig
 from runner.plants.plant import Plant
-from runner.plants.set_points import SetPoints
+from runner.plants.servo import SetPoints
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel

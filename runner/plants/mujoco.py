@@ -10,12 +10,11 @@ from pydantic import Field
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
-from runner.plants.flexible_around import flexible_around
 from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_wrapper import flexible_around
 from runner.plants.mujoco_model import FORCE, MOMENT, WALL, compiled, read_spec
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
-from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 from runner.robots.tool_link import TOOL_MOUNT
 
@@ -174,11 +173,6 @@ def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) 
         parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
         return flexible_around(*parts, lambda links: Mujoco(robot.urdf, links, step, 1, *chosen))
     return assemble_plant(config, robot, tick, lambda urdf, model: Mujoco(urdf, model, step, steps_per_tick, *chosen))
-
-
-def modes(config: MujocoConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-    """Return how flexible joints ring with their motors held; see HasModes."""
-    return [] if config.flexible_joints is None else config.flexible_joints.modes(robot, q)
 
 
 def moves_exactly(config: MujocoConfig) -> bool:

@@ -1,4 +1,4 @@
-"""Plant protocols: torque and position inputs, contact and tool reaction."""
+"""Plant protocols: torque and position inputs, external joint torques, contact, tool reaction and end points."""
 
 from typing import Protocol, runtime_checkable
 
@@ -103,3 +103,35 @@ def unwrapped(plant: Plant) -> Plant:
     while isinstance(plant, PlantWrapper):
         plant = plant.plant
     return plant
+
+
+@runtime_checkable
+class TellsEndPoints(Protocol):
+    """A plant of ours whose stages end elsewhere than its joints tell, as its links bend."""
+
+    def end_points(self) -> FloatArray:
+        """Return the end point of each stage now, shape (stages, 3), in m; see runner.robots.robot.end_points."""
+        ...
+
+    def tip_motion(self) -> FloatArray:
+        """Return position and velocity of the tip now, shape (2, 3), in m and m/s."""
+        ...
+
+
+@runtime_checkable
+class TakesLoad(Protocol):
+    """A plant whose motors do not move its links alone, so that the world's torques count beside theirs."""
+
+    @property
+    def load(self) -> FloatArray:
+        """Joint torques that the world adds in the next tick, shape (nq,), in N m; written in place."""
+        ...
+
+
+def push(plant: Plant, tau: FloatArray, load: FloatArray) -> None:
+    """Hold torques of motors and of the world, shapes (nq,), in N m, for one control tick; see Plant.advance."""
+    if isinstance(plant, TakesLoad):
+        plant.load[:] = load
+        plant.advance(tau)
+    else:
+        plant.advance(tau + load)

@@ -7,14 +7,12 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.plants.compiled_motion import compile_motion
-from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.decoupled import Motion, TorquePlantConfig, assemble_plant, find_motion
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import FlexibleJoints, links_of
-from runner.plants.motion import Motion, find_motion
-from runner.plants.motor_friction import MotorFriction
+from runner.plants.motors import MotorFriction
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
-from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 
 
@@ -111,11 +109,6 @@ def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> 
 def motion(config: Rk4Config, robot: Robot) -> Motion | None:
     """Return what the plant moves; None for flexible joints, which are not compiled; see MovesByRungeKutta."""
     return None if config.flexible_joints is not None else find_motion(robot, config)
-
-
-def modes(config: Rk4Config, robot: Robot, q: FloatArray) -> list[Mode]:
-    """Return how flexible joints ring with their motors held; see HasModes."""
-    return [] if config.flexible_joints is None else config.flexible_joints.modes(robot, q)
 
 
 def moves_exactly(config: Rk4Config) -> bool:

@@ -11,11 +11,9 @@ from runner.base.errors import ConfigError, nearest
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_links import FlexibleLinks
 from runner.plants.plant import Plant
-from runner.robots.beams import Beam, moving_links, span
-from runner.robots.by_joint import by_joint
-from runner.robots.chain import Chain, cut
+from runner.robots.chain import Beam, Chain, cut, moving_links, span
 from runner.robots.modes import Mode, find_modes, largest_rate
-from runner.robots.robot import Robot
+from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import MotorPerStage
 

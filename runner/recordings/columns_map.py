@@ -8,9 +8,9 @@ from pydantic import Field, FiniteFloat, PositiveFloat, model_validator
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.base.texts import quoted
-from runner.schema.magnitudes import absurd
+from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
+from runner.schema.plausibility import absurd
 from runner.schema.units import WRITTEN
 
 AMPERE = "A"

@@ -12,7 +12,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.limits import RECORDING, RECORDING_ROW, RECORDING_ROWS, ExcessError
-from runner.base.texts import few, quoted
+from runner.base.sanitize import few, quoted
 
 _SEPARATORS = ",;\t"
 _MISSING = ("", "nan", "na", "null", "none")

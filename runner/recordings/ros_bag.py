@@ -15,7 +15,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.limits import BAG_MEMORY, RECORDING, RECORDING_ROWS, ExcessError, bounded_memory
-from runner.base.texts import few, quoted
+from runner.base.sanitize import few, quoted
 from runner.recordings import files_of
 from runner.recordings.csv_columns import places_of
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting.charts import palette
 from runner.reporting.charts.axes import in_readable_units, marks
 from runner.reporting.charts.figure import shares_legend, upright

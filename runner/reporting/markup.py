@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 
 _SPAN = re.compile(r"\$\$|\$((?:[^$])+)\$|\$|[^$]+")
 _LINK = re.compile(r"§(?P<section>\d+(?:\.\d+)*)|\b(?P<kind>claim|figure|table) (?P<number>\d+(?:\.\d+)*)\b", re.I)

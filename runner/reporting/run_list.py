@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.quantities import number, unit_text
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting.document import RunList
 from runner.reporting.markup import literals
 from runner.reporting.metric_titles import metric_label

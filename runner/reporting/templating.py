@@ -8,7 +8,7 @@ import jinja2
 
 from runner.base.expressions.typesetting import matrix, symbol, typeset
 from runner.base.paths import templates_dir
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting.document import Origin
 from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, of_verdict, symbols_in
 from runner.reporting.markup import spans

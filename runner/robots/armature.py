@@ -8,7 +8,7 @@ from pydantic import NonNegativeFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.robots.inertials import read_sets
 from runner.robots.robot import Robot, with_models
 from runner.robots.tree import UrdfTree

@@ -7,8 +7,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from runner.base.arrays import FloatArray
-from runner.robots.beams import Beam
-from runner.robots.chain import Chain, cut
+from runner.robots.chain import Beam, Chain, cut
 from runner.robots.model import RobotModel
 from runner.robots.modes import find_modes
 

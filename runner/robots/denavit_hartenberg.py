@@ -93,18 +93,6 @@ def modified_frames(rows: Sequence[ModifiedRow], q: FloatArray) -> FloatArray:
     return _chained(modified_transform(row, float(q_i)) for row, q_i in zip(rows, q, strict=True))
 
 
-def modified_jacobian(rows: Sequence[ModifiedRow], q: FloatArray) -> FloatArray:
-    """Return the geometric Jacobian of frame n in frame 0, shape (6, n): J_i = [z_i x (p_n - p_i); z_i]."""
-    poses = modified_frames(rows, q)[1:]
-    z, p = poses[:, :3, 2], poses[:, :3, 3]
-    return np.vstack([np.cross(z, p[-1] - p).T, z.T])
-
-
-def in_last_frame(jacobian: FloatArray, rotation: FloatArray) -> FloatArray:
-    """Return a geometric Jacobian, shape (6, n), in axes of frame n, from frame 0's: diag(R^T, R^T) J with R = 0R_n."""
-    return np.vstack([rotation.T @ jacobian[:3], rotation.T @ jacobian[3:]])
-
-
 def denavit_hartenberg(model: RobotModel) -> tuple[DenavitHartenbergRow, ...]:
     """Return the standard D-H table of an arm, so that the product of its transforms is the pose of the tip.
 

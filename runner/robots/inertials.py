@@ -15,7 +15,7 @@ from pydantic import Field, NonNegativeFloat, TypeAdapter, ValidationError
 from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.base.errors import ConfigError, nearest
 from runner.base.limits import ExcessError, read_text
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
-from runner.base.texts import few
+from runner.base.sanitize import few
 from runner.robots.inertials import place_of
 from runner.robots.tree import UrdfTree
 from runner.robots.urdf_values import number, wrong_places

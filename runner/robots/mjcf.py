@@ -12,9 +12,8 @@ import mujoco
 
 from runner.base.errors import ConfigError
 from runner.robots.mjcf_files import asset_files, follow_includes
-from runner.robots.mjcf_joints import dynamics_of, efforts_of, home_of
+from runner.robots.mjcf_joints import dynamics_of, efforts_of, home_of, other_ties, take_out_ties
 from runner.robots.mjcf_losses import LeftOut, left_out, refused_model, refused_parts, refused_shapes
-from runner.robots.mjcf_ties import other_ties, take_out_ties
 from runner.robots.mjcf_urdf import joint_name, write_urdf
 
 _LOCK = threading.Lock()  # MuJoCo has one place for warnings

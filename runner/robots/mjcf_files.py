@@ -6,7 +6,7 @@ from pathlib import Path
 
 from runner.base.errors import ConfigError
 from runner.base.limits import ARM_PARTS, HEIGHTS, MESH, MJCF_ELEMENTS, XML
-from runner.base.texts import few, quoted
+from runner.base.sanitize import few, quoted
 from runner.robots.tree import parse_xml
 
 _DEPTH = 200

@@ -9,9 +9,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.base.texts import few
-from runner.robots.mjcf_joints import HOME, ON_JOINTS, actuator_name, is_motor
-from runner.robots.mjcf_ties import free_joints
+from runner.base.sanitize import few
+from runner.robots.mjcf_joints import HOME, ON_JOINTS, actuator_name, free_joints, is_motor
 from runner.robots.mjcf_urdf import joint_name
 from runner.robots.model import STANDARD_GRAVITY
 

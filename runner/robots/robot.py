@@ -1,4 +1,4 @@
-"""Robot as a chain of stages: one arm, or several arms mounted on each other."""
+"""Robot as a chain of stages: one arm, or several arms mounted on each other; values by joint."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -9,6 +9,8 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.robots.joint_dynamics import FileDynamics
 from runner.robots.model import RobotModel
+from runner.schema.per_joint import expand
+from runner.schema.per_stage import OptionalPerStage, by_stage
 
 
 @dataclass(frozen=True)
@@ -159,3 +161,18 @@ def _frame_positions(model: RobotModel, q: Sequence[FloatArray] | FloatArray, fr
         pin.updateFramePlacement(model.pin_model, data, index)
         row[:] = origin
     return positions
+
+
+def by_joint(key: str, value: OptionalPerStage, arm: Robot) -> FloatArray:
+    """Return a key's value of each joint of a robot, shape (nq,); infinite for null.
+
+    Raises:
+        ConfigError: for values that do not fit the robot's stages and joints.
+    """
+    if value is None:
+        return np.full(arm.model.nq, np.inf)
+    values: list[float | None] = []
+    for stage, given in zip(arm.stages, by_stage(key, value, arm.stage_names), strict=True):
+        at = f"{key}.{stage.name}" if len(arm.stages) > 1 else key
+        values += expand(at, given, stage.model.joint_names)  # type: ignore[arg-type]
+    return np.array([np.inf if each is None else each for each in values])

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.limits import ARM_PARTS, XML, XML_ATTRIBUTES, XML_ELEMENTS, ExcessError, read_text
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 _NAME = 200  # characters
 _DEPTH = 20

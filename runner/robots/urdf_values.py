@@ -4,9 +4,9 @@ import math
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.robots.tree import moves
-from runner.schema.magnitudes import LARGEST, SMALLEST
+from runner.schema.plausibility import LARGEST, SMALLEST
 
 TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 

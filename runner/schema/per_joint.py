@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
 
 PositivePerJoint = PositiveFloat | list[PositiveFloat]

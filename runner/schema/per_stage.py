@@ -7,7 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BeforeValidator
 
 from runner.base.errors import ConfigError, nearest
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 T = TypeVar("T")
 

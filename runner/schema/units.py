@@ -7,7 +7,7 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from runner.base.errors import nearest
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 _DEGREE, _RPM = math.pi / 180.0, math.pi / 30.0
 _ONE, _MILLI, _MICRO, _KILO = Decimal(1), Decimal("1e-3"), Decimal("1e-6"), Decimal(1000)

@@ -16,14 +16,14 @@ from runner.controllers.disturbance_observer import add_observers
 from runner.controllers.kinds import FollowsWithinReach
 from runner.controllers.notch import add_notch
 from runner.environments import ENVIRONMENTS
-from runner.environments.interaction import Interaction
+from runner.environments.external_wrench import Interaction
 from runner.environments.wall import Wall
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, Plant, PositionPlant
+from runner.plants.contact_plant import WithTipContact
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo
-from runner.plants.touched import WithTipContact
 from runner.robots.mismatch import nominal_robot
 from runner.robots.robot import Robot
 from runner.simulation.closed_loop import ClosedLoop

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.memory import Memory
+from runner.base.cache import Memory
 from runner.base.progress.ticks import add_ticks
 from runner.base.trace import Trace, Traces
 from runner.config.run import RunConfig

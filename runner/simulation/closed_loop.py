@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from runner.base.arrays import FloatArray
 from runner.controllers import Loop
-from runner.environments.interaction import Interaction
+from runner.environments.external_wrench import Interaction
 from runner.plants import Plant, PositionPlant
 from runner.plants.motors import MotorSide
 from runner.plugins.registry import Commands

@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.trace import ContactSignals
-from runner.environments.interaction import Interaction
+from runner.environments.external_wrench import Interaction
 from runner.plants import ReportsContact, ToolReactionPlant, unwrapped
 from runner.sensing import WristSensor
 from runner.simulation.closed_loop import ClosedLoop

@@ -4,7 +4,7 @@ from typing import Protocol, cast
 
 from runner.base.arrays import FloatArray
 from runner.plants import Plant, PositionPlant
-from runner.plants.load import push
+from runner.plants.plant import push
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.recorder import Recorder
 

@@ -21,8 +21,9 @@ from runner.store.recall.answers import keep, recall
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """
     base: trace
-    calibration: __init__=calibration.__init__ compensation consistency gravity=calibration.gravity orientations
-        repeatability tool tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
+    calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations tool
+        tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
+        uncertainty=repeatability
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
     config: arms calibration computation=config.computation disturbance_observer=config.disturbance_observer
@@ -31,31 +32,30 @@ _TABLE = """
         plugged reach repeats robot=config.robot run settings start timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer graph kinds=controllers.kinds notch=controllers.notch
-        notch_config sampled_stability torque_law
+        sampled_stability torque_law
     controllers/force: admittance admittance_filter admittance_stability force_reading=controllers.force_reading
-        force_stability hybrid_force impedance late_stability tip_force wrist
+        force_stability hybrid_force impedance tip_force wrist
     controllers/joint_space: adaptive computed_torque iterative_learning joint_law
         joint_motion=controllers.joint_motion joint_pd joint_pid motor_pd passivity sliding_mode
-    controllers/kinematic: approach differential_inverse_kinematics limited_motion resolved_rate
+    controllers/kinematic: differential_inverse_kinematics limited_motion resolved_rate
     controllers/macro_mini: inertial_damping macro_mini macro_mini_graph stage_law stage_loops
     controllers/operational_space: null_space operational_space operational_space_graph tip_task whole_body
         whole_body_graph whole_body_posture
-    environments: __init__=environments.__init__ environment=environments.environment free hand interaction push
-        pushed_links wall
+    environments: __init__=environments.__init__ environment=environments.environment external_wrench=interaction free
+        hand link_forces=pushed_links push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact context effort family plant_error positioning reaching
         summary tracking
-    plants: __init__=plants.__init__ armature=plants.armature bullet bullet_servers compiled_flexible=flexible
-        compiled_motion=compiled.motion computation=plants.computation decoupled end_points=plants.end_points
-        flexible_around flexible_config flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links
-        friction kinds=plants.kinds kinematic load motion=plants.motion motor_friction motors=sensing.motors mujoco
-        mujoco_model payload_changes plant=plants.plant rk4 rk4_flexible_links servo set_points touched
+    plants: __init__=plants.__init__ bullet bullet_servers compiled_flexible=flexible compiled_motion=compiled.motion
+        computation=plants.computation contact_plant=touched decoupled flexible_config
+        flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links flexible_wrapper=flexible_around
+        friction kinds=plants.kinds kinematic motors=sensing.motors mujoco mujoco_model payload_changes
+        plant=plants.plant rk4 rk4_flexible_links servo
     plugins: metric_units registry
     plugins/guard: __init__=guard.__init__ belief controller=guard.controller environment=guard.environment faults
         metrics plant=guard.plant read_only sensing trajectory=guard.trajectory
-    robots: __init__=robots.__init__ armature=robots.armature beams by_joint cantilever chain denavit_hartenberg
-        description effective_mass inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints
-        mjcf_losses mjcf_ties mjcf_urdf model modes mounting robot=robots.robot task_space tool_link tree urdf_values
-        workspace
+    robots: __init__=robots.__init__ armature=robots.armature cantilever chain denavit_hartenberg description
+        inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses mjcf_urdf model
+        modes mounting robot=robots.robot task_space tool_link tree urdf_values workspace
     schema: per_joint per_stage
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds streams velocity wrench
@@ -65,11 +65,11 @@ _TABLE = """
     simulation/compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
     sweeps: calibration_job execution job
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
-        places program regressor structure tangent vectors=compiled.vectors
+        program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation
         joint_motion=trajectories.joint_motion joint_quintic joint_sinusoids joint_waypoints kinds=trajectories.kinds
-        line lissajous nearest posture quintic sampled_curve segment shaped shifted square table
-        trajectory=trajectories.trajectory vectors=trajectories.vectors waypoints
+        line lissajous nearest quintic sampled_curve shaped square table trajectory=trajectories.trajectory
+        vectors=trajectories.vectors waypoints
 """  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from runner.base.errors import RunnerError
 from runner.base.expressions import insertions
 from runner.base.expressions.evaluator import Budget, Scope
 from runner.base.expressions.grammar import ExpressionError
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 Level = str | int | float
 """What a name stands for: a number or a text."""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.base.memory import Memory
+from runner.base.cache import Memory
 from runner.store import simulated_part
 
 if TYPE_CHECKING:

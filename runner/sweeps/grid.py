@@ -10,7 +10,7 @@ from runner.config.compose.compose import Composed
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.options import groups
 from runner.config.compose.overrides import force
-from runner.schema.magnitudes import LARGEST_WHOLE
+from runner.schema.plausibility import LARGEST_WHOLE
 from runner.store.axes import Counted, GridOverrides
 from runner.sweeps.block import Alike, Block
 from runner.sweeps.loading import ConfigSource, Loader

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.texts import table_cell
+from runner.base.sanitize import table_cell
 from runner.statistics import SMALLEST_SAMPLE, median_intervals
 from runner.store.atomic import open_atomically
 from runner.sweeps.measurements import Measurements, medians

@@ -1,11 +1,11 @@
-"""LLVM intermediate representation of programs: straight-line code inside loops."""
+"""LLVM intermediate representation of programs: straight-line code inside loops, and its memory layout."""
 
 import struct
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from runner.symbolic.expression import Expression, expression, in_order
+from runner.symbolic.expression import Expression, expression, in_order, place
 
 GIVEN, ACTING, ROWS, STATE, SCRATCH, PARS, TABLE = "given", "acting", "rows", "state", "scratch", "pars", "table"
 ARRAYS = (GIVEN, ROWS, STATE, SCRATCH, PARS, TABLE)
@@ -192,3 +192,21 @@ class _Writer:
         self._count += 1
         self._lines.append(f"  %v{self._count} = {text}")
         return f"%v{self._count}"
+
+
+class Slots:
+    """Slots in the spaces of one program; see runner/symbolic/code.py."""
+
+    def __init__(self) -> None:
+        self.widths = {GIVEN: 0, ROWS: 0, STATE: 0, SCRATCH: 0, PARS: 0, TABLE: 3}
+        """How many of each space are taken."""
+
+    def take(self, space: str, count: int) -> tuple[int, list[Expression]]:
+        """Return the first of some new places, and what stands there."""
+        first = self.widths[space]
+        self.widths[space] += count
+        return first, [place(space, first + index) for index in range(count)]
+
+    def number(self, value: float) -> Expression:
+        """Return what stands for a number that may change from run to run: the next parameter; see Values."""
+        return self.take(PARS, 1)[1][0]

@@ -116,29 +116,12 @@ class TipMotion:
         return distance_to_curve(points, self.sample, np.union1d(even, self.rows.times))
 
 
-@dataclass(frozen=True)
-class JointRows:
-    """A motion of the joints through rows; see JointMotion.
-
-    Attributes:
-        rows: The motion, in rad.
-    """
-
-    rows: Interpolated
-
-    @property
-    def duration(self) -> float:
-        """Time t_f of the last row, in s."""
-        return self.rows.duration
-
-    @property
-    def samples(self) -> int:
-        """Samples by the number of rows."""
-        return self.rows.samples
+class JointRows(Interpolated):
+    """A motion of the joints through rows, in rad; see JointMotion."""
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
         """Return the motion, at rest in the last row after t_f."""
-        return self.rows.sample(times)
+        return self.sample(times)
 
 
 CONFIG = FromFileConfig
@@ -166,4 +149,5 @@ def joint_motion(config: FromFileConfig, robot: Robot) -> JointMotion | None:
                 f"{', '.join(names)}"
             ]
         )
-    return JointRows(config.motion())
+    motion = config.motion()
+    return JointRows(motion.times, motion.orders)

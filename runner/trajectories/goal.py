@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
-from runner.trajectories.segment import distance_to_segment
+from runner.trajectories.nearest import distance_to_segment
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point
 

@@ -10,8 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.trajectories.blend import quintic_blend
-from runner.trajectories.joint_motion import JointMotion
-from runner.trajectories.posture import Configuration, configuration_of, start_of
+from runner.trajectories.joint_motion import Configuration, JointMotion, configuration_of, start_of
 
 _SAMPLES = 512
 

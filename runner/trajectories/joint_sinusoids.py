@@ -12,8 +12,7 @@ from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import NonNegativePerJoint, expand
 from runner.trajectories.blend import quintic_blend
-from runner.trajectories.joint_motion import JointMotion
-from runner.trajectories.posture import Configuration, start_of
+from runner.trajectories.joint_motion import Configuration, JointMotion, start_of
 
 _SAMPLES = 64  # in a period of the highest harmonic
 _AT_ONCE = 2_000_000  # sines that are in memory at the same time

@@ -11,8 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
-from runner.trajectories.joint_motion import JointMotion
-from runner.trajectories.posture import Configuration, configuration_of, start_of
+from runner.trajectories.joint_motion import Configuration, JointMotion, configuration_of, start_of
 from runner.trajectories.waypoints import check_time_shares, least_jerk_spline
 
 _SAMPLES = 256  # between two configurations

@@ -9,7 +9,7 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.trajectories.blend import quintic_blend
-from runner.trajectories.segment import distance_to_segment
+from runner.trajectories.nearest import distance_to_segment
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point
 

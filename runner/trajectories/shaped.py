@@ -1,4 +1,4 @@
-"""Input-shaped motions, convolved with impulses against residual vibration of flexible arms."""
+"""Motions derived from another: input-shaped against vibration of flexible arms, or with an offset."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,21 +13,14 @@ from runner.trajectories.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
-class Shaped:
-    r"""A desired motion of the tip, convolved with impulses; see Trajectory for the attributes.
-
-    .. math:: x_s(t) = \sum_i A_i x(t - t_i)
-
-    and so its velocity and acceleration, at exact times, whatever the ticks; each x rests at the start before its time.
-    The path is that of the motion as it is asked for, from which a shaped motion strays where it is curved.
+class DerivedMotion:
+    """A desired motion of the tip made of another, which it follows in what it does not change; see Trajectory.
 
     Attributes:
-        motion: The motion, which comes to rest.
-        impulses: The impulses.
+        motion: The motion.
     """
 
     motion: Trajectory
-    impulses: Impulses
 
     @property
     def start(self) -> FloatArray:
@@ -41,6 +34,38 @@ class Shaped:
 
     @property
     def duration(self) -> float:
+        """Time of the motion, in s."""
+        return self.motion.duration
+
+    @property
+    def run_duration(self) -> float:
+        """Time of a run, in s."""
+        return self.motion.run_duration
+
+    @property
+    def tracked(self) -> bool:
+        """Whether there is a motion to track."""
+        return self.motion.tracked
+
+
+@dataclass(frozen=True)
+class Shaped(DerivedMotion):
+    r"""A desired motion of the tip, convolved with impulses; see Trajectory for the attributes.
+
+    .. math:: x_s(t) = \sum_i A_i x(t - t_i)
+
+    and so its velocity and acceleration, at exact times, whatever the ticks; each x rests at the start before its time.
+    The path is that of the motion as it is asked for, from which a shaped motion strays where it is curved.
+
+    Attributes:
+        motion: The motion, which comes to rest.
+        impulses: The impulses.
+    """
+
+    impulses: Impulses
+
+    @property
+    def duration(self) -> float:
         """Time after which the motion rests, in s: later by the last impulse."""
         return self.motion.duration + self.impulses.delay
 
@@ -48,11 +73,6 @@ class Shaped:
     def run_duration(self) -> float:
         """Time of a run, in s, longer by as much."""
         return self.motion.run_duration + self.impulses.delay
-
-    @property
-    def tracked(self) -> bool:
-        """Whether there is a motion to track."""
-        return self.motion.tracked
 
     def sample(self, times: FloatArray) -> FloatArray:
         """Return the shaped motion."""
@@ -103,3 +123,34 @@ def _convolved(
         part[late < 0.0, 0] = start
         motion += share * part
     return motion
+
+
+@dataclass(frozen=True)
+class Shifted(DerivedMotion):
+    """A desired motion less a constant offset; see Trajectory.
+
+    Attributes:
+        offset: What is subtracted from its positions, shape (3,), in m.
+    """
+
+    offset: FloatArray
+
+    @property
+    def start(self) -> FloatArray:
+        """Start of the motion, shifted."""
+        return self.motion.start - self.offset
+
+    @property
+    def goal(self) -> FloatArray | None:
+        """Goal of the motion, shifted."""
+        return None if self.motion.goal is None else self.motion.goal - self.offset
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return the motion, shifted."""
+        motion = self.motion.sample(times)
+        motion[:, 0] -= self.offset
+        return motion
+
+    def distance_to_path(self, points: FloatArray) -> FloatArray:
+        """Return the distance to the shifted path."""
+        return self.motion.distance_to_path(points + self.offset)

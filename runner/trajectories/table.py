@@ -9,7 +9,7 @@ from pathlib import Path
 
 from runner.base.errors import ConfigError
 from runner.base.limits import TABLE, TABLE_NUMBERS, ExcessError, open_parquet
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 Columns = Mapping[str, Sequence[float]]
 

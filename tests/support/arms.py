@@ -8,6 +8,7 @@ from typing import Any
 from runner.config.compose.compose import compose
 from runner.config.run import RunConfig
 from runner.config.validation import validate
+from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.robots import RobotModel, find_urdf, read_urdf
 
 
@@ -35,3 +36,18 @@ def _composed(*overrides: str) -> Mapping[str, Any]:
 def last_of_each(*overrides: str) -> list[str]:
     """Return the overrides without those whose key is overridden again later."""
     return list({text.partition("=")[0]: text for text in overrides}.values())
+
+
+def tip_numbers(
+    natural_frequency: float, damping_ratio: float, gravity: bool, feedforward: bool, singularity_damping: float
+) -> WholeBodyLaw:
+    """Return the numbers of a law of the tip, whose null space is as quick."""
+    return WholeBodyLaw(
+        natural_frequency=natural_frequency,
+        damping_ratio=damping_ratio,
+        gravity_compensation=gravity,
+        feedforward=feedforward,
+        null_space_frequency=natural_frequency,
+        max_tip_speed=None,
+        singularity_damping=singularity_damping,
+    )

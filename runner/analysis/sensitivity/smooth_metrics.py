@@ -15,7 +15,7 @@ from runner.base.errors import RunnerError, nearest
 from runner.base.trace import Trace
 from runner.metrics import MetricContext
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.trajectories.shifted import Shifted
+from runner.trajectories.shaped import Shifted
 
 WITHOUT = {
     "settling_time": "it jumps from one tick to another, and stays in between",

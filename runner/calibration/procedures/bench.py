@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.calibration.repeatability import joint_deviation, pose_covariances
 from runner.calibration.tool import Tool
+from runner.calibration.uncertainty import joint_deviation, pose_covariances
 from runner.robots.model import RobotModel
 from runner.sensing.force_torque import ForceTorqueConfig
 

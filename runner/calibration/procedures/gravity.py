@@ -10,11 +10,10 @@ from pydantic import Field, NonNegativeFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.limits import READINGS
-from runner.calibration.compensation import WrenchCompensation
-from runner.calibration.gravity import PARAMETERS, GravityCalibration, identify_gravity
+from runner.calibration.gravity import PARAMETERS, GravityCalibration, WrenchCompensation, identify_gravity
 from runner.calibration.orientations import choose_orientations
 from runner.calibration.procedures.bench import Bench
-from runner.calibration.procedures.procedure import Outcome, Procedure
+from runner.calibration.procedures.procedure import Outcome
 from runner.calibration.tool import REST
 from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel
@@ -175,8 +174,4 @@ def _mirrored_digits(count: int, base: int) -> FloatArray:
 
 
 CONFIG = WeighingConfig
-
-
-def build(config: WeighingConfig, bench: Bench) -> Procedure:
-    """Make the procedure that a config describes."""
-    return Weighing(config, bench)
+build = Weighing

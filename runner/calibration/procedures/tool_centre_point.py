@@ -6,7 +6,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from runner.calibration.procedures.bench import Bench
-from runner.calibration.procedures.procedure import Outcome, Procedure
+from runner.calibration.procedures.procedure import Outcome
 from runner.calibration.procedures.touching import TouchingConfig, touching_postures
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 
@@ -46,8 +46,4 @@ class TouchedPoint:
 
 
 CONFIG = TouchedPointConfig
-
-
-def build(config: TouchedPointConfig, bench: Bench) -> Procedure:
-    """Make the procedure that a config describes."""
-    return TouchedPoint(config, bench)
+build = TouchedPoint

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field, PositiveFloat, field_validator
 
 from runner.calibration.procedures.bench import Bench
-from runner.calibration.procedures.procedure import Outcome, Procedure
+from runner.calibration.procedures.procedure import Outcome
 from runner.calibration.procedures.touching import TouchingConfig, touching_postures
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.calibration.tool_direction import alignment_angles, identify_tool_direction
@@ -74,8 +74,4 @@ class TwoTools:
 
 
 CONFIG = TwoToolsConfig
-
-
-def build(config: TwoToolsConfig, bench: Bench) -> Procedure:
-    """Make the procedure that a config describes."""
-    return TwoTools(config, bench)
+build = TwoTools

@@ -8,7 +8,7 @@ from pydantic import Field, NonNegativeFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.calibration.procedures.bench import Bench
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.schema.model import StrictModel

@@ -8,7 +8,7 @@ from typing import cast
 from omegaconf import DictConfig, OmegaConf
 
 from runner.base.errors import ConfigError
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.data_files import take_data_file
 from runner.config.compose.hydra_config import hydra_config

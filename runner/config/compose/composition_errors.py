@@ -11,7 +11,7 @@ from omegaconf.errors import InterpolationKeyError, OmegaConfBaseException
 from runner.base.bounded_yaml import explain_yaml
 from runner.base.errors import ConfigError, nearest
 from runner.base.former_names import explain_value
-from runner.base.texts import VALUE, one_line, quoted
+from runner.base.sanitize import VALUE, one_line, quoted
 from runner.config.compose.malformed import explain_parser
 from runner.config.compose.options import group_options
 

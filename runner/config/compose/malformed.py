@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
 _OF_THE_PARSER = re.compile(

@@ -17,13 +17,13 @@ from hydra.plugins.config_source import ConfigResult, ConfigSource
 from omegaconf import DictConfig, OmegaConf
 
 from runner.base.bounded_yaml import CONFIG, YamlError, check_yaml
+from runner.base.cache import Memory
 from runner.base.engines import default_plant
 from runner.base.errors import ConfigError
 from runner.base.interpolation import check_references
 from runner.base.limits import ExcessError, read_text
-from runner.base.memory import Memory
 from runner.base.paths import check_inside, conf_dir, ships
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.config.compose.study_folder import place_in
 from runner.config.compose.user_settings import refuse_settings
 

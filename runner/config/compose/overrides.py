@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from runner.base.bounded_yaml import CONFIG
 from runner.base.errors import ConfigError
 from runner.base.interpolation import calls_function
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.config.compose.in_si import with_numbers
 from runner.config.compose.malformed import find_syntax_error
 from runner.config.compose.options import groups

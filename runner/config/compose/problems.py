@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 from typing import TypeVar, overload
 
+from runner.base.cache import Memory
 from runner.base.errors import ConfigError
-from runner.base.memory import Memory
 
 A = TypeVar("A")
 B = TypeVar("B")

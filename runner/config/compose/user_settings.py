@@ -12,7 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from runner.base.errors import ConfigError, nearest
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 KEYS = ("outputs", "hydra.sweeper.workers", "hydra.sweeper.address")
 SAYS_HOW = re.compile(r"(?:^[+~]*|[@:])(?:_global_\.)?(hydra|outputs)(?![^./@:])")

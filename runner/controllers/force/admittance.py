@@ -10,8 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.controller import Loop
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
 from runner.controllers.force.wrist import Compensation, ToolCompensation
-from runner.controllers.kinematic.approach import Approach
-from runner.controllers.kinematic.limited_motion import LimitedMotion
+from runner.controllers.kinematic.limited_motion import Approach, LimitedMotion
 from runner.controllers.operational_space.tip_task import task_start
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel

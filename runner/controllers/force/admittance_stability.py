@@ -1,6 +1,6 @@
 """Contact stability of sampled admittance control with ideal joints.
 
-With joint servos, the arm's mass and the servo stiffness also matter; see runner/plants/servo_contact.py.
+With joint servos, the arm's mass and the servo stiffness also matter; see runner/plants/servo_contact_stability.py.
 """
 
 import numpy as np

@@ -6,7 +6,6 @@ import numpy as np
 from pydantic import NonNegativeFloat
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.controllers.macro_mini.macro_mini import build as build_stages
@@ -109,22 +108,8 @@ class TipForce:
         self._base = None if frame is None else PinocchioArm(robot.model.with_tip(frame))
         self._arm = PinocchioArm(model, law.gravity_compensation)
         self._gravity, self._feedforward = robot.model.gravity, law.feedforward
-        self._task = TipTask(
-            model,
-            None,
-            law.natural_frequency,
-            law.damping_ratio,
-            law.feedforward,
-            law.max_tip_speed,
-            law.singularity_damping,
-        )
-        if not 0 < self._task.rows <= model.nq:
-            raise ConfigError(
-                [
-                    f"controller.kind: needs {self._task.rows or 1} joints or more to bring the tip anywhere; the arm "
-                    f"has {model.nq} ({', '.join(model.joint_names)})"
-                ]
-            )
+        self._task = TipTask(model, None, law, law.max_tip_speed)
+        self._task.check_joints(model)
         rides = own is None and len(robot.stages) > 1
         home = robot.home if own is None else own.home
         frequency = law.null_space_frequency

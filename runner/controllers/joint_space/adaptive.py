@@ -8,7 +8,7 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, PinocchioArm
 from runner.robots.model import RobotModel
@@ -62,7 +62,7 @@ class AdaptiveNumbers(NamedTuple):
     limits: Array
 
 
-class Adaptive(JointLaw[AdaptiveNumbers]):
+class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
     r"""Adaptive control (Slotine and Li, International Journal of Robotics Research 6(3), 1987).
 
     .. math::
@@ -85,19 +85,12 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
     1 rad/s and 2 rad/s^2 there. What none of these excites does not adapt. In a tick in which s itself would swing,
     s^T Y Gamma Y^T s > a omega_n^2 s^T D s / 4, as in motions much faster than these, all gains are as much smaller; in
     one in which a torque is beyond its limit, the s of its joint teaches nothing. V may rise in both.
-
-    Args:
-        model: The arm.
-        config: The law's numbers.
-        rest: Home: posture of the null space, of D and of the scale, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints; see JointMotion.
-
-    Raises:
-        ConfigError: if the arm has fewer joints than the task has dimensions.
     """
 
-    def __init__(self, model: RobotModel, config: AdaptiveConfig, rest: FloatArray, joints: bool = False) -> None:
-        motion = JointMotion(model, config, rest, joints)
+    def choose_numbers(
+        self, model: RobotModel, config: AdaptiveConfig, rest: FloatArray, motion: JointMotionNumbers
+    ) -> AdaptiveNumbers:
+        """Return the numbers of the law above; see JointLaw."""
         self._friction = config.friction
         theta = np.concatenate([model.inertial_parameters, np.zeros(2 * model.nq if config.friction else 0)])
         D = model.mass_matrix(rest).diagonal()
@@ -105,8 +98,9 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
         self._bounded = config.scale == "parameter"
         if self._bounded:
             gains *= config.natural_frequency**2 * self._scales(model, config.gravity_compensation, rest, D)
-        numbers = AdaptiveNumbers(
-            motion=motion.numbers,
+        self._remembers = len(gains)
+        return AdaptiveNumbers(
+            motion=motion,
             rate=config.natural_frequency,
             damping=config.natural_frequency * D,
             armature=model.armature,
@@ -115,7 +109,6 @@ class Adaptive(JointLaw[AdaptiveNumbers]):
             limits=model.effort_limits,
             swings=0.25 * config.adaptation_gain * config.natural_frequency**2,
         )
-        super().__init__(model, motion, config.gravity_compensation, numbers, remembers=len(gains))
 
     @property
     def velocity_gain(self) -> VelocityGain:

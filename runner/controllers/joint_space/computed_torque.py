@@ -7,7 +7,7 @@ from pydantic import NonNegativeFloat
 from runner.base.arrays import FloatArray
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
@@ -42,7 +42,7 @@ class ComputedTorqueNumbers(NamedTuple):
     k_i: Scalar
 
 
-class ComputedTorque(JointLaw[ComputedTorqueNumbers]):
+class ComputedTorque(JointLaw[ComputedTorqueNumbers, ComputedTorqueConfig]):
     r"""Inverse dynamics in joint space (Luh, Walker and Paul, IEEE Transactions on Automatic Control 25(3), 1980).
 
     .. math:: \tau = M (\ddot q_d + 2 \xi \omega_n (\dot q_d - \dot q) + \omega_n^2 (q_d - q) + k_i z) + V + G
@@ -51,27 +51,19 @@ class ComputedTorque(JointLaw[ComputedTorqueNumbers]):
     z of q_d - q, tick by tick, takes away what a wrong model or a constant load leaves at rest; the closed loop is
     stable for k_i < 2 xi omega_n^3, and winds up while a torque is at its limit. Without it k_i is 0. JointMotion says
     what q_d is.
-
-    Args:
-        model: The arm.
-        config: The law's numbers.
-        rest: Posture of the null space, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints.
-
-    Raises:
-        ConfigError: if the arm has fewer joints than the task has dimensions.
     """
 
-    def __init__(self, model: RobotModel, config: ComputedTorqueConfig, rest: FloatArray, joints: bool = False) -> None:
-        motion = JointMotion(model, config, rest, joints)
-        integrals = model.nq if config.integral_gain > 0.0 else 0
-        numbers = ComputedTorqueNumbers(
-            motion=motion.numbers,
+    def choose_numbers(
+        self, model: RobotModel, config: ComputedTorqueConfig, rest: FloatArray, motion: JointMotionNumbers
+    ) -> ComputedTorqueNumbers:
+        """Return the numbers of the law above; see JointLaw."""
+        self._remembers = model.nq if config.integral_gain > 0.0 else 0
+        return ComputedTorqueNumbers(
+            motion=motion,
             k_p=config.natural_frequency**2,
             k_v=2.0 * config.damping_ratio * config.natural_frequency,
             k_i=config.integral_gain,
         )
-        super().__init__(model, motion, config.gravity_compensation, numbers, integrals)
 
     @property
     def velocity_gain(self) -> VelocityGain:

@@ -2,14 +2,14 @@
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import Controller, Loop
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
 from runner.controllers.operational_space.tip_task import TaskName, task_start
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.model import RobotModel
@@ -49,22 +49,31 @@ N = TypeVar("N", bound=Any)  # a NamedTuple with the numbers of the motion, `mot
 C = TypeVar("C", bound=JointLawConfig)
 
 
-class JointLaw(TorqueLaw[N]):
+class JointLaw(TorqueLaw[N], Generic[N, C]):
     """A torque law that follows the desired joints of a JointMotion.
 
     Args:
         model: The arm.
-        motion: What it follows.
-        gravity_compensation: True if the law's nominal arm has weight.
-        numbers: The law's numbers, of which one is `motion`, the JointMotionNumbers of the motion.
-        remembers: How many numbers the law itself keeps from tick to tick; zeros at the first one.
+        config: The law's numbers.
+        rest: Home: posture of the null space, and of inertias that are taken once, shape (nq,), in rad.
+        joints: Whether the desired motion is one of the joints; see JointMotion.
+
+    Raises:
+        ConfigError: if the arm has fewer joints than the task has dimensions, or a list of the config another length.
     """
 
-    def __init__(
-        self, model: RobotModel, motion: JointMotion, gravity_compensation: bool, numbers: N, remembers: int = 0
-    ) -> None:
-        super().__init__([model], gravity_compensation, numbers)
-        self._motion, self._remembers = motion, remembers
+    def __init__(self, model: RobotModel, config: C, rest: FloatArray, joints: bool = False) -> None:
+        self._motion, self._remembers = JointMotion(model, config, rest, joints), 0
+        numbers = self.choose_numbers(model, config, rest, self._motion.numbers)
+        super().__init__([model], config.gravity_compensation, numbers)
+
+    @abstractmethod
+    def choose_numbers(self, model: RobotModel, config: C, rest: FloatArray, motion: JointMotionNumbers) -> N:
+        """Return the law's numbers, of which one is `motion`.
+
+        It sets the attributes that decide how the law goes, beside its numbers; `_remembers` is how many numbers the
+        law itself keeps from tick to tick, zeros at the first one.
+        """
 
     def start(self, q: FloatArray) -> FloatArray:
         """Return the joint motion where it starts, and what the law itself keeps; see TorqueLaw."""

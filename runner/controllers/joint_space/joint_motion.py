@@ -5,22 +5,18 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.controllers.operational_space.tip_task import TaskName, TipNumbers, TipTask, held_orientation
+from runner.controllers.operational_space.tip_task import TaskName, TipNumbers, TipTask, TipTaskConfig, held_orientation
 from runner.controllers.operational_space.whole_body_posture import PostureNumbers, PostureTask, posture_pd
 from runner.controllers.torque_law import Arm, structure_of
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
 
 
-class JointMotionConfig(Protocol):
+class JointMotionConfig(TipTaskConfig, Protocol):
     """What the config of a law in joint space says of the motion that it follows; see JointLawConfig."""
 
     task: TaskName
-    natural_frequency: float
-    damping_ratio: float
     period: float
-    feedforward: bool
-    singularity_damping: float
     null_space_frequency: float
 
 
@@ -81,15 +77,7 @@ class JointMotion:
 
     def __init__(self, model: RobotModel, config: JointMotionConfig, rest: FloatArray, joints: bool) -> None:
         self._joints, self._feedforward = joints, config.feedforward
-        self._task = TipTask(
-            model,
-            held_orientation(config.task, model, rest),
-            config.natural_frequency,
-            config.damping_ratio,
-            config.feedforward,
-            None,
-            config.singularity_damping,
-        )
+        self._task = TipTask(model, held_orientation(config.task, model, rest), config)
         posture = PostureTask(config.null_space_frequency, rest).numbers
         self.numbers = JointMotionNumbers(self._task.numbers, posture, config.period)
 

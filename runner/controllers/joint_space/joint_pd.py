@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
@@ -43,7 +43,7 @@ class JointPdNumbers(NamedTuple):
     inertia: Array
 
 
-class JointPd(JointLaw[JointPdNumbers]):
+class JointPd(JointLaw[JointPdNumbers, JointPdConfig]):
     r"""PD control with gravity (Takegaki and Arimoto, ASME Journal of Dynamic Systems 103(2), 1981).
 
     .. math:: \tau = D (\omega_n^2 (q_d - q) + 2 \xi \omega_n (\dot q_d - \dot q)) + G(q), \qquad D = \mathrm{diag} M
@@ -55,27 +55,19 @@ class JointPd(JointLaw[JointPdNumbers]):
     .. math:: \omega_n h \lambda_\max(M^{-1} D) < 1 \quad (\xi = 1)
 
     nearly, because the fastest mode is then its velocity loop: d(v)/dt = -2 omega_n lambda v, sampled.
-
-    Args:
-        model: The arm.
-        config: The law's numbers.
-        rest: Home: posture of the null space and of D, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints; see JointMotion.
-
-    Raises:
-        ConfigError: if the arm has fewer joints than the task has dimensions.
     """
 
-    def __init__(self, model: RobotModel, config: JointPdConfig, rest: FloatArray, joints: bool = False) -> None:
-        motion = JointMotion(model, config, rest, joints)
+    def choose_numbers(
+        self, model: RobotModel, config: JointPdConfig, rest: FloatArray, motion: JointMotionNumbers
+    ) -> JointPdNumbers:
+        """Return the numbers of the law above; see JointLaw."""
         self._at_home = config.inertia == "home"
-        numbers = JointPdNumbers(
-            motion=motion.numbers,
+        return JointPdNumbers(
+            motion=motion,
             k_p=config.natural_frequency**2,
             k_v=2.0 * config.damping_ratio * config.natural_frequency,
             inertia=model.mass_matrix(rest).diagonal().copy(),
         )
-        super().__init__(model, motion, config.gravity_compensation, numbers)
 
     @property
     def velocity_gain(self) -> VelocityGain:

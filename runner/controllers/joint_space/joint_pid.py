@@ -8,7 +8,7 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
@@ -51,7 +51,7 @@ class JointPidNumbers(NamedTuple):
     limits: Array
 
 
-class JointPid(JointLaw[JointPidNumbers]):
+class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
     r"""PID control with gravity (Arimoto and Miyazaki, First International Symposium of Robotics Research, 1984).
 
     .. math::
@@ -63,29 +63,22 @@ class JointPid(JointLaw[JointPidNumbers]):
     omega_n^3, stable for kappa < 2 xi (Hurwitz). At rest z takes away what a wrong gravity term, a constant load or dry
     friction leaves under PD control. By conditional integration (Astrom and Rundqwist, American Control Conference,
     1989) z_k stands still in a tick in which the joint's torque is beyond its limit and e has the torque's sign.
-
-    Args:
-        model: The arm.
-        config: The law's numbers.
-        rest: Home: posture of the null space and of D, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints; see JointMotion.
-
-    Raises:
-        ConfigError: if the arm has fewer joints than the task has dimensions.
     """
 
-    def __init__(self, model: RobotModel, config: JointPidConfig, rest: FloatArray, joints: bool = False) -> None:
-        motion = JointMotion(model, config, rest, joints)
+    def choose_numbers(
+        self, model: RobotModel, config: JointPidConfig, rest: FloatArray, motion: JointMotionNumbers
+    ) -> JointPidNumbers:
+        """Return the numbers of the law above; see JointLaw."""
         self._anti_windup = config.anti_windup
-        numbers = JointPidNumbers(
-            motion=motion.numbers,
+        self._remembers = model.nq
+        return JointPidNumbers(
+            motion=motion,
             k_p=config.natural_frequency**2,
             k_v=2.0 * config.damping_ratio * config.natural_frequency,
             k_i=config.integral_share * config.natural_frequency**3,
             inertia=model.mass_matrix(rest).diagonal().copy(),
             limits=model.effort_limits,
         )
-        super().__init__(model, motion, config.gravity_compensation, numbers, remembers=model.nq)
 
     @property
     def velocity_gain(self) -> VelocityGain:

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
@@ -47,7 +47,7 @@ class MotorPdNumbers(NamedTuple):
     compliance: Array
 
 
-class MotorPd(JointLaw[MotorPdNumbers]):
+class MotorPd(JointLaw[MotorPdNumbers, MotorPdConfig]):
     r"""PD control of motors with gravity (Tomei, IEEE Transactions on Automatic Control 36(10), 1991).
 
     .. math:: \tau = D (\omega_n^2 (\theta_d - \theta) + 2 \xi \omega_n (\dot q_d - \dot\theta)) + G(q_d), \qquad
@@ -56,28 +56,20 @@ class MotorPd(JointLaw[MotorPdNumbers]):
     with D = diag(M + B) at home. At rest the links are where they are to be, exactly, if K and G are as believed, and
     stay there wherever the arm comes from if K is above what G changes by per angle. It reads theta, no more: the
     encoders turn with the motors, and their readings are not corrected.
-
-    Args:
-        model: The arm.
-        config: The law's numbers.
-        rest: Home: posture of the null space and of D, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints; see JointMotion.
-
-    Raises:
-        ConfigError: if the arm has fewer joints than the task has dimensions, or a list another length.
     """
 
-    def __init__(self, model: RobotModel, config: MotorPdConfig, rest: FloatArray, joints: bool = False) -> None:
-        motion = JointMotion(model, config, rest, joints)
+    def choose_numbers(
+        self, model: RobotModel, config: MotorPdConfig, rest: FloatArray, motion: JointMotionNumbers
+    ) -> MotorPdNumbers:
+        """Return the numbers of the law above; see JointLaw."""
         stiffness = expand("controller.joint_stiffness", config.joint_stiffness, model.joint_names)
-        numbers = MotorPdNumbers(
-            motion=motion.numbers,
+        return MotorPdNumbers(
+            motion=motion,
             k_p=config.natural_frequency**2,
             k_v=2.0 * config.damping_ratio * config.natural_frequency,
             inertia=model.mass_matrix(rest).diagonal().copy(),
             compliance=1.0 / np.array(stiffness),
         )
-        super().__init__(model, motion, config.gravity_compensation, numbers)
 
     @property
     def velocity_gain(self) -> VelocityGain:

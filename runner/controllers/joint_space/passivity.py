@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
@@ -40,7 +40,7 @@ class PassivityNumbers(NamedTuple):
     damping: Array
 
 
-class Passivity(JointLaw[PassivityNumbers]):
+class Passivity(JointLaw[PassivityNumbers, PassivityConfig]):
     r"""Passivity-based control (Slotine and Li, International Journal of Robotics Research 6(3), 1987), not adaptive.
 
     .. math::
@@ -51,25 +51,17 @@ class Passivity(JointLaw[PassivityNumbers]):
     with lambda = omega_n and K_D = omega_n diag M(home). Under an exact model M ds/dt + (C + K_D) s = 0, so that
     s^T M s / 2 falls as -s^T K_D s: it cancels no dynamics of the arm, and is stable for any K_D > 0 in continuous
     time. At rest a wrong gravity term leaves the sag (G - G_believed) / (lambda K_D), which is that of PD control.
-
-    Args:
-        model: The arm.
-        config: The law's numbers.
-        rest: Home: posture of the null space and of K_D, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints; see JointMotion.
-
-    Raises:
-        ConfigError: if the arm has fewer joints than the task has dimensions.
     """
 
-    def __init__(self, model: RobotModel, config: PassivityConfig, rest: FloatArray, joints: bool = False) -> None:
-        motion = JointMotion(model, config, rest, joints)
-        numbers = PassivityNumbers(
-            motion=motion.numbers,
+    def choose_numbers(
+        self, model: RobotModel, config: PassivityConfig, rest: FloatArray, motion: JointMotionNumbers
+    ) -> PassivityNumbers:
+        """Return the numbers of the law above; see JointLaw."""
+        return PassivityNumbers(
+            motion=motion,
             rate=config.natural_frequency,
             damping=config.natural_frequency * model.mass_matrix(rest).diagonal(),
         )
-        super().__init__(model, motion, config.gravity_compensation, numbers)
 
     @property
     def velocity_gain(self) -> VelocityGain:

@@ -8,7 +8,7 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
+from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.joint_space.passivity import passive_dynamics
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
@@ -50,7 +50,7 @@ class SlidingModeNumbers(NamedTuple):
     switching_gain: Array
 
 
-class SlidingMode(JointLaw[SlidingModeNumbers]):
+class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
     r"""Sliding-mode control with a boundary layer (Slotine, International Journal of Control 40(2), 1984).
 
     In the form that keeps the arm's passivity (Slotine and Li, Applied Nonlinear Control, 1991, section 9.1):
@@ -65,28 +65,20 @@ class SlidingMode(JointLaw[SlidingModeNumbers]):
     s = d / (K_D + K / phi), at rest and joint by joint, as long as |d| < K + phi K_D; then |s| < phi, and as
     de/dt = s - lambda e, |e| < phi / lambda. Outside of the layer d s < K |s| brings s back. A thin layer has the
     velocity gain K / phi, which noise and the control period limit.
-
-    Args:
-        model: The arm.
-        config: The law's numbers.
-        rest: Home: posture of the null space and of D, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints; see JointMotion.
-
-    Raises:
-        ConfigError: if the arm has fewer joints than the task has dimensions.
     """
 
-    def __init__(self, model: RobotModel, config: SlidingModeConfig, rest: FloatArray, joints: bool = False) -> None:
-        motion = JointMotion(model, config, rest, joints)
+    def choose_numbers(
+        self, model: RobotModel, config: SlidingModeConfig, rest: FloatArray, motion: JointMotionNumbers
+    ) -> SlidingModeNumbers:
+        """Return the numbers of the law above; see JointLaw."""
         damping = config.natural_frequency * model.mass_matrix(rest).diagonal()
-        numbers = SlidingModeNumbers(
-            motion=motion.numbers,
+        return SlidingModeNumbers(
+            motion=motion,
             rate=config.natural_frequency,
             boundary_layer=config.boundary_layer,
             damping=damping,
             switching_gain=config.switching_gain * config.boundary_layer * damping,
         )
-        super().__init__(model, motion, config.gravity_compensation, numbers)
 
     @property
     def velocity_gain(self) -> VelocityGain:

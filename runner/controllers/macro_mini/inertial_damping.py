@@ -7,9 +7,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.controllers.macro_mini.stage_law import StageLaw, StageNumbers
-from runner.controllers.macro_mini.stage_loops import base_at_home
-from runner.controllers.sampled_stability import VelocityGain
-from runner.controllers.torque_law import Arm, TorqueLaw
+from runner.controllers.macro_mini.stage_loops import StageLoop, base_at_home
+from runner.controllers.torque_law import Arm
 from runner.robots.robot import Robot
 from runner.symbolic.maths import Array, Scalar
 
@@ -30,7 +29,7 @@ class DampingNumbers(NamedTuple):
     share: Scalar
 
 
-class InertialDamping(TorqueLaw[DampingNumbers]):
+class InertialDamping(StageLoop[DampingNumbers]):
     r"""The loop of a riding stage that takes energy out of the vibration of its base, and gives tracking up.
 
     As others damped flexible arms by small ones at their ends (Lew and Trudnowski, IEEE Control Systems 16(1), 1996,
@@ -62,11 +61,6 @@ class InertialDamping(TorqueLaw[DampingNumbers]):
             law.numbers, robot.stages[stage].home_offset, robot.model.gravity, gain / law.numbers.k_v
         )
         super().__init__([law.model, base], law.gravity_compensation, numbers, robot.model.nq)
-
-    @property
-    def velocity_gain(self) -> VelocityGain:
-        """K_v; see HasVelocityGain."""
-        return VelocityGain(0.0, self.numbers.law.k_v)
 
     def evaluate(
         self,

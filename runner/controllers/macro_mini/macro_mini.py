@@ -12,6 +12,7 @@ from runner.controllers.controller import Controller, Loop
 from runner.controllers.macro_mini.inertial_damping import InertialDamping
 from runner.controllers.macro_mini.stage_law import StageLaw
 from runner.controllers.macro_mini.stage_loops import Aim, HeldController, MacroController, MiniController
+from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.robots.robot import Robot, end_points
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import PositivePerStage, by_stage
@@ -126,15 +127,17 @@ def _law(config: MacroMiniConfig, robot: Robot, index: int) -> StageLaw:
         model = model.with_payload(sum(stage.model.mass for stage in robot.stages[index + 1 :]))
     swings = config.coupling == "inertial_damping"
     feedforward = config.feedforward if index == 0 else swings or config.mini_reference_velocity == "full"
-    return StageLaw(
-        model,
-        by_stage("controller.natural_frequency", config.natural_frequency, names)[index],
-        by_stage("controller.damping_ratio", config.damping_ratio, names)[index],
-        config.gravity_compensation,
-        feedforward,
-        config.singularity_damping,
-        robot.stages[index].home,
+    natural_frequency = by_stage("controller.natural_frequency", config.natural_frequency, names)[index]
+    law = WholeBodyLaw(
+        natural_frequency=natural_frequency,
+        damping_ratio=by_stage("controller.damping_ratio", config.damping_ratio, names)[index],
+        gravity_compensation=config.gravity_compensation,
+        feedforward=feedforward,
+        null_space_frequency=natural_frequency,
+        max_tip_speed=None,
+        singularity_damping=config.singularity_damping,
     )
+    return StageLaw(model, law, robot.stages[index].home)
 
 
 def _macro_offset(config: MacroMiniConfig, robot: Robot) -> FloatArray | None:

@@ -34,11 +34,7 @@ class StageLaw:
 
     Args:
         model: The stage's arm on a fixed base.
-        natural_frequency: omega_n in rad/s.
-        damping_ratio: xi.
-        gravity_compensation: Whether the laws hold the gravity term.
-        feedforward: Whether the tip law follows the reference's velocity and acceleration.
-        singularity_damping: As in OperationalSpace.
+        law: The numbers of both: omega_n and xi, whether they hold the gravity term, and those of the tip's law alone.
         home: Joint positions at home, shape (nq,), in rad.
 
     Attributes:
@@ -50,28 +46,11 @@ class StageLaw:
         ConfigError: if the arm has fewer than three joints.
     """
 
-    def __init__(
-        self,
-        model: RobotModel,
-        natural_frequency: float,
-        damping_ratio: float,
-        gravity_compensation: bool,
-        feedforward: bool,
-        singularity_damping: float,
-        home: FloatArray,
-    ) -> None:
-        config = WholeBodyLaw(
-            natural_frequency=natural_frequency,
-            damping_ratio=damping_ratio,
-            gravity_compensation=gravity_compensation,
-            feedforward=feedforward,
-            null_space_frequency=natural_frequency,
-            max_tip_speed=None,
-            singularity_damping=singularity_damping,
-        )
-        self.model, self.gravity_compensation = model, gravity_compensation
-        self._tip: Any = tip_law(model, config, home)  # one of two, each with numbers of its own kind
-        self.numbers = StageNumbers(self._tip.numbers, natural_frequency**2, 2.0 * damping_ratio * natural_frequency)
+    def __init__(self, model: RobotModel, law: WholeBodyLaw, home: FloatArray) -> None:
+        self.model, self.gravity_compensation = model, law.gravity_compensation
+        self._tip: Any = tip_law(model, law, home)  # one of two, each with numbers of its own kind
+        k_p, k_v = law.natural_frequency**2, 2.0 * law.damping_ratio * law.natural_frequency
+        self.numbers = StageNumbers(self._tip.numbers, k_p, k_v)
 
     def structure(self) -> dict[str, Any]:
         """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""

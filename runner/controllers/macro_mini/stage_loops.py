@@ -1,7 +1,7 @@
 """Control loops of mounted arms: control law and coupled target of each stage."""
 
 from collections.abc import Sequence
-from typing import Literal, NamedTuple, TypeVar
+from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -79,19 +79,25 @@ class HeldNumbers(NamedTuple):
     gravity: Array
 
 
-N = TypeVar("N", MacroNumbers, MiniNumbers, HeldNumbers)
+N = TypeVar("N", bound=Any)  # a NamedTuple with the numbers of the stage's law, `law`
 
 
-class _StageLoop(TorqueLaw[N]):
-    """What the loops of stages have in common."""
+class StageLoop(TorqueLaw[N]):
+    """What the loops of stages have in common; `_released` is the memory of one that holds no posture."""
+
+    _released: FloatArray = np.zeros(0)
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v; see HasVelocityGain."""
         return VelocityGain(0.0, self.numbers.law.k_v)
 
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return that no posture is held; see TorqueLaw."""
+        return self._released
 
-class MacroController(_StageLoop[MacroNumbers]):
+
+class MacroController(StageLoop[MacroNumbers]):
     """The loop of the first stage, which stands on the ground.
 
     Its target is x_d - o, where o stands for the stages that ride on it: nothing (macro_target tip_goal), their
@@ -136,10 +142,6 @@ class MacroController(_StageLoop[MacroNumbers]):
         models = [law.model, *bases[: self._bases], *tips]
         super().__init__(models, law.gravity_compensation, numbers, robot.model.nq)
 
-    def start(self, q: FloatArray) -> FloatArray:
-        """Return that no posture is held; see TorqueLaw."""
-        return self._released
-
     def evaluate(
         self,
         arms: Sequence[Arm],
@@ -171,7 +173,7 @@ class MacroController(_StageLoop[MacroNumbers]):
         )
 
 
-class MiniController(_StageLoop[MiniNumbers]):
+class MiniController(StageLoop[MiniNumbers]):
     """The loop of a stage that rides on others.
 
     Its target is the rest of the way, R^T (x_d - o - x_E), seen from its base. As for the first stage, o is the home
@@ -231,10 +233,6 @@ class MiniController(_StageLoop[MiniNumbers]):
         )
         models = [law.model, base, *(below.model for below in between)]
         super().__init__(models, law.gravity_compensation, numbers, robot.model.nq)
-
-    def start(self, q: FloatArray) -> FloatArray:
-        """Return that no posture is held; see TorqueLaw."""
-        return self._released
 
     def evaluate(
         self,
@@ -301,7 +299,7 @@ class MiniController(_StageLoop[MiniNumbers]):
         return waits if self._stretch else backend.any_of(waits, beyond)
 
 
-class HeldController(_StageLoop[HeldNumbers]):
+class HeldController(StageLoop[HeldNumbers]):
     """The loop of a riding stage whose joints are held at home.
 
     Args:

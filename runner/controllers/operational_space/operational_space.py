@@ -93,25 +93,14 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
 
     Args:
         model: The robot; only its URDF-derived constants are read.
-        natural_frequency: omega_n in rad/s; k_p = omega_n^2 (3.37).
-        damping_ratio: xi; k_v = 2 xi omega_n (3.38).
-        gravity_compensation: Whether p(x) is part of the law.
-        feedforward: Whether the desired derivatives are.
-        singularity_damping: Damping near a singular posture, as a share of the tip's error.
+        law: The law's numbers; k_p = omega_n^2 (3.37), k_v = 2 xi omega_n (3.38). It has no null space, and its tip
+            speed no limit.
 
     Raises:
         ConfigError: if the arm has another number of joints than three.
     """
 
-    def __init__(
-        self,
-        model: RobotModel,
-        natural_frequency: float,
-        damping_ratio: float,
-        gravity_compensation: bool,
-        feedforward: bool,
-        singularity_damping: float,
-    ) -> None:
+    def __init__(self, model: RobotModel, law: WholeBodyLaw) -> None:
         if model.nq != 3:
             raise ConfigError(
                 [
@@ -119,13 +108,13 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
                     f"the arm has {model.nq} ({', '.join(model.joint_names)})"
                 ]
             )
-        k_p, k_v = natural_frequency**2, 2.0 * damping_ratio * natural_frequency
-        weights = np.array([k_p, k_v, 1.0]) if feedforward else np.array([k_p, 0.0, 0.0])
-        self._damped = singularity_damping > 0.0
+        k_p, k_v = law.natural_frequency**2, 2.0 * law.damping_ratio * law.natural_frequency
+        weights = np.array([k_p, k_v, 1.0]) if law.feedforward else np.array([k_p, 0.0, 0.0])
+        self._damped = law.singularity_damping > 0.0
         numbers = OperationalSpaceNumbers(
-            weights, np.full(3, k_p), np.full(3, k_v), singularity_damping**2, 0.1 * model.reach
+            weights, np.full(3, k_p), np.full(3, k_v), law.singularity_damping**2, 0.1 * model.reach
         )
-        super().__init__([model], gravity_compensation, numbers)
+        super().__init__([model], law.gravity_compensation, numbers)
 
     @property
     def velocity_gain(self) -> VelocityGain:
@@ -193,14 +182,7 @@ def tip_law(
         ConfigError: if the arm has fewer joints than the tip has directions to go.
     """
     if model.nq == 3 == len(task_basis(model, pose=False)) and orientation is None:
-        return OperationalSpace(
-            model,
-            numbers.natural_frequency,
-            numbers.damping_ratio,
-            numbers.gravity_compensation,
-            numbers.feedforward,
-            numbers.singularity_damping,
-        )
+        return OperationalSpace(model, numbers)
     return WholeBody(model, numbers, home, first_held=0, orientation=orientation)
 
 

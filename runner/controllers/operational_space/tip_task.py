@@ -1,6 +1,6 @@
 """Tip task of operational-space control: commanded acceleration for a position or a pose."""
 
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 
@@ -14,6 +14,15 @@ from runner.robots.task_space import task_basis
 from runner.symbolic.maths import Array, Backend, Scalar
 
 TaskName = Literal["position", "pose"]
+
+
+class TipTaskConfig(Protocol):
+    """What the config of a law says of the motion of the tip."""
+
+    natural_frequency: float
+    damping_ratio: float
+    feedforward: bool
+    singularity_damping: float
 
 
 class TipNumbers(NamedTuple):
@@ -65,22 +74,17 @@ class TipTask:
     Args:
         model: The arm.
         orientation: R_0 in the base frame, shape (3, 3); None leads the position alone.
-        natural_frequency: omega_n in rad/s; k_p = omega_n^2 (3.37).
-        damping_ratio: xi; k_v = 2 xi omega_n (3.38).
-        feedforward: Whether the desired derivatives are part of F*.
+        law: omega_n, with k_p = omega_n^2 (3.37); xi, with k_v = 2 xi omega_n (3.38); whether the desired derivatives
+            are part of F*; and the share of the tip's error by which inverses are damped near a singular posture.
         max_speed: V in m/s; None is no limit.
-        singularity_damping: Share of the tip's error by which inverses are damped near a singular posture.
     """
 
     def __init__(
         self,
         model: RobotModel,
         orientation: FloatArray | None,
-        natural_frequency: float,
-        damping_ratio: float,
-        feedforward: bool,
-        max_speed: float | None,
-        singularity_damping: float,
+        law: TipTaskConfig,
+        max_speed: float | None = None,
     ) -> None:
         directions = task_basis(model, orientation is not None)
         self.rows = len(directions)
@@ -88,8 +92,9 @@ class TipTask:
         moves = int(np.count_nonzero(directions[:, :3].any(axis=1)))  # the other rows turn
         self._moves, self._turns = moves, orientation is not None
         self._whole = self.rows == directions.shape[1]
-        self._feedforward, self._bounded, self._damped = feedforward, max_speed is not None, singularity_damping > 0.0
-        k_p, k_v = natural_frequency**2, 2.0 * damping_ratio * natural_frequency
+        self._feedforward, self._bounded = law.feedforward, max_speed is not None
+        self._damped = law.singularity_damping > 0.0
+        k_p, k_v = law.natural_frequency**2, 2.0 * law.damping_ratio * law.natural_frequency
         # A turn counts as the way that it moves a point a reach away, so that all rows are lengths.
         lengths = np.array(moves * [1.0] + (self.rows - moves) * [model.reach])
         self.numbers = TipNumbers(
@@ -98,10 +103,24 @@ class TipTask:
             directions=directions,
             orientation=np.eye(3) if orientation is None else orientation,
             max_acceleration=k_v * max_speed if max_speed is not None else 0.0,
-            damping=singularity_damping**2,
+            damping=law.singularity_damping**2,
             singular_below=(0.1 * model.reach) ** 2,
             lengths=lengths,
         )
+
+    def check_joints(self, model: RobotModel) -> None:
+        """Check that an arm has enough joints for the task.
+
+        Raises:
+            ConfigError: if it has fewer than the tip has directions to go.
+        """
+        if not 0 < self.rows <= model.nq:
+            raise ConfigError(
+                [
+                    f"controller.kind: needs {self.rows or 1} joints or more to bring the tip anywhere; the arm "
+                    f"has {model.nq} ({', '.join(model.joint_names)})"
+                ]
+            )
 
     def jacobian(self, numbers: TipNumbers, tip: Tip) -> tuple[Array, Array]:
         """Return the task's Jacobian J in the base frame, shape (rows, nq), and dJ/dt dq, shape (rows,)."""

@@ -6,7 +6,6 @@ from typing import Literal, NamedTuple
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError
 from runner.controllers.controller import Loop
 from runner.controllers.operational_space.tip_task import TipNumbers, TipTask
 from runner.controllers.operational_space.whole_body_posture import JointStiffness, Posture, PostureNumbers, PostureTask
@@ -93,22 +92,8 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         first_held: int | None = None,
         orientation: FloatArray | None = None,
     ) -> None:
-        self._task = TipTask(
-            model,
-            orientation,
-            config.natural_frequency,
-            config.damping_ratio,
-            config.feedforward,
-            config.max_tip_speed,
-            config.singularity_damping,
-        )
-        if not 0 < self._task.rows <= model.nq:
-            raise ConfigError(
-                [
-                    f"controller.kind: needs {self._task.rows or 1} joints or more to bring the tip anywhere; the arm "
-                    f"has {model.nq} ({', '.join(model.joint_names)})"
-                ]
-            )
+        self._task = TipTask(model, orientation, config, config.max_tip_speed)
+        self._task.check_joints(model)
         frequency = config.null_space_frequency
         first_held = self._task.rows if first_held is None else first_held
         self._posture: Posture = (

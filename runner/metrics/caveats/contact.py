@@ -14,7 +14,7 @@ def _radius(setting: Setting) -> float | None:
         return round(setting.touch, _DIGITS)
     if setting.contact is None:
         return None
-    from runner.plants.servo_contact import (
+    from runner.plants.servo_contact_stability import (
         contact_radius,  # the store knows rules, and is imported without rigid bodies
     )
 

@@ -21,8 +21,7 @@ def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
     counts where no force moves the arm.
     """
     from runner.config.flexible_joints import find_flexibility
-    from runner.plants.decoupled import TorquePlantConfig
-    from runner.plants.motion import friction_by_joint
+    from runner.plants.decoupled import TorquePlantConfig, friction_by_joint
     from runner.robots.joint_dynamics import by_value
 
     arm, plant = config.arm, config.plant

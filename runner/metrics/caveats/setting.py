@@ -15,7 +15,7 @@ if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigi
     from runner.config.run import RunConfig
     from runner.controllers.sampled_stability import VelocityLoop
     from runner.metrics.caveats.time_constants import TimeConstant
-    from runner.plants.servo_contact import ServoContact
+    from runner.plants.servo_contact_stability import ServoContact
     from runner.robots.mismatch import MismatchConfig
     from runner.robots.model import RobotModel
     from runner.sensing import EncoderNoise

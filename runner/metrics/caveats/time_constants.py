@@ -26,7 +26,7 @@ from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.controllers.operational_space.operational_space import OperationalSpaceConfig
 from runner.controllers.operational_space.whole_body import WholeBodyConfig
 from runner.controllers.torque_law import PinocchioArm
-from runner.robots.effective_mass import mass_along, tip_mobility
+from runner.robots.task_space import mass_along, tip_mobility
 from runner.schema.per_stage import by_stage
 from runner.trajectories.trajectory import joint_reference
 

@@ -16,8 +16,8 @@ from runner.environments.wall import WallConfig
 from runner.plants import PLANTS
 from runner.plants.kinds import HasServo
 from runner.plants.servo import ServoLaw
-from runner.plants.servo_contact import ServoContact
-from runner.robots.effective_mass import mass_along, tip_mobility
+from runner.plants.servo_contact_stability import ServoContact
+from runner.robots.task_space import mass_along, tip_mobility
 
 
 def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:

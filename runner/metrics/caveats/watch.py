@@ -9,7 +9,7 @@ from operator import attrgetter
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.memory import Memory
+from runner.base.cache import Memory
 from runner.config.caveats import CaveatsConfig
 from runner.metrics.caveats import plant_error
 from runner.metrics.caveats.caveat import Caveat, Found

@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.plugins.guard.faults import ask, checked, find_fault, told_of_part
 from runner.plugins.guard.read_only import read_only
 

@@ -8,8 +8,7 @@ from runner.audit.verdict import Judged
 from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
-from runner.base.expressions.shortening import holds, shorten_expression
-from runner.base.expressions.tree import Name, Node, Sum, size
+from runner.base.expressions.tree import Name, Node, Sum, holds, shorten_expression, size
 from runner.base.expressions.typesetting import linear, typeset
 from runner.reporting.audit.marks import LONG, cut, marked_formulas, pieces
 from runner.reporting.equation import EquationForm, Matrix

@@ -4,7 +4,7 @@ import difflib
 import re
 from collections.abc import Iterator, Sequence
 
-from runner.base.expressions.shortening import ELLIPSIS
+from runner.base.expressions.tree import ELLIPSIS
 
 _CALL = re.compile(r"(mat|vec|cases)\((.*)\)", re.DOTALL)
 _SEPARATORS = (",", ";")

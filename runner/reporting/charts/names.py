@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from matplotlib.axis import Axis
 from matplotlib.text import Text
 
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting.charts.sheet import Sheet
 
 _LONGEST = 28  # letters, beyond which a name is cut

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting.charts import palette
 from runner.reporting.charts.axes import Mark, at_2_and_5, in_readable_units, marks
 from runner.reporting.charts.figure import Curves, Panel, Series, shares_legend, upright

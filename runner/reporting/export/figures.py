@@ -11,7 +11,7 @@ from pathlib import Path
 import typst
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.texts import table_cell
+from runner.base.sanitize import table_cell
 from runner.reporting.charts import map_stills, stills
 from runner.reporting.charts.axes import in_readable_units, map_in_readable_units
 from runner.reporting.charts.figure import Panel, Series

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterable
 
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting.export.columns import BEYOND, MISSING, Cell, Column, Unit
 from runner.reporting.export.paper_table import Label, PaperTable
 

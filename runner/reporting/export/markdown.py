@@ -3,7 +3,7 @@
 import re
 
 from runner.base.quantities import SUPERSCRIPT, unit_text
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting.export.columns import Cell, Column, Unit
 from runner.reporting.export.paper_table import Label, PaperTable
 

@@ -4,7 +4,7 @@ import io
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from runner.base.texts import table_cell
+from runner.base.sanitize import table_cell
 from runner.reporting.export.pooling import failed_cells, pool
 from runner.sweeps.measurements import Measurements
 from runner.sweeps.table import metric_columns, with_units

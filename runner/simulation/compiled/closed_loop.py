@@ -9,12 +9,11 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.plants.compiled_motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
-from runner.plants.motion import Motion
+from runner.plants.decoupled import Motion
 from runner.simulation.compiled.commands import Commands, CommandScalars, expressed_commands
 from runner.symbolic.arm import NoConstantFolding
-from runner.symbolic.code import ACTING
+from runner.symbolic.code import ACTING, Slots
 from runner.symbolic.expression import places
-from runner.symbolic.places import Slots
 from runner.symbolic.program import LANES, Expressed, Frame, Program, program
 from runner.symbolic.structure import Values
 

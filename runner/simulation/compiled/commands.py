@@ -17,11 +17,10 @@ from runner.sensing import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
 from runner.simulation.compiled.law import LawScalars, expressed_torque, law_cache_key, law_scalars
 from runner.simulation.compiled.maths import SymbolicBackend
-from runner.symbolic.code import GIVEN, ROWS, STATE, Block
+from runner.symbolic.code import GIVEN, ROWS, STATE, Block, Slots
 from runner.symbolic.end_points import PointScalars, expressed_points, point_scalars
 from runner.symbolic.expression import Value, both, equal, less, round_to_even, select
 from runner.symbolic.maths import Array
-from runner.symbolic.places import Slots
 from runner.symbolic.structure import any_number
 from runner.symbolic.vectors import as_array
 

@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.config.timing import Timing
 from runner.controllers.controller import Loop
 from runner.controllers.torque_law import TorqueLaw
-from runner.plants.motion import Motion
+from runner.plants.decoupled import Motion
 from runner.plugins.guard.controller import WatchedController
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.simulation.compiled.closed_loop import LoopProgram
 from runner.symbolic.arm import NoConstantFolding
-from runner.symbolic.code import GIVEN, PARS, ROWS, STATE
-from runner.symbolic.places import Slots
+from runner.symbolic.code import GIVEN, PARS, ROWS, STATE, Slots
 from runner.symbolic.program import LANES, Expressed, Frame, program
 from runner.symbolic.tangent import with_tangents
 

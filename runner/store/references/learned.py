@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from runner.base.bounded_yaml import Bounds, YamlError, read_yaml
 from runner.base.errors import StoreError
 from runner.base.limits import Limit, read_text
-from runner.base.texts import escaped
+from runner.base.sanitize import escaped
 from runner.config.compose.messages import describe
 from runner.schema.model import StrictModel
 from runner.store import Run, Sweep

@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.force.force_stability import force_loop_limit
 from runner.reporting.document import Series
 from runner.reporting.figures import columns, joint_columns, model_of
-from runner.robots.effective_mass import mass_along, tip_mobility
+from runner.robots.task_space import mass_along, tip_mobility
 from runner.store import Run
 from runner.study.prose.patterns import found
 from runner.study.run_values import clock, delay_of

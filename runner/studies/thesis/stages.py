@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.force.force_stability import force_loop_limit
 from runner.reporting.document import Series
 from runner.reporting.figures import model_of
-from runner.robots.effective_mass import tip_mobility
+from runner.robots.task_space import tip_mobility
 from runner.store import Run
 from runner.studies.thesis.force import rise_time
 from runner.study.run_values import median

@@ -1,6 +1,6 @@
 """Memory of checked parts: one call for equal arguments, and no part is shared that differs."""
 
-from runner.base.memory import Memory
+from runner.base.cache import Memory
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.environments.interaction import Interaction
+from runner.environments.external_wrench import Interaction
 from runner.plugins.guard import WatchedEnvironment
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor

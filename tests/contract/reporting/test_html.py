@@ -12,7 +12,7 @@ from typing import get_args
 import pytest
 from support.sample_document import HOSTILE, curves, document, playback
 
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting import html, outline
 from runner.reporting.document import Block, Claim, ClaimResult, Document, Origin, Section, Text, Verdicts
 from runner.reporting.markup import spans

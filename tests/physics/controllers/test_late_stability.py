@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from runner.controllers.force.force_stability import force_loop_radius
-from runner.controllers.force.late_stability import delay_limit, miss_limit, miss_radius, pattern_limit
+from runner.controllers.force.force_stability import (
+    delay_limit,
+    force_loop_radius,
+    miss_limit,
+    miss_radius,
+    pattern_limit,
+)
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_sensors

@@ -18,10 +18,10 @@ TARGETS = {"coupling": COUPLINGS, "macro_target": ("minus_home", "tip_goal"), "w
 class Spy:
     """In a stage's law's place: keeps what it is told."""
 
-    def __init__(self, model, natural_frequency, damping_ratio, gravity_compensation, feedforward, *rest):
-        self.model, self.feedforward = model, feedforward
-        self.numbers = (natural_frequency, damping_ratio, gravity_compensation)
-        self.gravity_compensation = gravity_compensation
+    def __init__(self, model, law, home):
+        self.model, self.feedforward = model, law.feedforward
+        self.numbers = (law.natural_frequency, law.damping_ratio, law.gravity_compensation)
+        self.gravity_compensation = law.gravity_compensation
         self.gravity, self.told = None, []
 
     def move(self, arm, numbers, q, dq, reference, gravity=None):

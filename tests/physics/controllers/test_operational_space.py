@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brentq
-from support.arms import model_of, urdf_of
+from support.arms import model_of, tip_numbers, urdf_of
 from support.physics import (
     assert_agree,
     assert_linear_design,
@@ -27,7 +27,7 @@ STRETCHED, FOLDED, ON_AXIS = [0.3, 0.4, -np.pi / 2], [0.3, 0.4, np.pi / 2], [0.3
 
 def law(name="macro", natural_frequency=None, damping_ratio=1.0, gravity=True, feedforward=True, damping=0.0):
     frequency = 30.0 / SCALE[name] if natural_frequency is None else natural_frequency
-    return OperationalSpace(MODELS[name], frequency, damping_ratio, gravity, feedforward, damping)
+    return OperationalSpace(MODELS[name], tip_numbers(frequency, damping_ratio, gravity, feedforward, damping))
 
 
 def tip_reference(model, q, error):
@@ -78,7 +78,7 @@ def test_without_gravity_compensation_exactly_the_gravity_term_is_missing(state)
 
 def test_leaving_out_gravity_leaves_the_model_of_others_alone(macro):
     before = macro.gravity_torque(np.zeros(3))
-    OperationalSpace(macro, 30.0, 1.0, False, True, 0.0)
+    OperationalSpace(macro, tip_numbers(30.0, 1.0, False, True, 0.0))
     np.testing.assert_array_equal(macro.gravity_torque(np.zeros(3)), before)
     assert before[1] == pytest.approx(19.62)
 
@@ -226,7 +226,7 @@ def test_another_number_of_joints_is_refused():
     )
     model = RobotModel(f'<robot name="four">{links}{joints}</robot>', "l4")
     with pytest.raises(ConfigError, match=r"3 joints; the arm has 4 \(j0, j1, j2, j3\)"):
-        OperationalSpace(model, 30.0, 1.0, True, True, 0.0)
+        OperationalSpace(model, tip_numbers(30.0, 1.0, True, True, 0.0))
 
 
 def test_build_passes_every_value_on(one_stage):

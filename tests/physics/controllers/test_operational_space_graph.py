@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.arms import tip_numbers
 from support.covers import SWITCH, covered, every_case
 from support.graph_layout import assert_loop_closed, check_structure, check_texts, check_ways
 
@@ -43,7 +44,7 @@ def evaluate(graph, model, q, dq, reference, k_p, k_v, limit):
 def test_the_graph_is_the_law_that_is_executed(macro):
     for flags in every_case(OPTIONS):
         controller = OperationalSpace(
-            macro, 30.0, 0.8, flags["gravity_compensation"], flags["feedforward"], singularity_damping=0.0
+            macro, tip_numbers(30.0, 0.8, flags["gravity_compensation"], flags["feedforward"], 0.0)
         )
         graph, generator = operational_space_graph(**flags), np.random.default_rng(0)
         for _ in range(20):

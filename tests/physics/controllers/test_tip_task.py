@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from support import strangers
-from support.arms import checked
+from support.arms import checked, tip_numbers
 from support.strangers import X, Y, Z
 
 from runner.base.errors import ConfigError
@@ -17,15 +17,8 @@ ROBOT = checked("robot=xarm7", "controller=operational_space").arm
 XARM7, HOME = ROBOT.model, ROBOT.home
 
 
-def task(orientation=None, **changes):
-    values = {
-        "natural_frequency": 20.0,
-        "damping_ratio": 0.7,
-        "feedforward": True,
-        "max_speed": None,
-        "singularity_damping": 0.3,
-    } | changes
-    return TipTask(XARM7, orientation, **values)
+def task(orientation=None, feedforward=True, max_speed=None, singularity_damping=0.3):
+    return TipTask(XARM7, orientation, tip_numbers(20.0, 0.7, True, feedforward, singularity_damping), max_speed)
 
 
 def jacobian(ours, q, dq, model=XARM7):
@@ -131,7 +124,7 @@ def test_a_task_of_more_dimensions_than_joints_is_refused(name, axes, problem):
 def test_a_planar_arm_of_two_joints_has_a_task_of_two_dimensions():
     model = chain((X, X))
     assert held_orientation("position", model, np.zeros(2)) is None
-    task = TipTask(model, None, 10.0, 1.0, True, None, 0.0)
+    task = TipTask(model, None, tip_numbers(10.0, 1.0, True, True, 0.0))
     q, dq = np.array([0.4, 0.7]), np.array([1.0, -2.0])
     J, dJ_dq = jacobian(task, q, dq, model)
     np.testing.assert_allclose(J, model.tip_jacobian(q)[1:3], atol=1e-15)  # y and z: the arm turns about x

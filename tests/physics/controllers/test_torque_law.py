@@ -1,6 +1,7 @@
 """Torque laws: values that an arm hands to a law and numbers that a law keeps."""
 
 import numpy as np
+from support.arms import tip_numbers
 
 from runner.controllers.macro_mini.stage_law import StageLaw
 from runner.controllers.operational_space.operational_space import OperationalSpace
@@ -41,7 +42,8 @@ def test_an_arm_without_weight_has_none_whatever_is_given(macro):
 
 def test_a_law_within_a_law_is_described_by_its_kind_and_what_it_keeps(macro):
     first, other, undamped = (
-        StageLaw(macro, *numbers, home=np.zeros(3)) for numbers in (NUMBERS, (20.0, *NUMBERS[1:]), (*NUMBERS[:4], 0.0))
+        StageLaw(macro, tip_numbers(*numbers), np.zeros(3))
+        for numbers in (NUMBERS, (20.0, *NUMBERS[1:]), (*NUMBERS[:4], 0.0))
     )
     kind = f"{OperationalSpace.__module__}.OperationalSpace"
     assert structure_of(first) == {"_tip": (kind, {"_damped": True})}

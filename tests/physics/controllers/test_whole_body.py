@@ -5,7 +5,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from support import strangers
-from support.arms import checked, model_of
+from support.arms import checked, model_of, tip_numbers
 from support.physics import assert_agree, assert_passive, critically_damped, linear_design, torque_of
 
 from runner.base.errors import ConfigError
@@ -143,7 +143,7 @@ def test_with_three_joints_it_is_operational_space_control(name):
     scale = 1.0 if name == "macro" else 0.1
     generator, compared = np.random.default_rng(6), 0
     ours = WholeBody(model, config(natural_frequency=30.0 / scale), np.zeros(3))
-    theirs = OperationalSpace(model, 30.0 / scale, 0.8, True, True, 0.0)
+    theirs = OperationalSpace(model, tip_numbers(30.0 / scale, 0.8, True, True, 0.0))
     while compared < 30:
         q, dq = generator.uniform(-3.0, 3.0, 3), generator.uniform(-3.0, 3.0, 3) / scale
         if np.linalg.svd(model.tip_jacobian(q)[:3], compute_uv=False)[-1] < 0.3 * scale:

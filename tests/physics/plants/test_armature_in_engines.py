@@ -5,7 +5,7 @@ import pytest
 from support.arms import checked, model_of, urdf_of
 
 from runner.base.errors import ConfigError
-from runner.plants.armature import LinksTorque
+from runner.plants.bullet import LinksTorque
 from runner.plants.mujoco import Mujoco
 from runner.plants.rk4 import Rk4
 from runner.simulation.assembly import assemble

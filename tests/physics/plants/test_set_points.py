@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.plants.set_points import SetPoints
+from runner.plants.servo import SetPoints
 
 
 @pytest.fixture

@@ -5,9 +5,8 @@ import pinocchio as pin
 import pytest
 from support.arms import checked
 
-from runner.robots.beams import Beam, stiffen_robot
 from runner.robots.cantilever import cantilever, cantilever_roots, clamped_arm, frequency_errors
-from runner.robots.chain import cut
+from runner.robots.chain import Beam, cut, stiffen_robot
 from runner.robots.modes import find_modes
 
 EI, LENGTH = 70.0, 1.5  # N m^2, m

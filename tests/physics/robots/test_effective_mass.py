@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from runner.robots.effective_mass import mass_along, tip_mobility
+from runner.robots.task_space import mass_along, tip_mobility
 
 ARMS = ["combined", "macro_mini_mini"]
 # A folded Mini has its masses on its first axis; a rotor keeps that joint's inertia from being none.

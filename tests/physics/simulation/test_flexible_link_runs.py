@@ -11,8 +11,8 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.plants import PLANTS
 from runner.robots.armature import with_armature
-from runner.robots.beams import stiffen_robot
 from runner.robots.cantilever import cantilever_roots
+from runner.robots.chain import stiffen_robot
 from runner.robots.modes import Mode
 from runner.simulation.assembly import assemble
 from runner.store import simulated_part

@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from support import strangers
+from support.arms import tip_numbers
 
 from runner.base.errors import ConfigError
 from runner.controllers.macro_mini.macro_mini import later_home_offset
@@ -23,7 +24,7 @@ from runner.simulation.assembly import assemble, metric_context
 CHAINS = ["macro_mini_mini", "xarm7_mini"]
 PLANTS = ["default", "rk4"]
 XARM7_HOME = np.array([0.0, 0.75, 0.0, 1.5, 0.0, 0.75, 0.0])
-NUMBERS = (30.0, 1.0, True, True, 0.3)
+NUMBERS = tip_numbers(30.0, 1.0, True, True, 0.3)
 
 
 @pytest.fixture(scope="module")
@@ -269,7 +270,7 @@ def move(law, q, dq, reference, gravity=None):
 
 
 def test_three_joints_keep_their_law_to_the_bit(macro):
-    law, tip = StageLaw(macro, *NUMBERS, home=np.zeros(3)), OperationalSpace(macro, *NUMBERS)
+    law, tip = StageLaw(macro, NUMBERS, np.zeros(3)), OperationalSpace(macro, NUMBERS)
     rng = np.random.default_rng(0)
     for _ in range(3):
         q, dq, reference = rng.normal(size=3), rng.normal(size=3), rng.normal(size=(3, 3))
@@ -277,7 +278,7 @@ def test_three_joints_keep_their_law_to_the_bit(macro):
 
 
 def test_seven_joints_hold_posture_and_tip(xarm7):
-    law = StageLaw(xarm7, *NUMBERS, home=XARM7_HOME)
+    law = StageLaw(xarm7, NUMBERS, XARM7_HOME)
     reference = np.zeros((3, 3))
     reference[0] = xarm7.tip_position(XARM7_HOME)
     pushed = XARM7_HOME + np.array([0.1, -0.05, 0.1, 0.05, -0.2, 0.1, 0.3])
@@ -287,7 +288,7 @@ def test_seven_joints_hold_posture_and_tip(xarm7):
 
 
 def test_at_another_tip_position_the_posture_stays_close_to_home(xarm7):
-    law = StageLaw(xarm7, *NUMBERS, home=XARM7_HOME)
+    law = StageLaw(xarm7, NUMBERS, XARM7_HOME)
     reference = np.zeros((3, 3))
     reference[0] = xarm7.tip_position(XARM7_HOME) + np.array([-0.1, 0.1, 0.1])
     q, dq = settle(xarm7, lambda q, dq: move(law, q, dq, reference), XARM7_HOME)
@@ -302,7 +303,7 @@ def test_at_another_tip_position_the_posture_stays_close_to_home(xarm7):
 
 def test_the_posture_is_the_null_space_s_alone(xarm7):
     """At rest at the goal, wherever the posture, the tip is not pushed."""
-    law = StageLaw(xarm7, *NUMBERS, home=XARM7_HOME)
+    law = StageLaw(xarm7, NUMBERS, XARM7_HOME)
     q = XARM7_HOME + 0.2
     reference = np.zeros((3, 3))
     reference[0] = xarm7.tip_position(q)
@@ -312,7 +313,7 @@ def test_the_posture_is_the_null_space_s_alone(xarm7):
 
 
 def test_seven_joints_take_another_gravity(xarm7):
-    law = StageLaw(xarm7, *NUMBERS, home=XARM7_HOME)
+    law = StageLaw(xarm7, NUMBERS, XARM7_HOME)
     reference, still = np.zeros((3, 3)), np.zeros(7)
     reference[0] = xarm7.tip_position(XARM7_HOME)
     np.testing.assert_allclose(move(law, XARM7_HOME, still, reference), xarm7.gravity_torque(XARM7_HOME), atol=1e-9)
@@ -325,7 +326,7 @@ def test_seven_joints_take_another_gravity(xarm7):
 
 
 def test_without_gravity_compensation_no_gravity_is_taken(xarm7):
-    law = StageLaw(xarm7, 30.0, 1.0, False, True, 0.3, home=XARM7_HOME)
+    law = StageLaw(xarm7, tip_numbers(30.0, 1.0, False, True, 0.3), XARM7_HOME)
     reference, still = np.zeros((3, 3)), np.zeros(7)
     reference[0] = xarm7.tip_position(XARM7_HOME)
     tau = move(law, XARM7_HOME, still, reference, np.array([1.0, 2.0, 3.0]))
@@ -336,7 +337,7 @@ def test_two_joints_are_too_few():
     two = strangers.chain("two", [("revolute", strangers.X), ("revolute", strangers.Y)])
     model = RobotModel(two, "tip")
     with pytest.raises(ConfigError, match=r"needs 3 joints or more to .*; the arm has 2 \(q1, q2\)"):
-        StageLaw(model, *NUMBERS, home=np.zeros(2))
+        StageLaw(model, NUMBERS, np.zeros(2))
 
 
 def test_the_joints_whose_posture_is_held_are_chosen(xarm7, checked_config):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.controllers.torque_law import TorqueLaw
-from runner.plants.motion import ArmMotion, Motion
+from runner.plants.decoupled import ArmMotion, Motion
 from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
 from runner.sensing import EncoderNoise

@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from runner.symbolic.code import GIVEN, ROWS, Block
+from runner.symbolic.code import GIVEN, ROWS, Block, Slots
 from runner.symbolic.elementary import angle_of, sine_cosine
-from runner.symbolic.places import Slots
 from runner.symbolic.program import Expressed, program
 
 

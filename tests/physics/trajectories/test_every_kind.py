@@ -7,7 +7,7 @@ from scipy.optimize import minimize_scalar
 from runner.config.compose.compose import compose
 from runner.config.compose.options import group_options
 from runner.trajectories import TRAJECTORIES
-from runner.trajectories.shifted import Shifted
+from runner.trajectories.shaped import Shifted
 
 START = np.array([0.3, -0.2, 0.4])
 CONFIGS = {

@@ -2,8 +2,7 @@
 
 from runner.base.expressions.difference import difference
 from runner.base.expressions.parser import parse
-from runner.base.expressions.shortening import ELLIPSIS, holds, shorten_expression
-from runner.base.expressions.tree import size, symbols
+from runner.base.expressions.tree import ELLIPSIS, holds, shorten_expression, size, symbols
 
 LONG = "a*b*c*d*e*f*g + l4*cos(q1)*(c1*c2*c3 + s1*s2*s3 + c4*s4) - h*i*j*k*l*m*n + o*p"
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.base.texts import plain
+from runner.base.sanitize import plain
 from runner.reporting.markup import Span, spans
 
 

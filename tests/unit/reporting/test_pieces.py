@@ -1,6 +1,6 @@
 """Texts of equations compared piece by piece, and cut to what differs."""
 
-from runner.base.expressions.shortening import ELLIPSIS
+from runner.base.expressions.tree import ELLIPSIS
 from runner.reporting.audit.marks import LONG, cut, pieces
 
 

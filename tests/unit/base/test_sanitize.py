@@ -5,7 +5,7 @@ import io
 
 import pytest
 
-from runner.base.texts import LINE, VALUE, escaped, lines, one_line, quoted, table_cell
+from runner.base.sanitize import LINE, VALUE, escaped, lines, one_line, quoted, table_cell
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from runner.controllers.force.admittance_stability import spectral_radius
 from runner.metrics.caveats import Watch, setting_of
 from runner.metrics.caveats.touch import servo_contact
 from runner.plants.servo import ServoLaw
-from runner.plants.servo_contact import contact_map, contact_radius, stiffest_servo_wall
+from runner.plants.servo_contact_stability import contact_map, contact_radius, stiffest_servo_wall
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor

@@ -7,8 +7,7 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.plants.friction import friction_of
-from runner.plants.load import push
-from runner.plants.plant import Plant
+from runner.plants.plant import Plant, push
 from runner.robots.model import RobotModel
 
 

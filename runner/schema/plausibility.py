@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 
 LARGEST = 1e12
 """Largest magnitude of a number, in SI units: that of a stiff material's modulus."""

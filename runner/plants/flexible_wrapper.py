@@ -5,10 +5,10 @@ from collections.abc import Callable
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.plants.decoupled import friction_by_joint
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
-from runner.plants.motion import friction_by_joint
-from runner.plants.motor_friction import MotorFriction
+from runner.plants.motors import MotorFriction
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

@@ -5,8 +5,8 @@ import pytest
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
 from runner.plants.friction import TellsFriction
-from runner.plants.load import push
-from runner.plants.motor_friction import MotorFriction
+from runner.plants.motors import MotorFriction
+from runner.plants.plant import push
 from runner.robots import RobotModel
 
 ONE_JOINT = """<robot name="one"><link name="base"/><link name="arm"><inertial><mass value="1"/><origin xyz="0 0 0"/>

@@ -5,7 +5,7 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
-from runner.base.texts import quoted
+from runner.base.sanitize import quoted
 from runner.environments import PushesLinks
 from runner.sensing.wrench import cross_matrix
 

@@ -5,7 +5,7 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.environments import Environment, LoadsJoints, PushesLinks
-from runner.environments.pushed_links import LinkForces
+from runner.environments.link_forces import LinkForces
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.wrench import cross, wrench_transform
