@@ -16,7 +16,7 @@ TEST = re.compile(r"`(tests/[\w/]+\.py)::(test_\w+)`")
 
 READING = {
     "read_text", "read_bytes", "fromstring", "XMLParser", "ParquetFile", "from_file", "from_string", "loadURDF",
-    "buildModelFromXML", "load_study", "Client", "read_csv", "read_parquet", "from_xml_path", "from_xml_string",
+    "buildModelFromXML", "optuna.load_study", "Client", "read_csv", "read_parquet", "from_xml_path", "from_xml_string",
     "yaml.load", "yaml.safe_load", "yaml.parse", "json.load", "json.loads", "pickle.load", "pickle.loads", "np.load",
     "OmegaConf.load", "ast.parse", "csv.reader", "ET.parse", "importlib.import_module", "os.environ", "os.getenv",
     "deserialize_cdr", "sys.argv", "subprocess.run", "subprocess.Popen",
