@@ -8,7 +8,7 @@ from runner.base.texts import one_line
 from runner.cli.columns import align_columns
 
 if TYPE_CHECKING:
-    from runner.statistics.share import Share
+    from runner.statistics.proportion import Share
     from runner.statistics.spec import Kept
     from runner.store import Run
 

@@ -22,7 +22,7 @@ from runner.config.limits import check_memory
 from runner.config.noise import NoiseConfig
 from runner.config.notch import check_notch
 from runner.config.payload import check_payload, check_schedule
-from runner.config.plugged import exact_encoders
+from runner.config.plugin_groups import exact_encoders
 from runner.config.reach import check_path, check_points
 from runner.config.repeats import check_repeats
 from runner.config.run import RunConfig

@@ -11,7 +11,7 @@ from runner.reporting.metric_titles import title
 from runner.statistics.spec.history import History, ends_of, set_after
 
 if TYPE_CHECKING:
-    from runner.statistics.share import Share
+    from runner.statistics.proportion import Share
     from runner.statistics.spec import Spec
 
 HEADER = ("bound", "kept", "probability of failing", "95 % interval")

@@ -29,7 +29,7 @@ from runner.robots.robot import Robot
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
 from runner.simulation.compiled.compile import compile_commands, compile_program, describe_program, find_commands
-from runner.simulation.walls import add_wall, touches_by_tip
+from runner.simulation.contact_setup import add_wall, touches_by_tip
 from runner.trajectories.joint_motion import TipOfJoints
 
 _MISMATCH = 2**32 - 1  # in the seeds of nominal models; the loops' places count from 0

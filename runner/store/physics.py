@@ -28,7 +28,7 @@ _TABLE = """
     config: arms calibration computation=config.computation disturbance_observer=config.disturbance_observer
         endpoint_sensor feasibility flexible_joints=config.flexible_joints flexible_links=config.flexible_links
         force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
-        plugged reach repeats robot=config.robot run settings start timing torque_limits validation
+        plugin_groups=plugged reach repeats robot=config.robot run settings start timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer graph kinds=controllers.kinds notch=controllers.notch
         notch_config sampled_stability torque_law
@@ -60,8 +60,8 @@ _TABLE = """
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds streams velocity wrench
     simulation: acting assembly batch batch_blocks batch_jobs closed_loop=loop.closed_loop command compiled_loop
-        contact=loop.contact drive endpoint=loop.endpoint failures joint_torques loop=simulation recorder sensors
-        walls
+        contact=loop.contact contact_setup=walls drive endpoint=loop.endpoint failures joint_torques loop=simulation
+        recorder sensors
     simulation/compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
     sweeps: calibration_job execution job
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths

@@ -80,9 +80,9 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out, and takes home elsewhere.
     """
     from runner.controllers.sampled_stability import velocity_loop
-    from runner.metrics.caveats.file import left_out_of
+    from runner.metrics.caveats.contact_stability import force_contact, servo_contact
+    from runner.metrics.caveats.mjcf import left_out_of
     from runner.metrics.caveats.time_constants import slowest_part
-    from runner.metrics.caveats.touch import force_contact, servo_contact
     from runner.plants.kinds import IsFallback
 
     model = config.arm.model

@@ -12,7 +12,7 @@ from runner.config.spec import Bound
 from runner.statistics.spec.history import History
 
 if TYPE_CHECKING:
-    from runner.statistics.share import Share
+    from runner.statistics.proportion import Share
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ def read_spec(record: Mapping[str, Any]) -> Spec:
 
 
 def _count(kept: NDArray[np.bool_]) -> "Share":
-    from runner.statistics.share import count_share  # SciPy, a second, which runs without bounds do without
+    from runner.statistics.proportion import count_share  # SciPy, a second, which runs without bounds do without
 
     return count_share(int(np.count_nonzero(kept)), kept.size)
 
@@ -131,6 +131,6 @@ def _record(share: "Share | None") -> dict[str, float | None]:
 
 
 def _share(stored: Mapping[str, Any]) -> "Share | None":
-    from runner.statistics.share import Share
+    from runner.statistics.proportion import Share
 
     return None if stored["kept"] is None else Share(*(stored[key] for key in ("kept", "of", "low", "high")))

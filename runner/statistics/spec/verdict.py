@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from runner.statistics.share import Share
+    from runner.statistics.proportion import Share
 
 
 @dataclass(frozen=True)
@@ -36,6 +36,6 @@ def judge_share(share: "Share", at_most: float | None) -> Verdict:
         return Verdict("kept")
     if failing.low > at_most:
         return Verdict("broken")
-    from runner.statistics.share import needed_repetitions
+    from runner.statistics.proportion import needed_repetitions
 
     return Verdict("untold", needed_repetitions(failing, at_most))

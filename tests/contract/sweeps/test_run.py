@@ -20,8 +20,8 @@ from runner.simulation.command import Command
 from runner.simulation.compiled.closed_loop import CommandsRun
 from runner.sweeps import lock, work
 from runner.sweeps.deadline import TimeLimitError
+from runner.sweeps.estimate import Estimate
 from runner.sweeps.grid import plan_sweep
-from runner.sweeps.pace import Estimate
 from runner.sweeps.rules import one_in
 from runner.sweeps.run import Engine
 from runner.symbolic.engine import evaluator

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.statistics.share import count_share
+from runner.statistics.proportion import count_share
 from runner.statistics.spec.verdict import Verdict, judge_share
 
 

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.sweeps import pace
+from runner.sweeps import estimate as pace
 from runner.sweeps.deadline import TimeLimitError
-from runner.sweeps.pace import Pace, estimate
+from runner.sweeps.estimate import Pace, estimate
 from runner.sweeps.status import read_pace
 
 TICKS, RUNS = 200, 30

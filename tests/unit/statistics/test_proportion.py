@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import binom
 from support.share_coverage import coverage
 
-from runner.statistics.share import count_share, needed_repetitions, share_ends
+from runner.statistics.proportion import count_share, needed_repetitions, share_ends
 
 ALPHA = 0.05
 

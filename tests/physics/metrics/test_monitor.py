@@ -13,7 +13,7 @@ from support.engines import ASKED
 from runner.base.trace import Traces
 from runner.config.caveats import CaveatsConfig
 from runner.metrics.caveats import Signals, Watch, changes_since, look_together, registry, setting_of, signals_of
-from runner.metrics.caveats.today import our_thresholds
+from runner.metrics.caveats.versions import our_thresholds
 from runner.store import run_hash
 
 ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini", "meca500", "meca500_r4")

@@ -3,7 +3,7 @@
 from runner.store import Finished, Outcome
 from runner.store.names import Names
 from runner.store.shards import ShardRun, write_shard
-from runner.sweeps.ends import Ends
+from runner.sweeps.outcomes import Ends
 
 NAMES = Names.of(["b" * 24, "a" * 24, "b" * 24, "c" * 24])
 

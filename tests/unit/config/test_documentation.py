@@ -1,6 +1,6 @@
 """Meanings of keys against the docstrings of their models."""
 
-from runner.config.compose.meanings import meanings
+from runner.config.compose.documentation import meanings
 from runner.config.noise import NoiseConfig
 
 

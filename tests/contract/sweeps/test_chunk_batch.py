@@ -6,8 +6,8 @@ import pytest
 from runner import store
 from runner.simulation import batch
 from runner.sweeps import work
+from runner.sweeps.explicit import Item, Listed
 from runner.sweeps.grid import plan_sweep
-from runner.sweeps.listed import Item, Listed
 from runner.sweeps.loading import Loader
 from runner.sweeps.plan import check
 from runner.sweeps.queue import Queue
@@ -92,7 +92,7 @@ def test_runs_that_cannot_be_stored_together_are_made_one_by_one(tmp_path, batch
     def fall_over(*_):
         raise ValueError("a metric is infinite")
 
-    monkeypatch.setattr("runner.sweeps.together.record_texts", fall_over)
+    monkeypatch.setattr("runner.sweeps.batch.record_texts", fall_over)
     chunk = whole_chunk(plan_sweep([*SHORT, "seed=range(0,5)", "sweep.trace=never", f"outputs={tmp_path}"]))
     report = work.work(chunk)
     assert batches[0] == 5

@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.sweeps.listed import Item, Listed
+from runner.sweeps.explicit import Item, Listed
 from runner.sweeps.loading import Loader
 from runner.sweeps.plan import check
 

@@ -10,7 +10,7 @@ from runner.store.writing import make_record
 from runner.sweeps.rules import Rules
 
 
-class Shelf:
+class ResultWriter:
     """Takes runs; while the next ones are simulated, the one before is written, as the disk takes its time.
 
     Args:

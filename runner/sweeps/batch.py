@@ -17,12 +17,12 @@ from runner.store.shards import ShardRow
 from runner.store.writing import record_texts
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.rules import Rules
-from runner.sweeps.shelf import Shelf, without_trace
+from runner.sweeps.writer import ResultWriter, without_trace
 
 Named = tuple[str, Simulated]
 
 
-def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -> tuple[set[str], bool]:
+def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, writer: ResultWriter) -> tuple[set[str], bool]:
     """Simulate those of some runs that can be simulated together; return which are made, and whether one failed.
 
     Runs of so many repetitions that their records do not list them are left to be made one by one, block after block.
@@ -33,7 +33,7 @@ def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -
     Args:
         jobs: Name and checked config of each.
         rules: How they are made and kept; the limit of a run's time holds for those that end together.
-        shelf: Takes what is made.
+        writer: Takes what is made.
 
     Raises:
         StoreError: if the disk does not take it.
@@ -54,10 +54,10 @@ def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, shelf: Shelf) -
             kept = [(n, run) for n, run in named if run.failure is not None or rules.keeps_trace(n, False)]
             names = {name for name, _ in kept}
             rows = list(_rows([(name, run) for name, run in named if name not in names], texts, batcher))
-            shelf.put_rows(rows)
+            writer.put_rows(rows)
             made.update(row.outcome.name for row in rows)
             for name, run in kept:
-                failed = shelf.put(name, without_trace(name, run.result(), rules)) or failed
+                failed = writer.put(name, without_trace(name, run.result(), rules)) or failed
                 made.add(name)
     except StoreError:
         raise

@@ -4,7 +4,7 @@ import pytest
 from support.pages import ROOT
 from support.share_coverage import coverage
 
-from runner.statistics.share import count_share
+from runner.statistics.proportion import count_share
 
 TEXT = (ROOT / "docs" / "how_sure.md").read_text(encoding="utf-8")
 
