@@ -7,7 +7,7 @@ from pydantic import Field
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.metrics.caveats.default_plant import DEFAULT_PLANT
+from runner.metrics.caveats.plant_error import DEFAULT_PLANT
 from runner.metrics.caveats.registry import KEYS
 from runner.schema.model import StrictModel
 from runner.study.expected_caveats import ExpectedCaveat

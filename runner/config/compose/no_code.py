@@ -24,8 +24,8 @@ from runner.base.limits import ExcessError, read_text
 from runner.base.memory import Memory
 from runner.base.paths import check_inside, conf_dir, ships
 from runner.base.texts import quoted
+from runner.config.compose.options import place_in
 from runner.config.compose.user_settings import refuse_settings
-from runner.config.compose.work_folder import place_in
 
 _SWEEPER = (
     ("address", str, "that of a Dask scheduler, as tcp://127.0.0.1:8786"),

@@ -1,10 +1,9 @@
 """Caveats: rules that check a finished run for misleading results."""
 
-from runner.metrics.caveats.caveat import Caveat, Found
 from runner.metrics.caveats.monitor import Watch, look_together
 from runner.metrics.caveats.plant_error import PlantStep
-from runner.metrics.caveats.setting import Setting, setting_of
-from runner.metrics.caveats.signals import Signals, signals_of
+from runner.metrics.caveats.rule import Caveat, Found
+from runner.metrics.caveats.setting import Setting, Signals, setting_of, signals_of
 from runner.metrics.caveats.versions import changes_since
 
 __all__ = [

@@ -20,7 +20,7 @@ def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
     Damping, friction and armature that the file gives a joint count where the joint has none of it in the run; nothing
     counts where no force moves the arm.
     """
-    from runner.config.flexible_joints import find_flexibility
+    from runner.config.flexibility import find_flexibility
     from runner.plants.decoupled import TorquePlantConfig
     from runner.plants.motion import friction_by_joint
     from runner.robots.joint_dynamics import by_value

@@ -12,12 +12,10 @@ from runner.base.arrays import FloatArray
 from runner.base.memory import Memory
 from runner.config.caveats import CaveatsConfig
 from runner.metrics.caveats import plant_error
-from runner.metrics.caveats.caveat import Caveat, Found
 from runner.metrics.caveats.plant_error import PlantStep, caveat_of
 from runner.metrics.caveats.registry import KEYS, SETTING_RULES, TRACE_RULES, rules_digest
-from runner.metrics.caveats.rule import TraceRule
-from runner.metrics.caveats.setting import Setting
-from runner.metrics.caveats.signals import Signals
+from runner.metrics.caveats.rule import Caveat, Found, TraceRule
+from runner.metrics.caveats.setting import Setting, Signals
 from runner.metrics.plant_error import PlantError
 
 _KEYS = {name: KEYS[name] for name in CaveatsConfig.model_fields}

@@ -8,8 +8,7 @@ import numpy as np
 from runner.base.errors import RunnerError, nearest
 from runner.reporting.comparison.pairs import CellPairs, Cells, compare
 from runner.statistics import Comparison
-from runner.sweeps.measurements import Axis, Measurements
-from runner.sweeps.metric_names import check_metrics
+from runner.sweeps.measurements import Axis, Measurements, check_metrics
 
 SEED = "seed"
 """The axis whose levels are draws of one thing, as repetitions are."""

@@ -11,9 +11,8 @@ from runner.base.quantities import label_with_unit, number, quantity
 from runner.config.compose.key_units import key_unit
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.tuning.key import Key
-from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.study import Tuning
-from runner.sweeps.tuning.trial import Trial, best
 
 
 @dataclass(frozen=True)

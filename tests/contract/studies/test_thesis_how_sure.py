@@ -16,7 +16,7 @@ from runner.studies.thesis import how_sure
 from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
 from runner.study.findings import Finding
 from runner.study.work import load_work
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 CLAIMS = load_claims("thesis")
 SEEDS, OWN = 400, 40

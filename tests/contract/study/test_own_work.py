@@ -14,7 +14,7 @@ from runner.study.check import problems
 from runner.study.names import find_work, work_names
 from runner.study.new import write_new
 from runner.study.work import load_work
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
 RUNS = """\

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.robots.model import RobotModel
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 from runner.sweeps.resolved import DISTANCE, Resolver
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.simulation.acting import CommandTiming, constant_delay
+from runner.simulation.recorder import CommandTiming, constant_delay
 
 COMMANDS = 10.0 * np.arange(4)[:, None] + np.arange(3)  # tick k, joint j: 10 k + j
 JOINTS = [slice(0, 1), slice(1, 2), slice(2, 3)]

@@ -17,9 +17,9 @@ OTHERS = {
     "study", "sweeps/batch.py", "sweeps/block.py", "sweeps/closed_nodes.py", "sweeps/deadline.py",
     "sweeps/differing.py", "sweeps/engine.py", "sweeps/estimate.py", "sweeps/explicit.py", "sweeps/finer_step.py",
     "sweeps/gathering.py", "sweeps/grid.py", "sweeps/loading.py", "sweeps/lock.py", "sweeps/measurements.py",
-    "sweeps/metric_names.py", "sweeps/outcomes.py", "sweeps/plan.py", "sweeps/queue.py", "sweeps/resolved.py",
-    "sweeps/rules.py", "sweeps/run.py", "sweeps/shard_columns.py", "sweeps/status.py", "sweeps/swept.py",
-    "sweeps/table.py", "sweeps/template.py", "sweeps/tuning", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
+    "sweeps/outcomes.py", "sweeps/plan.py", "sweeps/queue.py", "sweeps/resolved.py", "sweeps/rules.py", "sweeps/run.py",
+    "sweeps/shard_columns.py", "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py",
+    "sweeps/tuning", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
 }  # fmt: skip
 TREE = {
     "laws/__init__.py": 'from runner.laws.pd import Law\nKINDS = {"pd": "runner.laws.pd"}\n',

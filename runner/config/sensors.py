@@ -1,10 +1,11 @@
-"""Position sensor of the tip: checks and sampling ticks."""
+"""Checks of sensors: position sensor of the tip, and joint torque sensors that a force controller reads."""
 
 from collections.abc import Mapping
 
 from runner.base.errors import ConfigError, nearest
 from runner.config.run import RunConfig
 from runner.controllers import Loop
+from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.sensing.endpoint import EndpointTicks
 
 
@@ -54,3 +55,19 @@ def _refused(config: RunConfig, loop: Loop) -> list[str]:
             "plant.wrist_rotation=real"
         )
     return problems
+
+
+def check_reading(config: RunConfig) -> None:
+    """Check that joints have torque sensors where a law reads the force from them.
+
+    Raises:
+        ConfigError: where they have none.
+    """
+    law = config.controller
+    if isinstance(law, HybridForceConfig) and law.force_source == "joint_torque" and config.joint_torques is None:
+        raise ConfigError(
+            [
+                "controller.force_source: joint_torque needs torque sensors in the joints, and "
+                "joint_torque_sensor.noise is null; take joint_torque_sensor=ideal, or controller.force_source=wrist"
+            ]
+        )
