@@ -98,7 +98,7 @@ def test_a_file_that_changes_while_the_run_is_made_leaves_nothing_to_keep(cli, c
         (mine / "robot" / "arm.yaml").write_text(f"{CONFIG}\n")
         return make(config)
 
-    monkeypatch.setattr(execution, "find_or_make", changing)
+    monkeypatch.setattr(job, "find_or_make", changing)
     cli(*OWN)
     (mine / "robot" / "arm.yaml").write_text(CONFIG)
     cli(*OWN)
