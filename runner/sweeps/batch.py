@@ -16,8 +16,7 @@ from runner.store.provenance import command, job_provenance
 from runner.store.shards import ShardRow
 from runner.store.writing import record_texts
 from runner.sweeps.deadline import TimeLimitError, deadline
-from runner.sweeps.rules import Rules
-from runner.sweeps.writer import ResultWriter, without_trace
+from runner.sweeps.writer import ResultWriter, Rules, without_trace
 
 Named = tuple[str, Simulated]
 

@@ -7,8 +7,8 @@ from runner.config.compose.compose import Composed
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.options import groups
 from runner.config.compose.overrides import force
-from runner.sweeps.block import Block
 from runner.sweeps.loading import Loader
+from runner.sweeps.plan import Block
 from runner.sweeps.swept import SweptKey, parse_sweep
 from runner.sweeps.template import Template
 

@@ -25,12 +25,11 @@ from runner.store.provenance import job_provenance
 from runner.store.shards import ShardRun, find_shards, outcome, read_outcomes, write_shard
 from runner.store.writing import cut_short_record
 from runner.sweeps.batch import make_together
-from runner.sweeps.block import Part
 from runner.sweeps.calibration_job import CALIBRATION, carry_out
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.job import simulate_job
-from runner.sweeps.rules import Rules
-from runner.sweeps.writer import ResultWriter, without_trace, write_failure, write_log
+from runner.sweeps.plan import Part
+from runner.sweeps.writer import ResultWriter, Rules, without_trace, write_failure, write_log
 
 Made = TypeVar("Made")
 

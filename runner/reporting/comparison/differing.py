@@ -6,7 +6,7 @@ from runner.reporting.comparison.beyond import Value
 from runner.reporting.comparison.sweeps import SweepComparison
 from runner.reporting.document import Block, Table
 from runner.reporting.markup import literals
-from runner.sweeps.resolved import UNITS
+from runner.sweeps.differing import UNITS
 
 _MOST_ROWS, _LONGEST = 40, 60
 

@@ -8,7 +8,7 @@ from runner.reporting.document import Block, Notice, Origin, Section, Table, Tex
 from runner.reporting.markup import literal, literals
 from runner.reporting.sweep.subject import Subject, axis_label, value_names
 from runner.statistics import SMALLEST_SAMPLE
-from runner.sweeps.resolved import UNITS
+from runner.sweeps.differing import UNITS
 
 _MOST_VALUES = 12
 _MOST_ROWS, _MOST_PLACES, _LONGEST = 16, 6, 60  # of the table of what also differs, and characters of a value

@@ -16,7 +16,7 @@ from runner.study.making import make_all
 from runner.study.measured import Measured
 from runner.study.work import load_work
 from runner.sweeps import work as workers
-from runner.sweeps.lock import at_work
+from runner.sweeps.status import at_work
 
 FILES = {
     "work.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md, two.md]\n",

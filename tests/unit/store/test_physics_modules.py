@@ -14,12 +14,11 @@ OTHERS = {
     "config/compose", "config/limits.py", "config/preset.py", "config/spec.py", "config/sweep.py", "doctor",
     "metrics/caveats", "plants/servo_contact.py", "plugins/discovery.py", "plugins/folder_code.py", "recordings",
     "reporting", "schema/magnitudes.py", "schema/model.py", "schema/units.py", "statistics", "store", "studies",
-    "study", "sweeps/batch.py", "sweeps/block.py", "sweeps/closed_nodes.py", "sweeps/deadline.py",
-    "sweeps/differing.py", "sweeps/engine.py", "sweeps/estimate.py", "sweeps/explicit.py", "sweeps/finer_step.py",
-    "sweeps/gathering.py", "sweeps/grid.py", "sweeps/loading.py", "sweeps/lock.py", "sweeps/measurements.py",
-    "sweeps/outcomes.py", "sweeps/plan.py", "sweeps/queue.py", "sweeps/resolved.py", "sweeps/rules.py", "sweeps/run.py",
-    "sweeps/shard_columns.py", "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py",
-    "sweeps/tuning", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
+    "study", "sweeps/batch.py", "sweeps/closed_nodes.py", "sweeps/deadline.py", "sweeps/differing.py",
+    "sweeps/engine.py", "sweeps/estimate.py", "sweeps/explicit.py", "sweeps/finer_step.py", "sweeps/gathering.py",
+    "sweeps/grid.py", "sweeps/loading.py", "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/plan.py",
+    "sweeps/queue.py", "sweeps/run.py", "sweeps/shard_columns.py", "sweeps/status.py", "sweeps/swept.py",
+    "sweeps/table.py", "sweeps/template.py", "sweeps/tuning", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
 }  # fmt: skip
 TREE = {
     "laws/__init__.py": 'from runner.laws.pd import Law\nKINDS = {"pd": "runner.laws.pd"}\n',
