@@ -22,7 +22,7 @@ from runner.calibration.procedures import CALIBRATIONS
 from runner.cli.main import COMMANDS
 from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
-from runner.config.compose.meanings import meanings, nested_model
+from runner.config.compose.documentation import meanings, nested_model
 from runner.config.compose.options import group_options
 from runner.config.input_shaper import InputShaperConfig
 from runner.config.noise import NoiseConfig

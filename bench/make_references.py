@@ -19,7 +19,7 @@ from tqdm import tqdm
 from runner.base.environment_variables import quiet_environment
 from runner.config.compose.options import group_options
 from runner.store import Run, open_run
-from runner.store.references.shipped import reference_path
+from runner.store.references.reference import reference_path
 
 SEEDS = range(5)
 MARGIN = 0.02

@@ -37,11 +37,11 @@ def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (),
         RunnerError: for a config that cannot be run (a ConfigError, which lists all its problems), or a folder that
             cannot be written.
     """
-    from runner.sweeps import execution
+    from runner.sweeps import job
 
     use_plugins(plugins)
     texts = run_overrides(overrides, values)
-    return Run(execution.run(*texts, config_dirs=config_folders(config_dirs)))
+    return Run(job.run(*texts, config_dirs=config_folders(config_dirs)))
 
 
 @public

@@ -62,7 +62,7 @@ class Tuning:
         return Run(store.Finished(self.folder.parent.parent).open(self.stored.trials[best[0]].run))
 
     def _best(self) -> list[int]:
-        from runner.sweeps.tuning.trial import best
+        from runner.sweeps.tuning.objective import best
 
         return best(self.stored.trials, self.stored.study.objectives)
 

@@ -8,7 +8,7 @@ from runner.base.sanitize import one_line
 from runner.cli.columns import align_columns
 
 if TYPE_CHECKING:
-    from runner.statistics.share import Share
+    from runner.statistics.proportion import Share
     from runner.statistics.spec import Kept
     from runner.store import Run
 
@@ -56,7 +56,7 @@ def _rows(run: "Run", at_most: float | None) -> Iterator[list[str]]:
 
 
 def _judged(one: "Kept", row: Sequence[str], at_most: float | None) -> list[str]:
-    from runner.statistics.spec.verdict import judge_share
+    from runner.statistics.spec.kept import judge_share
 
     assert one.share is not None  # noqa: S101 - `_rows` refuses runs that lack a metric
     verdict = judge_share(one.share, at_most)

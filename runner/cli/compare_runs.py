@@ -26,7 +26,7 @@ def print_runs(runs: "Sequence[Run]", metrics: Sequence[str]) -> None:
     Raises:
         RunnerError: If no run has one of these metrics.
     """
-    from runner.sweeps.metric_names import check_metrics
+    from runner.sweeps.measurements import check_metrics
 
     check_metrics(metrics, dict.fromkeys(name for run in runs for name in run.metrics))
     first = runs[0]

@@ -109,7 +109,7 @@ def _printed(claim: "PublishedClaim") -> str:
 
 
 def _list_baselines(_: Sequence[Path]) -> dict[str, str]:
-    from runner.store.references.shipped import described_references
+    from runner.store.references.reference import described_references
 
     return described_references()
 

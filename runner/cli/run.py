@@ -75,7 +75,7 @@ class _Task:
             overrides: The overrides as `force` leaves them.
             own: Config folders of the user.
         """
-        from runner.sweeps.execution import find_or_make  # after the config has composed: bad input is answered at once
+        from runner.sweeps.job import find_or_make  # after the config has composed: bad input is answered at once
 
         sources = [each.provider for each in node.runtime.config_sources]
         typed = [override.removeprefix("++") for override in overrides]

@@ -77,8 +77,8 @@ def main(arguments: Sequence[str]) -> int:
 
 def _tell(tuning: "Tuning") -> int:
     from runner.reporting.answers import CHOSEN
+    from runner.sweeps.tuning.objective import best
     from runner.sweeps.tuning.study import at_ends
-    from runner.sweeps.tuning.trial import best
 
     trials, objectives = tuning.trials, tuning.study.objectives
     failed = sum(bool(trial.failure) for trial in trials)

@@ -1,155 +1,79 @@
 """Config of the caveats: the threshold of each rule."""
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
-from pydantic import Field, NonNegativeFloat, PositiveFloat
+from pydantic import Field, NonNegativeFloat, PositiveFloat, create_model
 
 from runner.schema.model import StrictModel
 
-Share = Annotated[float, Field(ge=0.0, le=1.0)]
+_Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+# Key, type and meaning of the threshold of each rule.
+_THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
+    "saturation": ("share", _Share, "Share of the ticks that a joint may be at its torque limit."),
+    "chatter": (
+        "share",
+        _Share,
+        "Share of its loop's ticks at which a joint's torque may jump from one limit to the opposite one.",
+    ),
+    "did_not_follow": ("share", PositiveFloat, "Share of the size of its motion that the tip's error may reach."),
+    "joint_limits": ("excess", NonNegativeFloat, "How far a joint may be beyond a position limit, in rad."),
+    "exact_velocity": (
+        "noise",
+        NonNegativeFloat,
+        "Noise or resolution that measured positions may have while measured velocities are exact, in rad.",
+    ),
+    "fixed_mismatch": (
+        "error",
+        NonNegativeFloat,
+        "Largest relative error of the model that may be the same in every repetition.",
+    ),
+    "overload": ("share", PositiveFloat, "Share of the rated payload that tool and payload may weigh."),
+    "no_effort_limit": (
+        "payload",
+        NonNegativeFloat,
+        "Payload that an arm may carry though a joint of it has no torque limit, in kg.",
+    ),
+    "unstable_gains": (
+        "share",
+        PositiveFloat,
+        "Share of what keeps a velocity loop stable at its period that its gain may take.",
+    ),
+    "unstable_contact": (
+        "radius",
+        PositiveFloat,
+        "How many times a small motion in contact with a wall may grow in each period of the controller.",
+    ),
+    "short_horizon": (
+        "share",
+        PositiveFloat,
+        "Share of the run that three time constants of the law's slowest part may take.",
+    ),
+    "default_plant": ("replaced", _Share, "0 tells of it, 1 does not."),
+    "robot_file": ("left_out", NonNegativeFloat, "How many things that would change the motion may be left out."),
+    "plant_error": (
+        "share",
+        _Share,
+        "Share of a metric that the plant's step may be worth; 1 silences the rule.",
+    ),
+}
 
 
-class SaturationThreshold(StrictModel):
-    """Threshold of the rule on joints at their torque limit.
-
-    Attributes:
-        share: Share of the ticks that a joint may be at its torque limit.
-    """
-
-    share: Share
+def _make_threshold(rule: str) -> Any:
+    """Return the field of a rule: a group of one key."""
+    key, kind, meaning = _THRESHOLDS[rule]
+    fields: dict[str, Any] = {key: (kind, ...)}
+    doc = f"Threshold of the rule {rule}.\n\nAttributes:\n    {key}: {meaning}\n"
+    return create_model(f"{rule}_threshold", __base__=StrictModel, __doc__=doc, **fields), ...
 
 
-class ChatterThreshold(StrictModel):
-    """Threshold of the rule on torques that jump between their limits.
-
-    Attributes:
-        share: Share of its loop's ticks at which a joint's torque may jump from one limit to the opposite one.
-    """
-
-    share: Share
+_Thresholds: Any = create_model(
+    "_Thresholds", __base__=StrictModel, **{rule: _make_threshold(rule) for rule in _THRESHOLDS}
+)
 
 
-class FollowThreshold(StrictModel):
-    """Threshold of the rule on arms that did not follow.
-
-    Attributes:
-        share: Share of the size of its motion that the tip's error may reach.
-    """
-
-    share: PositiveFloat
-
-
-class JointLimitsThreshold(StrictModel):
-    """Threshold of the rule on joints beyond their position limits.
-
-    Attributes:
-        excess: How far a joint may be beyond a position limit, in rad.
-    """
-
-    excess: NonNegativeFloat
-
-
-class ExactVelocityThreshold(StrictModel):
-    """Threshold of the rule on exact velocities beside noisy positions.
-
-    Attributes:
-        noise: Noise or resolution that measured positions may have while measured velocities are exact, in rad.
-    """
-
-    noise: NonNegativeFloat
-
-
-class FixedMismatchThreshold(StrictModel):
-    """Threshold of the rule on repetitions that vary noise alone.
-
-    Attributes:
-        error: Largest relative error of the model that may be the same in every repetition.
-    """
-
-    error: NonNegativeFloat
-
-
-class OverloadThreshold(StrictModel):
-    """Threshold of the rule on payloads beyond the rating.
-
-    Attributes:
-        share: Share of the rated payload that tool and payload may weigh.
-    """
-
-    share: PositiveFloat
-
-
-class NoEffortLimitThreshold(StrictModel):
-    """Threshold of the rule on arms that lift anything.
-
-    Attributes:
-        payload: Payload that an arm may carry though a joint of it has no torque limit, in kg.
-    """
-
-    payload: NonNegativeFloat
-
-
-class UnstableGainsThreshold(StrictModel):
-    """Threshold of the rule on gains that the control period does not bear.
-
-    Attributes:
-        share: Share of what keeps a velocity loop stable at its period that its gain may take.
-    """
-
-    share: PositiveFloat
-
-
-class UnstableContactThreshold(StrictModel):
-    """Threshold of the rule on contact behind joint servos.
-
-    Attributes:
-        radius: How many times a small motion in contact with a wall may grow in each period of the controller.
-    """
-
-    radius: PositiveFloat
-
-
-class ShortHorizonThreshold(StrictModel):
-    """Threshold of the rule on runs that end before their law has done its work.
-
-    Attributes:
-        share: Share of the run that three time constants of the law's slowest part may take.
-    """
-
-    share: PositiveFloat
-
-
-class DefaultPlantThreshold(StrictModel):
-    """Threshold of the rule on a plant that stands in for the default one.
-
-    Attributes:
-        replaced: 0 tells of it, 1 does not.
-    """
-
-    replaced: Share
-
-
-class RobotFileThreshold(StrictModel):
-    """Threshold of the rule on what is not taken from the file of a robot.
-
-    Attributes:
-        left_out: How many things that would change the motion may be left out.
-    """
-
-    left_out: NonNegativeFloat
-
-
-class PlantErrorThreshold(StrictModel):
-    """Threshold of the rule on the plant's own error.
-
-    Attributes:
-        share: Share of a metric that the plant's step may be worth; 1 silences the rule.
-    """
-
-    share: Share
-
-
-class CaveatsConfig(StrictModel):
+class CaveatsConfig(_Thresholds):  # type: ignore[misc] # the table has its fields
     """When a run tells that its result may mislead; a rule each, which is sprung by what is above its threshold.
 
     Attributes:
@@ -168,18 +92,3 @@ class CaveatsConfig(StrictModel):
         robot_file: What is not taken from the robot's file.
         plant_error: What the plant's step is worth, of a run that was held against Runge-Kutta.
     """
-
-    saturation: SaturationThreshold
-    chatter: ChatterThreshold
-    did_not_follow: FollowThreshold
-    joint_limits: JointLimitsThreshold
-    exact_velocity: ExactVelocityThreshold
-    fixed_mismatch: FixedMismatchThreshold
-    overload: OverloadThreshold
-    no_effort_limit: NoEffortLimitThreshold
-    unstable_gains: UnstableGainsThreshold
-    unstable_contact: UnstableContactThreshold
-    short_horizon: ShortHorizonThreshold
-    default_plant: DefaultPlantThreshold
-    robot_file: RobotFileThreshold
-    plant_error: PlantErrorThreshold

@@ -11,7 +11,7 @@ from runner.config.input_shaper import InputShaperConfig
 from runner.config.limits import LimitsConfig
 from runner.config.noise import NoiseConfig
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
-from runner.config.plugged import GroupReader
+from runner.config.plugin_groups import GroupReader
 from runner.config.preset import PresetConfig
 from runner.config.robot import OneArmConfig, RobotConfig
 from runner.config.settings import RunSettings

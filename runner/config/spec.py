@@ -8,7 +8,7 @@ from pydantic import field_validator, model_validator
 
 from runner.base.errors import nearest
 from runner.base.sanitize import quoted
-from runner.config.compose.meanings import Units
+from runner.config.compose.documentation import Units
 from runner.plugins.metric_units import unit_of, units
 from runner.schema.model import StrictModel
 

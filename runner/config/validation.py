@@ -11,22 +11,17 @@ from runner.base.sanitize import few
 from runner.config.arms import build_loaded, build_robot
 from runner.config.compose.problems import Problems, require
 from runner.config.computation import check_computation, computation_of, count_late
-from runner.config.disturbance_observer import check_observer
-from runner.config.endpoint_sensor import endpoint_ticks
-from runner.config.flexible_joints import check_flexible_joints
-from runner.config.flexible_links import check_flexible_links
-from runner.config.force_reading import check_reading
+from runner.config.controller_wrappers import check_notch, check_observer
+from runner.config.desired_motion import check_path, check_points, check_repeats, start_posture
+from runner.config.flexibility import check_flexible_joints, check_flexible_links
 from runner.config.groups import Groups, read_groups
 from runner.config.input_shaper import shape
 from runner.config.limits import check_memory
 from runner.config.noise import NoiseConfig
-from runner.config.notch import check_notch
 from runner.config.payload import check_payload, check_schedule
-from runner.config.plugged import exact_encoders
-from runner.config.reach import check_path, check_points
-from runner.config.repeats import check_repeats
+from runner.config.plugin_groups import exact_encoders
 from runner.config.run import RunConfig
-from runner.config.start import start_posture
+from runner.config.sensors import check_reading, endpoint_ticks
 from runner.config.timing import Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop

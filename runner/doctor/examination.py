@@ -13,10 +13,8 @@ from runner.base.sanitize import few
 from runner.doctor.engines import compare_engines
 from runner.doctor.finding import Finding, together
 from runner.doctor.joints import check_joints
-from runner.doctor.links import check_links
-from runner.doctor.meshes import check_meshes
+from runner.doctor.links import check_links, check_meshes, check_placements
 from runner.doctor.names import choose_name
-from runner.doctor.placements import check_placements
 from runner.doctor.postures import (
     check_gravity,
     check_mass_matrix,

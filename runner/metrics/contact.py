@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.trace import Traces
-from runner.metrics.context import MetricContext
+from runner.metrics.family import MetricContext
 
 UNITS = {"peak_force": "N", "steady_force": "N", "force_error": "N"}
 _STEADY_WINDOW = 0.5  # s, at the end of the run

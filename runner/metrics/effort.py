@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.trace import Traces, by_rows
-from runner.metrics.context import MetricContext
+from runner.metrics.family import MetricContext
 
 _AT_LIMIT = 1.0 - 1e-12
 

@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.trace import Traces
-from runner.metrics.context import MetricContext
+from runner.metrics.family import MetricContext
 from runner.trajectories.vectors import component
 
 UNITS = {"settling_time": "s", "steady_state_error": "m", "overshoot": "m"}

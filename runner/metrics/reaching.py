@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.trace import Traces
-from runner.metrics.context import MetricContext
+from runner.metrics.family import MetricContext
 
 UNITS = {"reach_loss_fraction": "1"}
 

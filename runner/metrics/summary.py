@@ -10,8 +10,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.trace import Trace, Traces
 from runner.metrics import positioning, tracking
-from runner.metrics.context import MetricContext
-from runner.metrics.family import OwnFamily
+from runner.metrics.family import MetricContext, OwnFamily
 from runner.plugins import metric_units
 from runner.plugins.guard import watch_metrics
 from runner.trajectories.shaped import Shifted

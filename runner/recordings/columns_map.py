@@ -1,11 +1,13 @@
 """Column map of a recording: the signal and unit of each column."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Literal, NamedTuple
 
+import numpy as np
 from pydantic import Field, FiniteFloat, PositiveFloat, model_validator
 
+from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.base.sanitize import quoted
@@ -180,3 +182,45 @@ def _si_unit(signal: Signal, slides: dict[str, bool]) -> str:
     if signal.kind == "position":
         return "m" if slides.get(signal.of) else "rad"
     return "N" if slides.get(signal.of) else "N m"
+
+
+_ALIKE = 0.8  # correlation about zero, from which on a signal is a multiple of the run's
+_NEAR = 1.5  # factor within which a unit explains the multiple
+_SAME = 4.0  # factor within which a signal may differ for other reasons
+
+
+def other_units(
+    recorded: Mapping[Signal, FloatArray],
+    simulated: Mapping[Signal, FloatArray],
+    columns: Mapping[Signal, str],
+    units: Mapping[str, Factor],
+) -> Iterator[str]:
+    """Yield a question for each column that would fit the run in another unit.
+
+    Args:
+        recorded: Signals of the recording, shape (T,), in SI units.
+        simulated: The same of the run, at the same times.
+        columns: The column of each signal.
+        units: What made each column SI.
+    """
+    for signal, values in recorded.items():
+        run = simulated[signal]
+        size, run_size = float(np.linalg.norm(values)), float(np.linalg.norm(run))
+        if min(size, run_size) == 0.0 or abs(float(values @ run)) < _ALIKE * size * run_size:
+            continue
+        multiple = size / run_size
+        if 1.0 / _SAME < multiple < _SAME:
+            continue
+        factor, si = units[columns[signal]]
+        wanted = abs(factor) / multiple
+        fitting = [
+            (abs(np.log(float(other) / wanted)), name)
+            for name, other in WRITTEN[si].items()
+            if 1.0 / _NEAR < float(other) / wanted < _NEAR
+        ]
+        times = f"{multiple:.4g} times" if multiple > 1.0 else f"1/{1.0 / multiple:.4g} of"
+        if fitting:
+            yield (
+                f"columns.{columns[signal]}: the {signal.words} is {times} the run's; the column looks like "
+                f"{min(fitting)[1]}: say unit: {min(fitting)[1]}"
+            )

@@ -8,7 +8,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.recordings.columns_map import Signal, read_map
+from runner.recordings.columns_map import Signal, other_units, read_map
 from runner.recordings.friction import Friction, identify_friction
 from runner.recordings.metrics import both_metrics
 from runner.recordings.offset import Offset, find_offset
@@ -16,7 +16,6 @@ from runner.recordings.recording import FEWEST_ROWS, Recording, read_recording
 from runner.recordings.residuals import Residual
 from runner.recordings.setting import setting_of
 from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
-from runner.recordings.unit_check import other_units
 from runner.robots.model import RobotModel
 from runner.store import Run
 

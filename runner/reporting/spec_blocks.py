@@ -14,7 +14,7 @@ from runner.statistics.spec.history import History, ends_of, set_after
 from runner.store import Run
 
 if TYPE_CHECKING:
-    from runner.statistics.share import Share
+    from runner.statistics.proportion import Share
     from runner.statistics.spec import Spec
 
 RULE = (

@@ -6,11 +6,10 @@ from contextlib import ExitStack
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.config.desired_motion import start_posture
 from runner.config.feasibility import check_path
-from runner.config.flexible_joints import find_motor_side, with_nominal_motors
-from runner.config.flexible_links import is_flexible, with_nominal_links
+from runner.config.flexibility import find_motor_side, is_flexible, with_nominal_links, with_nominal_motors
 from runner.config.run import RunConfig
-from runner.config.start import start_posture
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.disturbance_observer import add_observers
 from runner.controllers.kinds import FollowsWithinReach
@@ -29,7 +28,7 @@ from runner.robots.robot import Robot
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
 from runner.simulation.compiled.compile import compile_commands, compile_program, describe_program, find_commands
-from runner.simulation.walls import add_wall, touches_by_tip
+from runner.simulation.contact import add_wall, touches_by_tip
 from runner.trajectories.joint_motion import TipOfJoints
 
 _MISMATCH = 2**32 - 1  # in the seeds of nominal models; the loops' places count from 0

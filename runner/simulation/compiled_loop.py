@@ -9,9 +9,9 @@ import numpy as np
 from runner.base.errors import SimulationError
 from runner.sensing import Encoders, JointEncoders
 from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.command import make_plant_input
 from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram, run_all
 from runner.simulation.contact import Contact
-from runner.simulation.drive import make_plant_input
 from runner.simulation.failures import find_failure
 from runner.simulation.recorder import CHECK_EVERY, Recorder
 

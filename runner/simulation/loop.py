@@ -8,16 +8,13 @@ from runner.base.errors import SimulationError
 from runner.base.progress.ticks import track_ticks
 from runner.base.trace import Trace
 from runner.sensing import Encoders, TorqueSensors, WristSensor
-from runner.simulation.acting import CommandTiming, constant_delay
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.command import Command
+from runner.simulation.command import Command, make_plant_input
 from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
 from runner.simulation.compiled_loop import run_commands, run_program
 from runner.simulation.contact import Contact
-from runner.simulation.drive import make_plant_input
-from runner.simulation.endpoint import MeasuredTip
-from runner.simulation.joint_torques import JointTorques
-from runner.simulation.recorder import Recorder
+from runner.simulation.recorder import CommandTiming, Recorder, constant_delay
+from runner.simulation.sensors import JointTorques, MeasuredTip
 from runner.trajectories.trajectory import joint_reference
 
 __all__ = ["ClosedLoop", "simulate"]

@@ -1,12 +1,20 @@
-"""Sensors of one repetition, built-in or from plug-ins."""
+"""Sensors of one repetition: encoders, and sensors at wrist, joints and tip, built-in or from plug-ins."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.config.computation import computation_of
 from runner.config.run import RunConfig
+from runner.config.sensors import endpoint_ticks
+from runner.controllers.kinds import ReadsJointTorques
+from runner.plants import Plant, PositionPlant, TellsEndPoints, unwrapped
+from runner.plants.friction import friction_of
+from runner.robots.model import RobotModel
 from runner.sensing import (
+    JOINT_TORQUE_SENSORS,
     NOISES,
     WRIST_SENSORS,
     EncoderNoise,
@@ -14,13 +22,143 @@ from runner.sensing import (
     ForceTorqueConfig,
     ForceTorqueSensor,
     JointEncoders,
+    JointTorqueSensor,
     TorqueSensors,
     WristSensor,
 )
-from runner.simulation.acting import CommandTiming
+from runner.sensing.endpoint import EndpointSensor
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.endpoint import MeasuredTip, make_measured_tips
-from runner.simulation.joint_torques import make_joint_torque_sensor
+from runner.simulation.recorder import CommandTiming, Recorder
+
+_TIP_SEED = 2**32 - 3  # in the seeds of these sensors; the loops' places count from 0, others are 2**32 - 2 and - 1
+
+
+class MeasuredTip:
+    """What a control loop asks of its law, to lead the measured tip and not the one that the encoders tell.
+
+    Args:
+        sensor: The sensor, with a draw for each measurement.
+        plant: The plant, for the true tip.
+        true: The robot as it is.
+        nominal: The nominal robot.
+    """
+
+    def __init__(
+        self, sensor: EndpointSensor, plant: Plant | PositionPlant, true: RobotModel, nominal: RobotModel
+    ) -> None:
+        self._sensor, self._plant, self._true, self._nominal = sensor, plant, true, nominal
+        moved = unwrapped(plant)
+        self._bent = moved if isinstance(moved, TellsEndPoints) else None
+
+    def correct(self, tick: int, q: FloatArray, dq: FloatArray, desired: FloatArray) -> FloatArray:
+        """Return the motion that the law is to ask of the tip as the encoders tell it.
+
+        Args:
+            tick: Number of the loop's tick, from 0.
+            q: Measured joint positions, shape (nq,), in rad.
+            dq: Measured joint velocities, likewise, in rad/s.
+            desired: Desired motion of the tip, shape (3, 3): position, velocity, acceleration.
+        """
+        if self._sensor.due(tick):
+            straight, bent = self._plant, self._bent
+            true = _moves(self._true, straight.q, straight.dq) if bent is None else bent.tip_motion()
+            self._sensor.measure(tick, true, _moves(self._nominal, q, dq))
+        corrected = desired.copy()
+        corrected[:2] -= self._sensor.correction(tick)
+        return corrected
+
+
+def make_measured_tips(closed: ClosedLoop, config: RunConfig, repetition: int) -> Mapping[str, MeasuredTip]:
+    """Make what loops know of the tip for one repetition, by the loops that read the sensor.
+
+    Its noise follows from (seed, repetition) and the loop's place alone, and changes no other draw.
+    """
+    ticks = endpoint_ticks(config)
+    return {
+        loop.name: MeasuredTip(
+            EndpointSensor(
+                closed.ticks // closed.every(loop) + 1,
+                loop.period,
+                config.endpoint_sensor,
+                ticks[loop.name],
+                np.random.default_rng([config.settings.seed, repetition, _TIP_SEED, place]),
+            ),
+            closed.plant,
+            closed.robot.model,
+            closed.nominal.model,
+        )
+        for place, loop in enumerate(closed.loops)
+        if loop.name in ticks
+    }
+
+
+def _moves(arm: RobotModel, q: FloatArray, dq: FloatArray) -> FloatArray:
+    """Return position and velocity of an arm's tip, shape (2, 3), in m and m/s."""
+    return np.array([arm.tip_position(q), arm.tip_jacobian(q)[:3] @ dq])
+
+
+_TORQUE_SEED = (
+    2**32 - 2
+)  # in the seeds of these sensors; the loops' places count from 0, and nominal models have 2**32 - 1
+
+
+@dataclass
+class _Reader:
+    """A controller that reads the sensors at its ticks: the mean of what acted since the last one."""
+
+    controller: ReadsJointTorques
+    every: int
+    sum: FloatArray
+    count: int = 0
+
+
+class JointTorques:
+    """The sensors at work.
+
+    Args:
+        closed: The closed loop.
+        sensor: The sensors, with a draw for each tick; None where there are none.
+        recorder: Holds what the loops asked for, and tells which of it acts.
+    """
+
+    def __init__(self, closed: ClosedLoop, sensor: TorqueSensors | None, recorder: Recorder) -> None:
+        self._closed, self._sensor, self._recorder = closed, sensor, recorder
+        self._readers = [
+            _Reader(loop.controller, closed.every(loop), np.zeros(recorder.commands.shape[1]))
+            for loop in closed.loops
+            if sensor is not None and isinstance(loop.controller, ReadsJointTorques)
+        ]
+
+    def tell(self, k: int) -> None:
+        """Tell those that tick in tick k what acted since their last tick; nothing before the first."""
+        for reader in self._readers:
+            if k % reader.every == 0 and reader.count and self._sensor is not None:
+                reader.controller.read_joint_torques(self._sensor.read(k, reader.sum / reader.count))
+                reader.sum, reader.count = np.zeros_like(reader.sum), 0
+
+    def keep(self, k: int) -> None:
+        """Keep what acted from tick k to the next one."""
+        if not self._readers:
+            return
+        acted = self._recorder.timing.at(self._recorder.commands, k) - friction_of(self._closed.plant)
+        for reader in self._readers:
+            reader.sum, reader.count = reader.sum + acted, reader.count + 1
+
+
+def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: int) -> TorqueSensors | None:
+    """Make the torque sensors of the joints for one repetition, where there are any.
+
+    Their noise follows from (seed, repetition) alone, and changes no other draw.
+    """
+    plugged = config.plugged.get("joint_torque_sensor")
+    if config.joint_torques is None and plugged is None:
+        return None
+    generator = np.random.default_rng([config.settings.seed, repetition, _TORQUE_SEED])
+    if plugged is not None:
+        return JOINT_TORQUE_SENSORS.build(plugged, closed.robot.model.joint_names, closed.ticks + 1, generator)
+    assert config.joint_torques is not None  # noqa: S101 - one of both is there
+    return JointTorqueSensor(closed.ticks + 1, *config.joint_torques, generator)
+
 
 _COMPUTATION = 2**32 - 4  # in the seeds; the loops' places count from 0, others are 2**32 - 3 to - 1
 

@@ -5,7 +5,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import ndtr, stdtrit
 
 from runner.base.arrays import FloatArray
 
@@ -66,6 +65,8 @@ def median_intervals(samples: FloatArray, seed: int = 0) -> tuple[FloatArray, Fl
     """
     n = samples.shape[1]
     places, counts = _resampled(n, seed)
+    from scipy.special import ndtr, stdtrit  # half a second, which a run that is found stored does without
+
     tail = ndtr(np.sqrt(n / (n - 1)) * stdtrit(n - 1, (1 - CONFIDENCE) / 2))
     ends = np.empty((2, len(samples)))
     rows = max(1, _VALUES_AT_ONCE // len(counts))

@@ -4,7 +4,6 @@ import math
 from functools import cached_property, lru_cache
 
 import numpy as np
-from scipy.special import ndtr
 
 from runner.base.arrays import FloatArray
 
@@ -77,6 +76,8 @@ def _lower_tail(n: int) -> FloatArray:
     total = n * (n + 1) // 2
     if n > EXACT_UP_TO:
         deviation = math.sqrt(n * (n + 1) * (2 * n + 1) / 24)
+        from scipy.special import ndtr
+
         normal: FloatArray = ndtr((np.arange(total // 2 + 1) - total / 2) / deviation)
         return normal
     ways = np.zeros(total // 2 + 1)

@@ -3,8 +3,7 @@
 from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
 from runner.store.finished import Finished, find_outcome, find_run
 from runner.store.identity import run_hash, run_hashes, simulated_part
-from runner.store.judging import judge_run
-from runner.store.run import Run, is_run, open_run
+from runner.store.run import Run, is_run, judge_run, open_run
 from runner.store.seal import DamagedError, SchemaError
 from runner.store.shards import Outcome
 from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_grid, write_sweep

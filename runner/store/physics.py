@@ -26,10 +26,9 @@ _TABLE = """
         uncertainty=repeatability
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
-    config: arms calibration computation=config.computation disturbance_observer=config.disturbance_observer
-        endpoint_sensor feasibility flexible_joints=config.flexible_joints flexible_links=config.flexible_links
-        force_reading=config.force_reading groups input_shaper joint_limits noise notch=config.notch parsing payload
-        plugged reach repeats robot=config.robot run settings start timing torque_limits validation
+    config: arms calibration computation=config.computation controller_wrappers desired_motion feasibility flexibility
+        groups input_shaper noise parsing payload plugin_groups=plugged robot=config.robot run sensors=endpoint_sensor
+        settings timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer graph kinds=controllers.kinds notch=controllers.notch
         sampled_stability torque_law
@@ -43,7 +42,7 @@ _TABLE = """
         whole_body_graph whole_body_posture
     environments: __init__=environments.__init__ environment=environments.environment external_wrench=interaction free
         hand link_forces=pushed_links push wall
-    metrics: __init__=metrics.__init__ contact=metrics.contact context effort family plant_error positioning reaching
+    metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching
         summary tracking
     plants: __init__=plants.__init__ bullet bullet_servers compiled_flexible=flexible compiled_motion=compiled.motion
         computation=plants.computation contact_plant=touched decoupled flexible_config
@@ -59,11 +58,10 @@ _TABLE = """
     schema: per_joint per_stage
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds streams velocity wrench
-    simulation: acting assembly batch batch_blocks batch_jobs closed_loop=loop.closed_loop command compiled_loop
-        contact=loop.contact drive endpoint=loop.endpoint failures joint_torques loop=simulation recorder sensors
-        walls
+    simulation: assembly batch batch_blocks batch_jobs closed_loop=loop.closed_loop command compiled_loop
+        contact=loop.contact failures loop=simulation recorder sensors
     simulation/compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
-    sweeps: calibration_job execution job
+    sweeps: calibration_job job
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation

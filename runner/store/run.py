@@ -2,6 +2,7 @@
 
 import itertools
 import shlex
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -12,15 +13,16 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
+from runner.config.spec import Bound
+from runner.statistics.spec.history import settings, today
 from runner.store.record import find_faults
 from runner.store.seal import DamagedError
-from runner.store.stored import MEND, Stored, read_job
+from runner.store.stored import MEND, Stored, read_job, write_job
 from runner.store.values import VALUES_FILE, open_parquet, read_column, read_table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.config.spec import Bound
     from runner.statistics.spec import Spec
     from runner.statistics.spec.history import Histories
 
@@ -197,3 +199,27 @@ def open_run(folder: Path) -> Run:
     if faults:
         raise DamagedError(f"cannot read {folder / 'metrics.json'}: it is no run's record: {faults}; {MEND}")
     return Run(folder, config, record)
+
+
+def judge_run(run: Run, bounds: Mapping[str, Bound], date: str = "") -> Run:
+    """Return a run with the shares of its repetitions that keep some bounds, stored with it; new ones are told.
+
+    Nothing is simulated: the shares follow from the stored values. Without bounds those that it was judged by stay.
+    It is stored, too, when each bound was first set.
+
+    Args:
+        run: The run.
+        bounds: The bounds.
+        date: The date on which they are set; empty for today.
+
+    Raises:
+        StoreError: if the disk does not take them.
+    """
+    before = run.spec
+    if not bounds or (before is not None and before.config == bounds):
+        return run
+    found = run.judged_by(bounds, settings(bounds, date or today()))
+    write_job(run.folder, "metrics.json", {key: value for key, value in found.record.items() if key != "schema"}, {})
+    what = "without a spec" if before is None else "with another spec"
+    print(f"runner: stored before {what}; the shares are worked out from its stored values", file=sys.stderr)
+    return found

@@ -14,9 +14,9 @@ from runner.study.items import Way, listed
 from runner.study.study import Study
 from runner.study.tune import ROUNDS
 from runner.study.tunings import Tuning
-from runner.sweeps.listed import Item, Listed
+from runner.sweeps.estimate import START_UP, Estimate, estimate
+from runner.sweeps.explicit import Item, Listed
 from runner.sweeps.loading import Loader
-from runner.sweeps.pace import START_UP, Estimate, estimate
 from runner.sweeps.plan import Plan, check
 
 Counts = tuple[int, int, int]

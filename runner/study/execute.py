@@ -17,7 +17,7 @@ from runner.study.study import Study
 from runner.study.tune import find_gains
 from runner.study.tunings import Tuning
 from runner.sweeps.calibration_job import CALIBRATION
-from runner.sweeps.listed import Item
+from runner.sweeps.explicit import Item
 from runner.sweeps.loading import Loader
 from runner.sweeps.plan import check
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from runner.store import Outcome
-from runner.sweeps.listed import Item, Listed
+from runner.sweeps.explicit import Item, Listed
 from runner.sweeps.loading import Loader
 from runner.sweeps.run import Engine, run_sweep
 

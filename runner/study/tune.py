@@ -13,13 +13,12 @@ from runner.study.gains import Gains
 from runner.study.grid import Overrides
 from runner.study.items import Way, make_items
 from runner.study.tunings import Tuning, key_of
+from runner.sweeps.explicit import Item
 from runner.sweeps.grid import Grid
-from runner.sweeps.listed import Item
 from runner.sweeps.loading import Loader
 from runner.sweeps.tuning.key import Key
-from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.sampler import make_optuna_trial, propose
-from runner.sweeps.tuning.trial import Trial, best
 
 ROUNDS = 3
 """A half of the trials is spread over the ranges; each half of the rest is chosen by all that ended before it."""

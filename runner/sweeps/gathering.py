@@ -12,7 +12,7 @@ from runner.base.arrays import FloatArray
 from runner.metrics.caveats import changes_since
 from runner.store import Run
 from runner.store.shards import open_row
-from runner.sweeps.resolved import Resolver
+from runner.sweeps.differing import Resolver
 from runner.sweeps.shard_columns import Columns, read_shard
 
 Cells = NDArray[np.intp]

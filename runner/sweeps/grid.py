@@ -12,8 +12,8 @@ from runner.config.compose.options import groups
 from runner.config.compose.overrides import force
 from runner.schema.plausibility import LARGEST_WHOLE
 from runner.store.axes import Counted, GridOverrides
-from runner.sweeps.block import Alike, Block
 from runner.sweeps.loading import ConfigSource, Loader
+from runner.sweeps.plan import Alike, Block
 from runner.sweeps.swept import SweptKey, is_simulated, parse_sweep
 from runner.sweeps.template import Template
 

@@ -1,5 +1,6 @@
 """Measurements of a sweep by cell: swept axes, status, and every metric in every repetition."""
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from runner.base import progress
 from runner.base.arrays import FloatArray
+from runner.base.errors import RunnerError, nearest
 from runner.base.progress.stages import READING
 from runner.store import Run, Sweep
 from runner.store.axes import GridOverrides
@@ -18,7 +20,6 @@ from runner.store.finer import finer_names, read_finer
 from runner.store.sweep import InShard
 from runner.sweeps.differing import Difference, Resolved
 from runner.sweeps.gathering import Gathered
-from runner.sweeps.metric_names import check_metrics
 from runner.sweeps.swept import is_simulated
 
 
@@ -274,3 +275,28 @@ def _number(text: str) -> float | None:
     except ValueError:
         return None
     return number if np.isfinite(number) else None
+
+
+_PART = re.compile(r".*_([xyz]|q\d+)$")
+
+
+def is_part(name: str) -> bool:
+    """Tell whether a metric is that of one direction or joint, such as peak_torque_q1."""
+    return _PART.match(name) is not None
+
+
+def check_metrics(wanted: Sequence[str], known: Iterable[str]) -> None:
+    """Refuse metrics that are not known.
+
+    Args:
+        wanted: Names that were asked for.
+        known: Names that there are.
+
+    Raises:
+        RunnerError: For the first that there is none of.
+    """
+    names = list(known)
+    for name in wanted:
+        if name not in names:
+            listed = ", ".join(names) or "none, as all runs failed"
+            raise RunnerError(f"the runs have no metric '{name}'{nearest(name, names)}; known: {listed}")

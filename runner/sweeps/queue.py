@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from runner import store
 from runner.config.compose.compose import Composed
 from runner.store.shards import next_number, shard_name
-from runner.sweeps.block import Part
-from runner.sweeps.rules import Rules
+from runner.sweeps.plan import Part
 from runner.sweeps.work import Chunk, Report, find_stored
+from runner.sweeps.writer import Rules
 
 _SECONDS_PER_CHUNK = 1.0  # long against the 5 ms that a chunk costs, short against a sweep
 _MOST_CHUNKS = 2000  # that take as many jobs each as it needs, however slow these are: a chunk may be a file

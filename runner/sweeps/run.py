@@ -25,16 +25,16 @@ from runner.store.finer import FOLDER as FINER
 from runner.store.latest import note
 from runner.store.names import Names
 from runner.sweeps.differing import Resolved
-from runner.sweeps.ends import Ends
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
+from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import ConfigSource
-from runner.sweeps.lock import at_work
-from runner.sweeps.pace import START_UP, Estimate, Pace, estimate
+from runner.sweeps.outcomes import Ends
 from runner.sweeps.plan import Checked, Plan, check
 from runner.sweeps.queue import Queue
-from runner.sweeps.rules import Rules, TraceKeeping, one_in
+from runner.sweeps.status import at_work
 from runner.sweeps.work import Report, find_calibrated
+from runner.sweeps.writer import Rules, TraceKeeping, one_in
 
 _DAMAGE_SHOWN = 10
 _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample

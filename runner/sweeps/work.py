@@ -25,13 +25,12 @@ from runner.simulation.provenance import job_provenance
 from runner.simulation.result import RunResult
 from runner.store.shards import ShardRun, find_shards, outcome, read_outcomes, write_shard
 from runner.store.writing import cut_short_record
-from runner.sweeps.block import Part
+from runner.sweeps.batch import make_together
 from runner.sweeps.calibration_job import CALIBRATION, carry_out
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.job import simulate_job
-from runner.sweeps.rules import Rules
-from runner.sweeps.shelf import Shelf, without_trace, write_failure, write_log
-from runner.sweeps.together import make_together
+from runner.sweeps.plan import Part
+from runner.sweeps.writer import ResultWriter, Rules, without_trace, write_failure, write_log
 
 Made = TypeVar("Made")
 
@@ -108,11 +107,11 @@ def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> No
     """Make what a chunk asks for: together what can be, then one by one."""
     rules, known = chunk.rules, find_stored(chunk)
     outcomes += known.values()
-    shelf = Shelf(chunk.name, rules, disk, outcomes)
+    writer = ResultWriter(chunk.name, rules, disk, outcomes)
     parts = [[job for job in zip(part.names, part.configs, strict=True) if job[0] not in known] for part in chunk.parts]
     left = [job for part in parts for job in part]
     jobs = list(_checked_runs(parts))
-    made, failed = make_together(jobs, rules, shelf) if len(jobs) > 1 else (set(), False)
+    made, failed = make_together(jobs, rules, writer) if len(jobs) > 1 else (set(), False)
     for name, composed in left:
         if failed and rules.stop_at_failure:
             break
@@ -120,8 +119,8 @@ def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> No
             outcomes.append(_calibrate(name, composed, rules))
             failed = bool(outcomes[-1].failure)
         elif name not in made:
-            failed = shelf.put(name, _make(name, composed, rules))
-    shelf.close()
+            failed = writer.put(name, _make(name, composed, rules))
+    writer.close()
 
 
 def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:

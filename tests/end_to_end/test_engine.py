@@ -16,7 +16,7 @@ from runner import store
 from runner.base.errors import RunnerError
 from runner.plugins.discovery import use_plugins
 from runner.sweeps import engine
-from runner.sweeps.pace import Estimate
+from runner.sweeps.estimate import Estimate
 from runner.sweeps.queue import Queue
 from runner.sweeps.run import Engine
 

@@ -15,7 +15,7 @@ import runner
 from runner.sweeps import run as sweeps_run
 from runner.sweeps import work
 from runner.sweeps.deadline import deadline
-from runner.sweeps.pace import Estimate
+from runner.sweeps.estimate import Estimate
 
 EXAMPLE = ROOT / "examples" / "own_robot"
 PARTS = ("--plugin", "controller=gravity_pd.py", "--plugin", "trajectory=helix.py", "--config-dir", ".")

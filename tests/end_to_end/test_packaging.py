@@ -10,7 +10,7 @@ from support.pages import ROOT
 from support.printed import without_caveats, without_results
 
 from runner.store.references import shipped_references
-from runner.store.references.shipped import reference_path
+from runner.store.references.reference import reference_path
 
 SCRIPT = """\
 import sys

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 from scipy.stats import binom
 
-from runner.statistics.share import share_ends
+from runner.statistics.proportion import share_ends
 
 
 def coverage(n: int, p: float) -> float:

@@ -15,7 +15,7 @@ from typing import Protocol, TypeVar
 from runner import store
 from runner.store import Calibration, Run
 from runner.sweeps.calibration_job import calibrate
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 Overrides = tuple[str, ...]
 

@@ -11,19 +11,19 @@ from runner.analysis.sensitivity.parameters import GROUPS, Parameter, find_keys,
 from runner.analysis.sensitivity.slopes import Scene, Slopes
 from runner.analysis.sensitivity.smooth_metrics import Change, derivatives
 from runner.base.arrays import FloatArray
-from runner.base.errors import RunnerError
+from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
 from runner.config.compose.compose import Composed, compose
-from runner.config.flexible_joints import find_flexibility
-from runner.config.flexible_links import is_flexible
+from runner.config.flexibility import find_flexibility, is_flexible
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.metrics import measure, of_run
+from runner.metrics import measure, summary
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4Config
 from runner.simulation.assembly import assemble_program, metric_context
 from runner.simulation.batch import BatchResult, BatchSimulator, RunSpec
 from runner.simulation.compiled.directed import tangents
+from runner.store import Run, simulated_part
 from runner.symbolic.engine import evaluator
 from runner.trajectories.trajectory import joint_reference
 
@@ -142,7 +142,7 @@ def simulate_run(run: RunSpec) -> tuple[Trace, Mapping[str, float | None]]:
         failure = found[1].failure
         assert failure is not None  # noqa: S101 - it is why the run is not among those that ended well
         raise RunnerError(f"the run has no derivatives: it ended at {failure.time:g} s, {failure.reason}")
-    return found.traces.run(0), of_run(measure(found.traces, found.context), 0)
+    return found.traces.run(0), summary.of_run(measure(found.traces, found.context), 0)
 
 
 def scene_of(config: RunConfig, repetition: int) -> Scene:
@@ -178,3 +178,31 @@ def _why_not(config: RunConfig) -> str:
     if (config.noise.resolution > 0.0).any():
         return "noise.resolution rounds the measured positions to steps, which have no derivative; set it to 0"
     return ""
+
+
+def of_run(run: Run, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sensitivity:
+    """Return the derivatives of a stored run's smooth metrics by its parameters; see analyse.
+
+    Args:
+        run: The run.
+        groups: Which parameters, some of GROUPS.
+        repetition: Number of the repetition.
+
+    Raises:
+        RunnerError: where there is no such repetition, its command gives another run today, or it has no derivatives.
+    """
+    count = int(run.record["repetitions"])
+    if not 0 <= repetition < count:
+        raise RunnerError(f"no repetition {repetition} of {run.hash}; allowed: 0 to {count - 1}")
+    try:
+        composed = compose(run.overrides, run.config_dirs)
+        arm = validate(composed.resolved, run.config_dirs).arm
+    except ConfigError as error:
+        raise RunnerError(f"run {run.hash} cannot be rerun: {'; '.join(error.problems)}") from None
+    if arm.urdf != run.urdf:
+        raise RunnerError(f"the file of the robot of {run.hash} has changed since the run; rerun it")
+    before, now = simulated_part(run.config), simulated_part(composed.resolved)
+    changed = sorted(key for key in {**before, **now} if before.get(key) != now.get(key))
+    if changed:
+        raise RunnerError(f"the command of run {run.hash} gives another {', '.join(changed)} today; rerun it")
+    return analyse(composed, groups, repetition)

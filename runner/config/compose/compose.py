@@ -14,8 +14,7 @@ from runner.config.compose.data_files import take_data_file
 from runner.config.compose.hydra_config import hydra_config
 from runner.config.compose.in_si import put_in_si
 from runner.config.compose.overrides import force
-from runner.config.compose.robot_defaults import complete_stage_arms
-from runner.config.compose.stage_defaults import complete_stages
+from runner.config.compose.stage_defaults import complete_stage_arms, complete_stages
 
 
 @dataclass(frozen=True)

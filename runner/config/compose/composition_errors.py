@@ -12,8 +12,8 @@ from runner.base.bounded_yaml import explain_yaml
 from runner.base.errors import ConfigError, nearest
 from runner.base.former_names import explain_value
 from runner.base.sanitize import VALUE, one_line, quoted
-from runner.config.compose.malformed import explain_parser
 from runner.config.compose.options import group_options
+from runner.config.compose.syntax_errors import explain_parser
 
 # What Hydra raises for a config that it cannot compose: ValueError and OSError for a file that is no text, or no
 # mapping; and OmegaConf where a value refers to itself.

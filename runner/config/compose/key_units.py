@@ -6,9 +6,9 @@ from typing import Any
 
 from runner.base.errors import ConfigError
 from runner.calibration.procedures import CALIBRATIONS
-from runner.config.compose.meanings import Units, find_units
+from runner.config.compose.documentation import Units, find_units
 from runner.config.groups import GROUPS
-from runner.config.plugged import PLUGGED
+from runner.config.plugin_groups import PLUGGED
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.settings import RunSettings
 from runner.plugins.registry import Kinds

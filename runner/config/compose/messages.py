@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from runner.base.errors import nearest
 from runner.base.former_names import KEYS, explain_key
 from runner.base.sanitize import quoted
-from runner.config.compose.meanings import find_units, nested_model
+from runner.config.compose.documentation import find_units, nested_model
 from runner.schema.model import StrictModel
 from runner.schema.units import explain_quantity, quantities_in
 

@@ -24,7 +24,7 @@ from runner.base.interpolation import check_references
 from runner.base.limits import ExcessError, read_text
 from runner.base.paths import check_inside, conf_dir, ships
 from runner.base.sanitize import quoted
-from runner.config.compose.study_folder import place_in
+from runner.config.compose.options import place_in
 from runner.config.compose.user_settings import refuse_settings
 
 _SWEEPER = (

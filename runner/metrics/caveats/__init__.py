@@ -1,11 +1,10 @@
 """Caveats: rules that check a finished run for misleading results."""
 
-from runner.metrics.caveats.caveat import Caveat, Found
+from runner.metrics.caveats.monitor import Watch, look_together
 from runner.metrics.caveats.plant_error import PlantStep
-from runner.metrics.caveats.setting import Setting, setting_of
-from runner.metrics.caveats.signals import Signals, signals_of
-from runner.metrics.caveats.today import changes_since
-from runner.metrics.caveats.watch import Watch, look_together
+from runner.metrics.caveats.rule import Caveat, Found
+from runner.metrics.caveats.setting import Setting, Signals, setting_of, signals_of
+from runner.metrics.caveats.versions import changes_since
 
 __all__ = [
     "Caveat",

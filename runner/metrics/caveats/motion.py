@@ -5,8 +5,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.trace import by_rows
 from runner.metrics.caveats.rule import TraceRule, called, percent
-from runner.metrics.caveats.setting import Setting
-from runner.metrics.caveats.signals import Signals
+from runner.metrics.caveats.setting import Setting, Signals
 
 _SIZED = 60  # rows, the last one included, from which the size of a motion is told
 _END = 10  # of a motion to a goal the last tenth is looked at

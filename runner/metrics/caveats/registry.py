@@ -5,15 +5,12 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
-from runner.metrics.caveats.burden import NO_EFFORT_LIMIT, OVERLOAD
-from runner.metrics.caveats.contact import UNSTABLE_CONTACT
-from runner.metrics.caveats.default_plant import DEFAULT_PLANT
-from runner.metrics.caveats.file import ROBOT_FILE
-from runner.metrics.caveats.gains import UNSTABLE_GAINS
-from runner.metrics.caveats.horizon import SHORT_HORIZON
-from runner.metrics.caveats.knowledge import EXACT_VELOCITY, FIXED_MISMATCH
+from runner.metrics.caveats.controller import SHORT_HORIZON, UNSTABLE_CONTACT, UNSTABLE_GAINS
+from runner.metrics.caveats.measurement import EXACT_VELOCITY, FIXED_MISMATCH
+from runner.metrics.caveats.mjcf import ROBOT_FILE
 from runner.metrics.caveats.motion import DID_NOT_FOLLOW, JOINT_LIMITS
-from runner.metrics.caveats.plant_error import KEY, NAME
+from runner.metrics.caveats.payload import NO_EFFORT_LIMIT, OVERLOAD
+from runner.metrics.caveats.plant_error import DEFAULT_PLANT, KEY, NAME
 from runner.metrics.caveats.rule import SettingRule, TraceRule
 from runner.metrics.caveats.torques import CHATTER, SATURATION
 

@@ -1,11 +1,11 @@
-"""Types of caveat rules: rules on signals and rules on settings."""
+"""Types of caveat rules, and of the caveats that they find."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
 
 from runner.base.arrays import FloatArray
-from runner.metrics.caveats.setting import Setting
-from runner.metrics.caveats.signals import Signals
+from runner.metrics.caveats.setting import Setting, Signals
 
 
 @dataclass(frozen=True)
@@ -51,3 +51,40 @@ def called(joint: int, setting: Setting) -> str:
     """Return how a joint is spoken of, such as "joint q1"; a name that says so itself is enough, such as "joint2"."""
     name = setting.joint_names[joint]
     return name if name.startswith("joint") else f"joint {name}"
+
+
+@dataclass(frozen=True)
+class Caveat:
+    """One reason why a result may not be what it seems.
+
+    Attributes:
+        rule: Name of the rule, and of the group of its threshold.
+        text: What it found, in words.
+        value: What it measured, the worst over joints and repetitions; above the rule's threshold.
+    """
+
+    rule: str
+    text: str
+    value: float
+
+
+@dataclass(frozen=True)
+class Found:
+    """All that the rules found in a run.
+
+    Attributes:
+        caveats: One for each rule that was sprung.
+        digest: Digest of the rules' source.
+        thresholds: What a run had to exceed, by rule and key.
+    """
+
+    caveats: Sequence[Caveat]
+    digest: str
+    thresholds: Mapping[str, Mapping[str, float]]
+
+    def record(self) -> dict[str, Any]:
+        """Return what is stored of it."""
+        return {
+            "caveats": [asdict(caveat) for caveat in self.caveats],
+            "caveat_rules": {"digest": self.digest, "thresholds": self.thresholds},
+        }

@@ -1,4 +1,4 @@
-"""Setting of a run for the caveat rules: robot, limits, sensors, controllers and model error."""
+"""Setting and signals of a run for the caveat rules."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.base.trace import Trace, Traces
 
-if TYPE_CHECKING:  # the store knows caveats, and is to be imported without rigid-body models
+if TYPE_CHECKING:
     from runner.config.robot import RobotConfig
     from runner.config.run import RunConfig
     from runner.controllers.sampled_stability import VelocityLoop
@@ -80,9 +81,9 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out, and takes home elsewhere.
     """
     from runner.controllers.sampled_stability import velocity_loop
-    from runner.metrics.caveats.file import left_out_of
+    from runner.metrics.caveats.contact_stability import force_contact, servo_contact
+    from runner.metrics.caveats.mjcf import left_out_of
     from runner.metrics.caveats.time_constants import slowest_part
-    from runner.metrics.caveats.touch import force_contact, servo_contact
     from runner.plants.kinds import IsFallback
 
     model = config.arm.model
@@ -120,3 +121,47 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
 def _of_model(model: "RobotModel") -> tuple[Sequence[str], FloatArray, float]:
     """Return joint units, position limits and mass of an arm."""
     return model.joint_units, model.position_limits, model.mass
+
+
+@dataclass(frozen=True)
+class Signals:
+    """Signals and metrics of a run, a row for each control tick; axes of several runs may stand in front.
+
+    Attributes:
+        q: Joint positions, shape (..., T, nq), in rad.
+        tau: Torques that were held, shape (..., T - 1, nq), in N m.
+        tip: Tip positions, shape (..., T, 3), in m.
+        desired: Desired tip positions, likewise.
+        saturation: Share of the ticks that each joint is at its torque limit, shape (..., nq).
+        limits: Torque limit of each joint, shape (..., nq), in N m; infinite where there is none.
+    """
+
+    q: FloatArray
+    tau: FloatArray
+    tip: FloatArray
+    desired: FloatArray
+    saturation: FloatArray
+    limits: FloatArray
+
+    def part(self, first: int, last: int) -> "Signals":
+        """Return the runs on the first axis from one to before another."""
+        return Signals(**{name: value[first:last] for name, value in vars(self).items()})
+
+
+def signals_of(trace: Trace | Traces, metrics: Mapping[str, float | FloatArray | None]) -> Signals:
+    """Return what rules look at in a run that did not fail, or in several, which then stand on the first axis.
+
+    Args:
+        trace: The run, or the runs.
+        metrics: Its metrics, or arrays of theirs.
+    """
+    shares = [metrics[f"saturation_fraction_q{joint + 1}"] for joint in range(len(trace.joint_names))]
+    tip = trace.end_points[-1]
+    return Signals(
+        q=trace.q,
+        tau=trace.tau[..., :-1, :],
+        tip=tip,
+        desired=np.broadcast_to(trace.desired[..., 0, :], tip.shape),
+        saturation=np.array(shares, dtype=np.float64).T,
+        limits=trace.limits,
+    )

@@ -4,8 +4,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.metrics.caveats.rule import TraceRule, called, percent
-from runner.metrics.caveats.setting import Setting
-from runner.metrics.caveats.signals import Signals
+from runner.metrics.caveats.setting import Setting, Signals
 
 _AT_LIMIT = 1.0 - 1e-12  # as in the metric saturation_fraction
 _IDEAL = "kinematic"  # the plant whose joints go where they are told; its torques are those that this would need

@@ -10,8 +10,7 @@ from runner.plugins.guard.read_only import read_only
 
 if TYPE_CHECKING:
     from runner.base.trace import Trace
-    from runner.metrics.context import MetricContext
-    from runner.metrics.family import MetricFamily
+    from runner.metrics.family import MetricContext, MetricFamily
 
 
 def watch_metrics(

@@ -9,9 +9,8 @@ import numpy as np
 from runner.reporting.comparison.cells import Matched, label_text
 from runner.reporting.comparison.operand import Side
 from runner.store import simulated_part
-from runner.sweeps.differing import entries, is_of_option
+from runner.sweeps.differing import DISTANCE, entries, is_of_option
 from runner.sweeps.measurements import Measurements
-from runner.sweeps.resolved import DISTANCE
 
 # How many values there are and which noise they have is no part of what a cell is.
 _OF_REPETITIONS = ("seed", "repetitions")

@@ -10,8 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.reporting.answers import Asked
 from runner.statistics import Comparison, subtract
-from runner.sweeps.measurements import Axis, Measurements
-from runner.sweeps.metric_names import check_metrics
+from runner.sweeps.measurements import Axis, Measurements, check_metrics
 
 SEED = "seed"
 """The axis whose levels are draws of one thing, as repetitions are."""

@@ -15,7 +15,7 @@ from runner.reporting.comparison.cells import Matched, match
 from runner.reporting.comparison.differences import Beyond, find_differences
 from runner.reporting.comparison.operand import Side
 from runner.reporting.comparison.pairs import CellPairs, compare
-from runner.sweeps.metric_names import check_metrics, is_part
+from runner.sweeps.measurements import check_metrics, is_part
 
 MOST_MOVEMENTS = 12
 """Cells with the largest differences that are named."""

@@ -55,7 +55,7 @@ class Failing:
     @property
     def ends(self) -> tuple[FloatArray, FloatArray]:
         """The ends of the intervals of the probability, shape (n,) each; NaN for none."""
-        from runner.statistics.share import share_ends
+        from runner.statistics.proportion import share_ends
 
         low, high = share_ends(self.failed, np.maximum(self.of, 1))
         return np.where(self.of > 0, low, np.nan), np.where(self.of > 0, high, np.nan)

@@ -12,9 +12,8 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import label_with_unit, quantity
 from runner.config.compose.key_units import key_unit
 from runner.reporting.metric_titles import metric_label, title
-from runner.sweeps.measurements import Axis, Measurements
-from runner.sweeps.metric_names import is_part
-from runner.sweeps.resolved import UNITS
+from runner.sweeps.differing import UNITS
+from runner.sweeps.measurements import Axis, Measurements, is_part
 
 if TYPE_CHECKING:
     from runner.statistics import EffectAnalysis

@@ -10,9 +10,8 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.tuning.key import Key
-from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.study import Tuning
-from runner.sweeps.tuning.trial import Trial, best
 
 
 @dataclass(frozen=True)

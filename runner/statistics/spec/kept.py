@@ -1,8 +1,8 @@
-"""Number of a run's repetitions within each bound of a spec and within all bounds, from stored values."""
+"""Number of a run's repetitions within each bound of a spec, and the verdict on a bound."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from runner.config.spec import Bound
 from runner.statistics.spec.history import History
 
 if TYPE_CHECKING:
-    from runner.statistics.share import Share
+    from runner.statistics.proportion import Share
 
 
 @dataclass(frozen=True)
@@ -119,7 +119,7 @@ def read_spec(record: Mapping[str, Any]) -> Spec:
 
 
 def _count(kept: NDArray[np.bool_]) -> "Share":
-    from runner.statistics.share import count_share  # SciPy, a second, which runs without bounds do without
+    from runner.statistics.proportion import count_share  # SciPy, a second, which runs without bounds do without
 
     return count_share(int(np.count_nonzero(kept)), kept.size)
 
@@ -131,6 +131,40 @@ def _record(share: "Share | None") -> dict[str, float | None]:
 
 
 def _share(stored: Mapping[str, Any]) -> "Share | None":
-    from runner.statistics.share import Share
+    from runner.statistics.proportion import Share
 
     return None if stored["kept"] is None else Share(*(stored[key] for key in ("kept", "of", "low", "high")))
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What the repetitions say of a bound.
+
+    Attributes:
+        says: It is kept; it is broken; or they are too few to tell.
+        needed: How many repetitions in all would tell, where these do not and the share stays what it is; None where
+            no number would, or these do.
+    """
+
+    says: Literal["kept", "broken", "untold"]
+    needed: int | None = None
+
+
+def judge_share(share: "Share", at_most: float | None) -> Verdict:
+    """Return what the repetitions say.
+
+    Args:
+        share: Those that keep the bound.
+        at_most: The largest probability of failing that is allowed, above 0 and below 1; the whole 95 % interval has
+            to lie below it. None where no repetition may fail: nothing is said of the probability then.
+    """
+    if at_most is None:
+        return Verdict("kept" if share.kept == share.of else "broken")
+    failing = share.rest
+    if failing.high < at_most:
+        return Verdict("kept")
+    if failing.low > at_most:
+        return Verdict("broken")
+    from runner.statistics.proportion import needed_repetitions
+
+    return Verdict("untold", needed_repetitions(failing, at_most))

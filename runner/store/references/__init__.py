@@ -1,8 +1,15 @@
 """Baselines: tolerance bands for the metrics of runs and sweeps."""
 
 from runner.store.references.learned import Learned, Move, cell_names, find_moves, learn, load_learned
-from runner.store.references.reference import Band, Finding, Reference, check_run, load_reference
-from runner.store.references.shipped import find_shipped, shipped_references
+from runner.store.references.reference import (
+    Band,
+    Finding,
+    Reference,
+    check_run,
+    find_shipped,
+    load_reference,
+    shipped_references,
+)
 
 __all__ = [
     "Band",

@@ -10,14 +10,17 @@ from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 from pydantic import Field, ValidationError
 
-from runner.base.errors import StoreError, nearest
+from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.limits import read_text
+from runner.base.paths import studies_dir
 from runner.config.compose.messages import describe
+from runner.config.compose.options import described_files
 from runner.config.spec import Bound
 from runner.plugins.metric_units import unit_of, units
 
 if TYPE_CHECKING:
     from runner.store import Run
+
 
 SCHEMA = 1
 
@@ -124,3 +127,44 @@ def _check_content(content: Any, bands: dict[str, Band]) -> Iterator[str]:
             bands[name] = Band.model_validate(band)
         except ValidationError as error:
             yield from describe(f"metrics.{name}", Band, error)
+
+
+_FOLDER = "references"
+
+
+def shipped_references() -> list[str]:
+    """Return their names, such as "thesis/figure_3_5.as_reported", sorted."""
+    return list(described_references())
+
+
+def described_references() -> dict[str, str]:
+    """Return their names, sorted, each with the first line of its comment."""
+    return {
+        f"{folder.parent.name}/{name}": description
+        for folder in sorted(studies_dir().glob(f"*/{_FOLDER}"))
+        for name, description in described_files(folder).items()
+    }
+
+
+def find_shipped(run: "Run") -> Reference:
+    """Return the baseline for the experiment and preset that a run was composed from.
+
+    Raises:
+        RunnerError: if there is none; says where those there are stand.
+    """
+    choices = run.provenance.get("choices", {})
+    name = f"{choices.get('experiment')}.{choices.get('preset')}"
+    known = shipped_references()
+    if name not in known:
+        what = f"'{name}'{nearest(name, known)}" if choices.get("experiment") else "a run without an experiment"
+        raise RunnerError(
+            f"{run.folder}: no baseline comes with the runner for {what}; give one by --baseline FILE, which "
+            f"--save-baseline FILE makes of a sweep; `runner list baselines` prints the {len(known)} that come with it"
+        )
+    return load_reference(reference_path(name), name)
+
+
+def reference_path(name: str) -> Path:
+    """Return the file of a baseline, such as "thesis/figure_3_5.full_equations", whether it is there or not."""
+    study, _, file = name.partition("/")
+    return studies_dir() / study / _FOLDER / f"{file}.yaml"

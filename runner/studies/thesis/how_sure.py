@@ -10,7 +10,7 @@ from runner.reporting.document import Curves, Panel, Series, Table
 from runner.reporting.figures import origin
 from runner.reporting.sweep.effects import at_texts
 from runner.reporting.words import PRESET
-from runner.statistics.share import count_share
+from runner.statistics.proportion import count_share
 from runner.store import Run
 from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
 from runner.study.measured import Measured

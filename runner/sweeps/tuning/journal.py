@@ -14,9 +14,8 @@ from optuna.trial import FrozenTrial
 from runner.base.errors import StoreError, describe_write_error
 from runner.store.seal import DamagedError, Lines
 from runner.sweeps.tuning.key import Key
-from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective, Trial
 from runner.sweeps.tuning.sampler import make_optuna_trial, read_ended
-from runner.sweeps.tuning.trial import Trial
 
 
 class Journal:

@@ -13,12 +13,12 @@ from runner.config.validation import validate
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader
 from runner.sweeps.queue import Queue
-from runner.sweeps.rules import Rules
 from runner.sweeps.tuning.journal import Journal
+from runner.sweeps.tuning.objective import Trial
 from runner.sweeps.tuning.sampler import propose
 from runner.sweeps.tuning.study import Study
-from runner.sweeps.tuning.trial import Trial
 from runner.sweeps.work import Chunk, Report
+from runner.sweeps.writer import Rules
 
 
 @dataclass(frozen=True)

@@ -19,9 +19,9 @@ from runner.store.latest import note
 from runner.store.names import Names
 from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader
-from runner.sweeps.lock import at_work
 from runner.sweeps.plan import Checked, Plan, check
 from runner.sweeps.run import Engine, clean, make_jobs, make_rules
+from runner.sweeps.status import at_work
 from runner.sweeps.swept import is_simulated
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import RANGES, Key, read_key

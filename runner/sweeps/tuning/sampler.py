@@ -9,8 +9,7 @@ from optuna.distributions import BaseDistribution, FloatDistribution, IntDistrib
 from optuna.trial import FrozenTrial, TrialState, create_trial
 
 from runner.sweeps.tuning.key import Key
-from runner.sweeps.tuning.objective import Objective
-from runner.sweeps.tuning.trial import Trial
+from runner.sweeps.tuning.objective import Objective, Trial
 
 SPREAD = 10
 """Number of the first trials of `runner tune`, which are spread evenly over the ranges."""

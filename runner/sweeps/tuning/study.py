@@ -10,8 +10,7 @@ from runner.store.atomic import write_atomically
 from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.sweep import write_jobs
 from runner.sweeps.tuning.key import Key
-from runner.sweeps.tuning.objective import Objective
-from runner.sweeps.tuning.trial import Trial, best
+from runner.sweeps.tuning.objective import Objective, Trial, best
 
 _FILE = "tuning.json"
 _MEND = "the tuning's command makes it again"

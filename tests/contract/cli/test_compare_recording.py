@@ -14,7 +14,7 @@ from runner.recordings.compare import compare_recording
 from runner.reporting import html
 from runner.reporting.formulas import faulty
 from runner.reporting.recording_report import recording_document, report_folder
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 HERE = examples_dir() / "recording"
 VISCOUS, COULOMB = (1.2, 0.8, 0.5), (1.5, 1.0, 0.6)  # of the arm in make_recording.py

@@ -16,7 +16,7 @@ from runner.study.findings import finding
 from runner.study.measured import Measured
 from runner.study.study import load_study
 from runner.sweeps import work as workers
-from runner.sweeps.lock import at_work
+from runner.sweeps.status import at_work
 
 FILES = {
     "study.yaml": "title: T\nsource: S\nabstract: A\nchapters: [one.md, two.md]\n",

@@ -7,7 +7,7 @@ from support.printed import without_caveats
 
 from runner.store import open_runs
 from runner.store.seal import sealed_json
-from runner.sweeps.lock import at_work
+from runner.sweeps.status import at_work
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 from support.printed import without_caveats, without_results
 
 from runner.config.compose.options import group_options, groups
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 SWING = Path(__file__).parents[3] / "examples" / "swing.csv"
 

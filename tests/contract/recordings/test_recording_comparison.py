@@ -5,7 +5,7 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.recordings.compare import compare_recording
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 JOINTS = "a1: {joint: q1, unit: rad}, a2: {joint: q2, unit: rad}, a3: {joint: q3, unit: rad}"
 TORQUES = "c1: {torque: q1, unit: N m}, c2: {torque: q2, unit: N m}, c3: {torque: q3, unit: N m}"

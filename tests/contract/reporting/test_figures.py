@@ -15,7 +15,7 @@ from runner.reporting.figures import (
     playback,
     torque_and_error,
 )
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 
 @pytest.fixture

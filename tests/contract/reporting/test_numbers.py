@@ -12,7 +12,7 @@ from runner.study.prose.blocks import metric, percent, round_to
 from runner.study.prose.plots import over
 from runner.study.prose.signals import setting
 from runner.study.prose.tables import column, level, table
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 
 @pytest.fixture(scope="module")

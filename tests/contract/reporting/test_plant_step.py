@@ -6,7 +6,7 @@ from runner.base.engines import has_pybullet
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.run_report import run_document
 from runner.reporting.words import PLANT
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 KIND = "bullet" if has_pybullet() else "mujoco"
 CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=1.5", f"plant={KIND}")

@@ -14,7 +14,7 @@ from runner.reporting.metric_titles import title
 from runner.reporting.render import write_report
 from runner.reporting.run_report import provenance, run_document
 from runner.reporting.words import PLANT
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 
 @pytest.fixture

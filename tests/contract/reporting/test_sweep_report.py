@@ -11,7 +11,7 @@ from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
 from runner.reporting.sweep.report import sweep_document
 from runner.store import open_sweep, write_sweep
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 PERIODS, RATES = (0.005, 0.01, 0.02, 0.04), (20, 40, 80)
 

@@ -12,10 +12,9 @@ from runner.reporting.markup import literal
 from runner.reporting.tuning.report import tuning_document
 from runner.reporting.tuning.sections import history_section
 from runner.reporting.tuning.subject import Subject
-from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective, Trial
 from runner.sweeps.tuning.run import tune
 from runner.sweeps.tuning.study import at_ends
-from runner.sweeps.tuning.trial import Trial
 
 GOALS = (Objective("peak_torque", "minimize"), Objective("rms_torque", "maximize"))
 KEYS = ("controller.natural_frequency=tag(log,interval(5,80))", "controller.damping_ratio=interval(0.3,2)")

@@ -12,7 +12,7 @@ from runner.reporting.outline import blocks
 from runner.reporting.spec_blocks import spec_rows
 from runner.reporting.sweep.report import sweep_document
 from runner.store import judge_run, open_run, open_sweep, write_sweep
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 SHORT = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.3", "repetitions=12")
 METRIC = "cross_track_error"

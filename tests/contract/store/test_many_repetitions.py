@@ -11,7 +11,7 @@ import runner
 from runner.metrics.summary import MOST_LISTED
 from runner.reporting.comparison.pairs import MOST_PAIRS
 from runner.store import DamagedError, open_run
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 from runner.sweeps.measurements import measure_sweep
 from runner.symbolic.engine import evaluator
 

@@ -11,7 +11,7 @@ from runner.plugins.metric_units import unit_of
 from runner.reporting.claims import load_claims
 from runner.store import Run
 from runner.store.references import Band, Reference, check_run, load_reference, shipped_references
-from runner.store.references.shipped import reference_path
+from runner.store.references.reference import reference_path
 
 
 @pytest.fixture

@@ -90,15 +90,15 @@ def test_a_new_file_that_comes_first_counts(cli, composed, mine):
 
 
 def test_a_file_that_changes_while_the_run_is_made_leaves_nothing_to_keep(cli, composed, mine, monkeypatch):
-    from runner.sweeps import execution
+    from runner.sweeps import job
 
-    make = execution.find_or_make
+    make = job.find_or_make
 
     def changing(config):
         (mine / "robot" / "arm.yaml").write_text(f"{CONFIG}\n")
         return make(config)
 
-    monkeypatch.setattr(execution, "find_or_make", changing)
+    monkeypatch.setattr(job, "find_or_make", changing)
     cli(*OWN)
     (mine / "robot" / "arm.yaml").write_text(CONFIG)
     cli(*OWN)

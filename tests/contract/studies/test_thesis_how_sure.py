@@ -10,13 +10,13 @@ from scipy import stats
 from support.study_sections import every_run, texts, unfinished_texts
 
 from runner.reporting.claims import load_claims
-from runner.statistics.share import count_share
+from runner.statistics.proportion import count_share
 from runner.store import Run
 from runner.studies.thesis import how_sure
 from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
 from runner.study.findings import Finding
 from runner.study.study import load_study
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 CLAIMS = load_claims("thesis")
 SEEDS, OWN = 400, 40

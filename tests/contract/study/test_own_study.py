@@ -13,7 +13,7 @@ from runner.reporting.document import Table
 from runner.study.check import problems
 from runner.study.names import find_study, study_names, write_new
 from runner.study.study import load_study
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 ABOUT = "title: T\nsource: S\nabstract: A\nchapters: [one.md]\n"
 RUNS = """\

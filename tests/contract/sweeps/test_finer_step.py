@@ -9,8 +9,8 @@ from runner.reporting.comparison.cells import one_cell
 from runner.reporting.comparison.operand import side_of_run
 from runner.reporting.comparison.pairs import compare
 from runner.store.finer import finer_names, read_finer
-from runner.sweeps.execution import run
 from runner.sweeps.finer_step import DRAWS, work_out
+from runner.sweeps.job import run
 
 TASK = ("robot=macro", "trajectory=quintic", "trajectory.duration=0.5", "duration=0.6", "noise=thesis")
 

@@ -10,8 +10,7 @@ from runner.base.errors import StoreError
 from runner.store.seal import Lines
 from runner.sweeps.tuning.journal import Journal, read_trials
 from runner.sweeps.tuning.key import Key
-from runner.sweeps.tuning.objective import Objective
-from runner.sweeps.tuning.trial import Trial
+from runner.sweeps.tuning.objective import Objective, Trial
 
 KEYS = [Key("x", 0.0, 1.0, None, False, False)]
 GOALS = [Objective("settling_time", "minimize"), Objective("peak_torque", "maximize")]

@@ -7,17 +7,16 @@ import pytest
 from support.patience import PATIENCE
 
 from runner.base.errors import RunnerError
-from runner.sweeps import lock
-from runner.sweeps.lock import at_work, is_at_work
+from runner.sweeps.status import at_work, is_at_work
 
 HOLDS = (
-    "import sys; from pathlib import Path; from runner.sweeps.lock import at_work; \n"
+    "import sys; from pathlib import Path; from runner.sweeps.status import at_work; \n"
     "with at_work(Path(sys.argv[1])): print('held', flush=True); sys.stdin.read()"
 )
 
 
 def test_a_killed_process_leaves_no_lock(tmp_path, monkeypatch):
-    monkeypatch.setattr(lock, "_PATIENCE", 0.1)
+    monkeypatch.setattr("runner.sweeps.status._PATIENCE", 0.1)
     holder = subprocess.Popen([sys.executable, "-c", HOLDS, tmp_path], stdin=-1, stdout=-1)
     assert holder.stdout.readline() == b"held\n"
     assert is_at_work(tmp_path)

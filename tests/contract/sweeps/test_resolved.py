@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from runner.robots.model import RobotModel
-from runner.sweeps.execution import run
-from runner.sweeps.resolved import DISTANCE, Resolver
+from runner.sweeps.differing import DISTANCE, Resolver
+from runner.sweeps.job import run
 
 
 @pytest.fixture

@@ -18,12 +18,12 @@ from runner import store
 from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.simulation.command import Command
 from runner.simulation.compiled.closed_loop import CommandsRun
-from runner.sweeps import lock, work
+from runner.sweeps import work
 from runner.sweeps.deadline import TimeLimitError
+from runner.sweeps.estimate import Estimate
 from runner.sweeps.grid import plan_sweep
-from runner.sweeps.pace import Estimate
-from runner.sweeps.rules import one_in
 from runner.sweeps.run import Engine
+from runner.sweeps.writer import one_in
 from runner.symbolic.engine import evaluator
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic", "duration=1")
@@ -235,7 +235,7 @@ def test_a_second_sweep_says_that_the_first_is_at_work(sweep, threads, monkeypat
         return make(*arguments)
 
     monkeypatch.setattr(work, "_make", wait)
-    monkeypatch.setattr(lock, "_PATIENCE", 0.1)
+    monkeypatch.setattr("runner.sweeps.status._PATIENCE", 0.1)
     first = threads.submit(sweep, "seed=0,1")
     assert begun.wait(PATIENCE)
     with pytest.raises(RunnerError, match="another sweep is at work in"):

@@ -9,7 +9,7 @@ import pytest
 
 from runner.statistics import median_interval
 from runner.store import write_sweep
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 from runner.sweeps.measurements import Axis, Measurements
 from runner.sweeps.table import table, write_table
 

@@ -5,13 +5,13 @@ from support.short_runs import SHORT
 
 from runner import store
 from runner.sweeps.loading import Loader
-from runner.sweeps.rules import Rules
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective
 from runner.sweeps.tuning.queue import TrialQueue
 from runner.sweeps.tuning.study import Study
 from runner.sweeps.work import work
+from runner.sweeps.writer import Rules
 
 
 @pytest.fixture

@@ -8,8 +8,7 @@ from runner import store
 from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.store import SchemaError
 from runner.store.seal import sealed_json
-from runner.sweeps import lock
-from runner.sweeps.lock import at_work
+from runner.sweeps.status import at_work
 from runner.sweeps.tuning.study import journal_path, open_tuning
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "duration=1")
@@ -183,7 +182,7 @@ def test_a_metric_that_these_runs_do_not_have_is_told(tuned):
 
 
 def test_two_at_once_in_one_folder(tuned, tmp_path, monkeypatch):
-    monkeypatch.setattr(lock, "_PATIENCE", 0.1)
+    monkeypatch.setattr("runner.sweeps.status._PATIENCE", 0.1)
     (tmp_path / "outputs").mkdir()
     with at_work(tmp_path / "outputs"), pytest.raises(RunnerError, match="another sweep is at work"):
         tuned()

@@ -5,7 +5,7 @@ import pytest
 from support.physics import critically_damped
 
 from runner.controllers.force.force_stability import force_loop_limit
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 POSTURE = "[0.3,0.4,-0.5]"
 NORMAL = np.array([0.0, -1.0, 0.0])

@@ -13,7 +13,7 @@ from runner.robots.model import RobotModel
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 H, OMEGA, GAIN = 0.001, 30.0, 0.8
 CIRCLE = ("robot=macro", "controller=iterative_learning", "trajectory=circle", "trajectory.easing=none",

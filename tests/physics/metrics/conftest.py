@@ -1,6 +1,6 @@
 import pytest
 
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 
 @pytest.fixture(scope="session")

@@ -5,7 +5,7 @@ import pytest
 from runner.base.engines import has_pybullet
 from runner.metrics.caveats.plant_error import PlantStep, caveat_of
 from runner.metrics.plant_error import ErrorEstimate, PlantError
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 OWN = PlantStep("bullet", 1e-3, 0.01, 0.02)
 LIMIT = 0.1

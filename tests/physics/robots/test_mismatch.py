@@ -8,7 +8,7 @@ from runner.robots.mismatch import MismatchConfig, nominal_robot
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 WN = 20.0  # rad/s
 SAGGING = (

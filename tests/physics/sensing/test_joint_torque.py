@@ -7,9 +7,8 @@ from support.arms import checked, last_of_each
 from runner.base.errors import ConfigError
 from runner.sensing import JointTorqueSensor
 from runner.simulation.assembly import assemble
-from runner.simulation.joint_torques import make_joint_torque_sensor
 from runner.simulation.loop import simulate
-from runner.simulation.sensors import make_encoders
+from runner.simulation.sensors import make_encoders, make_joint_torque_sensor
 
 LINE = ("robot=macro", "controller=computed_torque", "controller.period=0.002", "trajectory=joint_quintic",
         "plant.friction.coulomb=0.5", "plant.friction.viscous=0.2", "duration=2", "disturbance_observer.bandwidth=60",

@@ -11,7 +11,7 @@ from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.plants.flexible_joints import FlexibleJoints
 from runner.simulation.assembly import assemble
-from runner.simulation.endpoint import make_measured_tips
+from runner.simulation.sensors import make_measured_tips
 
 KEY = "plant.flexible_joints"
 FLEXIBLE = (

@@ -7,7 +7,7 @@ from support.physics import assert_order
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.flexible_joints import with_nominal_motors
+from runner.config.flexibility import with_nominal_motors
 from runner.config.validation import validate
 from runner.plants.flexible_joints import links_of
 from runner.robots.armature import with_armature

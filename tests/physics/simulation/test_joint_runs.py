@@ -8,7 +8,7 @@ from runner.metrics import evaluate
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 JOINTS = ("robot=macro", "trajectory=joint_quintic", "plant=rk4", "trajectory.duration=1", "duration=1.5")
 

@@ -8,7 +8,7 @@ from runner.base.errors import ConfigError
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 ENGINES = ("rk4", "bullet", "mujoco")
 HELD = ("robot=macro", "controller=computed_torque", "trajectory=joint_quintic", "trajectory.duration=0.5")

@@ -11,8 +11,7 @@ from runner.base.trace import Failure
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.metrics.plant_error import compare, on_runge_kutta, sufficient_step
-from runner.sweeps.execution import run
-from runner.sweeps.job import simulate_job
+from runner.sweeps.job import run, simulate_job
 
 CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=1.5")
 OTHER = "bullet" if has_pybullet() else "mujoco"

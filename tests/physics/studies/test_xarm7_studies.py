@@ -16,7 +16,7 @@ from runner.studies.xarm7.null_space import between_commands, drifts, way
 from runner.studies.xarm7.payload import largest_payloads, lost_when, stretched
 from runner.studies.xarm7.why_it_failed import invert, jacobians
 from runner.study.prose.signals import largest_of
-from runner.sweeps.execution import run
+from runner.sweeps.job import run
 
 NULL_SPACE_BOUND, TORQUE_BOUND = 1e-6, 1e-4  # m
 Make = Callable[[str], Run]

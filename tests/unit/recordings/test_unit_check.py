@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from runner.recordings.columns_map import Factor, Signal
-from runner.recordings.unit_check import other_units
+from runner.recordings.columns_map import Factor, Signal, other_units
 
 RUN = 0.2 + np.sin(np.linspace(0.0, 9.0, 200))
 DEG = Factor(math.pi / 180.0, "rad")

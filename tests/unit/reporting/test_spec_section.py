@@ -10,7 +10,7 @@ from runner.config.spec import Bound
 from runner.reporting.document import Curves, Maps, Table, Text
 from runner.reporting.sweep import spec
 from runner.reporting.sweep.subject import choose
-from runner.statistics.share import count_share
+from runner.statistics.proportion import count_share
 from runner.store.sweep import Sweep
 
 SPEC = {"rms": Bound(max=0.5)}

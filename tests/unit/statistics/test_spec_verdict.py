@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from runner.statistics.share import count_share
-from runner.statistics.spec.verdict import Verdict, judge_share
+from runner.statistics.proportion import count_share
+from runner.statistics.spec.kept import Verdict, judge_share
 
 
 @pytest.mark.parametrize(("failed", "says"), [(0, "kept"), (1, "broken")])

@@ -14,12 +14,11 @@ OTHERS = {
     "config/limits.py", "config/preset.py", "config/spec.py", "config/sweep.py", "doctor", "metrics/caveats",
     "plants/servo_contact_stability.py", "plugins/discovery.py", "plugins/folder_code.py", "recordings", "reporting",
     "schema/model.py", "schema/plausibility.py", "schema/units.py", "simulation/provenance.py", "simulation/result.py",
-    "statistics", "store", "studies", "study", "sweeps/block.py", "sweeps/closed_nodes.py", "sweeps/deadline.py",
-    "sweeps/differing.py", "sweeps/ends.py", "sweeps/engine.py", "sweeps/finer_step.py", "sweeps/gathering.py",
-    "sweeps/grid.py", "sweeps/listed.py", "sweeps/loading.py", "sweeps/lock.py", "sweeps/measurements.py",
-    "sweeps/metric_names.py", "sweeps/pace.py", "sweeps/plan.py", "sweeps/queue.py", "sweeps/resolved.py",
-    "sweeps/rules.py", "sweeps/run.py", "sweeps/shard_columns.py", "sweeps/shelf.py", "sweeps/status.py",
-    "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py", "sweeps/together.py", "sweeps/tuning", "sweeps/work.py",
+    "statistics", "store", "studies", "study", "sweeps/batch.py", "sweeps/closed_nodes.py", "sweeps/deadline.py",
+    "sweeps/differing.py", "sweeps/engine.py", "sweeps/estimate.py", "sweeps/explicit.py", "sweeps/finer_step.py",
+    "sweeps/gathering.py", "sweeps/grid.py", "sweeps/loading.py", "sweeps/measurements.py", "sweeps/outcomes.py",
+    "sweeps/plan.py", "sweeps/queue.py", "sweeps/run.py", "sweeps/shard_columns.py", "sweeps/status.py",
+    "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py", "sweeps/tuning", "sweeps/work.py", "sweeps/writer.py",
     "symbolic/cache.py",
 }  # fmt: skip
 TREE = {

@@ -4,8 +4,8 @@ import pickle
 
 import pytest
 
-from runner.sweeps.block import Alike
 from runner.sweeps.grid import plan_sweep
+from runner.sweeps.plan import Alike
 
 SHORT = ("robot=macro", "duration=0.05", "outputs=somewhere")
 

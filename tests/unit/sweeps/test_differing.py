@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.sweeps.differing import Difference, Resolved, find_differing_values, in_words
+from runner.sweeps.differing import Difference, Resolved, in_words
 from runner.sweeps.measurements import Axis
 
 MACRO = {"name": "macro", "home": [0.0], "period": 0.01, "settling_band": 0.02}
@@ -15,13 +15,21 @@ def config(robot=MACRO, law=LAW, **more):
     return {"seed": 0, "outputs": "o", "robot": robot, "controller": law, "noise": {"position": 1e-3}, **more}
 
 
+def find_differing(configs, axes):
+    """Return what differs between configs of cells, one after the other."""
+    resolved = Resolved()
+    for each in configs:
+        resolved.add(each)
+    return resolved.differences(axes)
+
+
 def axis(name, values, *level):
     return Axis(name, values, np.array(level))
 
 
 def test_what_goes_with_a_swept_robot_is_found_and_its_own_parts_are_not():
     fast = {**LAW, "natural_frequency": 5.0, "period": 0.001}
-    found = find_differing_values([config(), config(XARM7, fast)], [axis("robot", ["macro", "xarm7"], 0, 1)])
+    found = find_differing([config(), config(XARM7, fast)], [axis("robot", ["macro", "xarm7"], 0, 1)])
     assert found == [
         Difference("robot.settling_band", ("robot",), [("macro", "0.02"), ("xarm7", "0.001")]),
         Difference("controller.natural_frequency", ("robot",), [("macro", "30"), ("xarm7", "5")]),
@@ -33,7 +41,7 @@ def test_what_goes_with_a_swept_robot_is_found_and_its_own_parts_are_not():
 def test_what_is_swept_does_not_differ_beyond_itself(key):
     noises = [config(noise={"position": value}) for value in (1e-3, 1e-4)]
     names = [1e-4, 1e-3] if key == "noise.position" else ["{position: 1e-3}", "{position: 1e-4}"]
-    found = find_differing_values(noises, [axis(key, names, 1, 0)])
+    found = find_differing(noises, [axis(key, names, 1, 0)])
     # Of a swept group that both options have is told, as it may be what they are compared by.
     assert [difference.key for difference in found] == ([] if key == "noise.position" else ["noise.position"])
 
@@ -41,34 +49,32 @@ def test_what_is_swept_does_not_differ_beyond_itself(key):
 def test_what_only_one_law_has_is_what_it_is():
     other = {"kind": "other", "natural_frequency": 30.0, "period": 0.01, "gain": 2.0}
     laws = [axis("controller", ["computed_torque", "other"], 0, 1)]
-    assert find_differing_values([config(), config(law=other)], laws) == []
-    (found,) = find_differing_values([config(), config(law={**other, "period": 0.02})], laws)
+    assert find_differing([config(), config(law=other)], laws) == []
+    (found,) = find_differing([config(), config(law={**other, "period": 0.02})], laws)
     assert found == Difference("controller.period", ("controller",), [("computed_torque", "0.01"), ("other", "0.02")])
 
 
 def test_where_a_run_is_kept_is_no_difference_and_equal_numbers_are_equal():
-    assert (
-        find_differing_values([config(duration=1), config(duration=1.0, outputs="p", sweep={"trace": "all"})], []) == []
-    )
+    assert find_differing([config(duration=1), config(duration=1.0, outputs="p", sweep={"trace": "all"})], []) == []
 
 
 def test_a_value_follows_as_few_axes_as_it_can():
     axes = [axis("robot", ["macro", "xarm7"], 0, 0, 1, 1), axis("seed", [0.0, 1.0], 0, 1, 0, 1)]
     cells = [config(step=step, seed=seed, gain=gain) for step, seed, gain in
              ((1, 0, "a"), (1, 1, "b"), (2, 0, "b"), (2, 1, "b"))]  # fmt: skip
-    by_both, by_robot = find_differing_values(cells, axes)
+    by_both, by_robot = find_differing(cells, axes)
     assert by_robot == Difference("step", ("robot",), [("macro", "1"), ("xarm7", "2")])
     assert by_both.axes == ("robot", "seed")
     assert by_both.values == [("macro and 0", "a"), ("macro and 1, xarm7 and 0, xarm7 and 1", "b")]
 
 
 def test_what_follows_no_axis_is_told_too():
-    (found,) = find_differing_values([config(duration=1), config(duration=2)], [axis("seed", [0.0], 0, 0)])
+    (found,) = find_differing([config(duration=1), config(duration=2)], [axis("seed", [0.0], 0, 0)])
     assert found == Difference("duration", (), [("", "1"), ("", "2")])
 
 
 def test_a_key_that_some_cells_lack_is_told():
-    (found,) = find_differing_values([config(), config(duration=2)], [axis("preset", ["a", "b"], 0, 1)])
+    (found,) = find_differing([config(), config(duration=2)], [axis("preset", ["a", "b"], 0, 1)])
     assert found == Difference("duration", ("preset",), [("a", "–"), ("b", "2")])
 
 

@@ -5,9 +5,8 @@ from pathlib import Path
 import pytest
 
 from runner.sweeps.tuning.key import Key
-from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective, Trial
 from runner.sweeps.tuning.study import Study, Tuning, at_ends
-from runner.sweeps.tuning.trial import Trial
 
 RATIO = Key("controller.damping_ratio", 0.5, 1.5, None, False, False)
 GOALS = [Objective("peak_torque", "minimize"), Objective("rms_torque", "minimize")]

@@ -7,8 +7,8 @@ from runner.config.compose.compose import Composed
 from runner.store import Outcome
 from runner.sweeps import queue as queues
 from runner.sweeps.queue import Queue
-from runner.sweeps.rules import Rules
 from runner.sweeps.work import Report
+from runner.sweeps.writer import Rules
 
 
 class Cells:

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from runner.sweeps.tuning.key import Key
-from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective, Trial
 from runner.sweeps.tuning.sampler import importances, make_optuna_trial, propose, read_ended
-from runner.sweeps.tuning.trial import Trial
 
 KEYS = [
     Key("x", 1e-2, 1e2, None, True, False),

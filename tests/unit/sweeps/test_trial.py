@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.sweeps.tuning.objective import Objective
-from runner.sweeps.tuning.trial import Trial, best
+from runner.sweeps.tuning.objective import Objective, Trial, best
 
 LESS = Objective("settling_time", "minimize")
 MORE = Objective("peak_torque", "maximize")

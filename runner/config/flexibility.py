@@ -1,0 +1,150 @@
+"""Flexible joints and links: checks, and the nominal model."""
+
+import numpy as np
+
+from runner.base.errors import ConfigError
+from runner.config.run import RunConfig
+from runner.controllers.joint_space.motor_pd import MotorPdConfig
+from runner.plants import Plant
+from runner.plants.decoupled import TorquePlantConfig, find_motion
+from runner.plants.flexible_joints import Flexibility, FlexibleJoints, links_of
+from runner.plants.kinds import HasFlexibleJoints
+from runner.plants.motors import MotorSide
+from runner.plants.plant import unwrapped
+from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
+from runner.robots.armature import with_armature
+from runner.robots.chain import stiffen_robot
+from runner.robots.robot import Robot
+
+_FASTEST = 0.5  # step times the largest rate: the scheme's own damping ratio, (rate h)^5/144, is 2.2e-4 there
+
+
+def find_flexibility(config: RunConfig) -> Flexibility | None:
+    """Return springs and motors of a run's joints; None where they are rigid.
+
+    Raises:
+        ConfigError: see FlexibleJointsConfig.by_joint.
+    """
+    joints = config.plant.flexible_joints if isinstance(config.plant, HasFlexibleJoints) else None
+    return None if joints is None else joints.by_joint(config.arm)
+
+
+def with_nominal_motors(config: RunConfig, nominal: Robot) -> Robot:
+    """Return a nominal robot with the motors of the flexible joints."""
+    flexibility = find_flexibility(config)
+    if flexibility is None:
+        return nominal
+    own = nominal.model.armature
+    return with_armature(nominal, np.where(flexibility.flexible, flexibility.motors, own))
+
+
+def find_motor_side(config: RunConfig, plant: Plant, nominal: Robot) -> MotorSide | None:
+    """Return what drives and encoders know of the motors of a plant; None where joints are rigid."""
+    springs = unwrapped(plant)
+    joints = config.plant.flexible_joints if isinstance(config.plant, HasFlexibleJoints) else None
+    if not isinstance(springs, FlexibleJoints):
+        return None
+    known = joints is not None and joints.static_deflection == "known"
+    at_motors = joints is not None and joints.encoders == "motor"
+    return MotorSide(springs, at_motors, nominal.model if known else None)
+
+
+def check_flexible_joints(config: RunConfig) -> None:
+    """Check that flexible joints meet a step that follows their fastest mode, and nothing that takes them for rigid.
+
+    Raises:
+        ConfigError: where they do not.
+    """
+    flexibility, by_motors = find_flexibility(config), isinstance(config.controller, MotorPdConfig)
+    if by_motors and flexibility is None:
+        raise ConfigError(
+            ["controller.kind: motor_pd turns motors behind springs; take plant=rk4_flexible, or controller=joint_pd"]
+        )
+    if flexibility is None or not isinstance(config.plant, TorquePlantConfig):
+        return
+    problems = [f"plant.flexible_joints: {problem}" for problem in _refused(config, config.plant, flexibility)]
+    links = links_of(config.arm.model, flexibility.flexible)
+    rate, step = flexibility.largest_rate(links.mass_matrix(config.arm.home)), config.timing.step
+    if rate * step > _FASTEST:
+        steps = int(np.ceil(rate * config.timing.tick / _FASTEST))
+        problems.append(
+            f"plant.step: {step:g} s is too long for the fastest mode of the flexible joints, {rate / (2 * np.pi):.3g} "
+            f"Hz at home; allowed: up to {_FASTEST / rate:.3g} s, such as {config.timing.tick / steps:g}"
+        )
+    if problems:
+        raise ConfigError(problems)
+
+
+def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibility) -> list[str]:
+    """Return what of a config takes its joints for rigid."""
+    problems = []
+    if config.commands != "torque":
+        problems.append(
+            f"{config.controller.kind} commands joint positions, whose servos turn links; take a controller that gives "
+            "torques"
+        )
+    if len(config.arm.stages) > 1 and plant.dynamics == "decoupled":
+        problems.append("stages that do not feel each other have rigid joints; take plant.dynamics=coupled")
+    (moved,) = find_motion(config.arm, plant.model_copy(update={"dynamics": "coupled", "wrist_rotation": "real"})).arms
+    if ((moved.viscous > 0.0) | (moved.coulomb > 0.0))[~flexibility.flexible].any():
+        problems.append(
+            "plant.friction acts on the motors of flexible joints alone; take a list with 0 for the joints that are "
+            "rigid"
+        )
+    if config.environment.kind == "wall":
+        problems.append("a wall is met by arms with rigid joints; take environment=push or environment=free")
+    if config.loaded:
+        problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
+    if config.joint_torques is not None:
+        problems.append("torque sensors are read at rigid joints; take joint_torque_sensor.noise=null")
+    joints = plant.flexible_joints if isinstance(plant, HasFlexibleJoints) else None
+    theta = joints is not None and joints.encoders == "motor" and joints.static_deflection == "unknown"
+    if isinstance(config.controller, MotorPdConfig) and not theta:
+        problems.append(
+            "motor_pd reads theta as it is; take plant.flexible_joints.encoders=motor and .static_deflection=unknown"
+        )
+    return problems
+
+
+def is_flexible(config: RunConfig) -> bool:
+    """Tell whether joints or links are flexible; laws that believe in their motors are not compiled."""
+    return isinstance(config.plant, Rk4FlexibleLinksConfig) or find_flexibility(config) is not None
+
+
+def with_nominal_links(config: RunConfig, nominal: Robot) -> Robot:
+    """Return a rigid nominal robot with the masses of flexible links and motors."""
+    if not isinstance(config.plant, Rk4FlexibleLinksConfig):
+        return nominal
+    return with_armature(stiffen_robot(nominal, config.plant.beams(config.arm)), config.plant.motors(config.arm))
+
+
+def check_flexible_links(config: RunConfig) -> None:
+    """Check that links that bend meet a step that follows their fastest mode, and nothing that takes them for rigid.
+
+    Raises:
+        ConfigError: where they do not.
+    """
+    if not isinstance(config.plant, Rk4FlexibleLinksConfig):
+        return
+    config.plant.motors(config.arm)
+    problems = []
+    if config.has_contact:
+        problems.append("a force on the tip would act on rigid links; take environment=free and a law that feels none")
+    if config.loaded:
+        problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
+    if config.joint_torques is not None:
+        problems.append("torque sensors are read in rigid arms; take joint_torque_sensor.noise=null")
+    problems = [f"plant.links: {problem}" for problem in problems]
+    try:
+        rate, tick, step = config.plant.largest_rate(config.arm), config.timing.tick, config.timing.step
+    except np.linalg.LinAlgError:
+        rate, tick, step = np.inf, config.timing.tick, config.timing.step
+    if not rate < 1e9:
+        problems.append("plant.motor_inertia: a link without mass turns with its motor alone; give each joint one")
+    elif rate * step > _FASTEST:
+        problems.append(
+            f"plant.step: {step:g} s is too long for the fastest mode of the links, {rate / (2 * np.pi):.3g} Hz at "
+            f"home; allowed: up to {_FASTEST / rate:.3g} s, such as {tick / np.ceil(rate * tick / _FASTEST):g}"
+        )
+    if problems:
+        raise ConfigError(problems)

@@ -1,0 +1,60 @@
+"""Caveat rule on contents of the robot's files that are missing in the run."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from runner.metrics.caveats.rule import SettingRule
+from runner.metrics.caveats.setting import Setting
+
+if TYPE_CHECKING:
+    from runner.config.run import RunConfig
+
+_IDEAL = "kinematic"  # the plant that no force moves
+
+
+def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
+    """Return what the robot's files hold that would change the motion and is not in a run, in words by file.
+
+    Damping, friction and armature that the file gives a joint count where the joint has none of it in the run; nothing
+    counts where no force moves the arm.
+    """
+    from runner.config.flexibility import find_flexibility
+    from runner.plants.decoupled import TorquePlantConfig, friction_by_joint
+    from runner.robots.joint_dynamics import by_value
+
+    arm, plant = config.arm, config.plant
+    if plant.kind == _IDEAL:
+        return {}
+    viscous, coulomb = np.zeros((2, arm.model.nq))
+    if isinstance(plant, TorquePlantConfig):
+        viscous, coulomb = friction_by_joint(arm, plant.friction)
+    flexibility = find_flexibility(config)
+    armature = arm.model.armature
+    if flexibility is not None:
+        armature = np.maximum(armature, flexibility.motors)
+    found = {}
+    for stage in arm.stages:
+        if stage.file is None:
+            continue
+        parts = list(stage.file.left_out)
+        for (what, key, held), given in zip(stage.file.by_key(), (viscous, coulomb, armature), strict=True):
+            lost = np.where(given[stage.joints] == 0.0, held, 0.0)
+            if lost.any():
+                parts.append(f"{what} ({key}): {by_value(lost, stage.model.joint_names)}")
+        if parts:
+            found[stage.file.file] = parts
+    return found
+
+
+def _left_out(setting: Setting) -> float | None:
+    """Return how many things in the robot's files would change the motion and are not in the run."""
+    return float(sum(map(len, setting.left_out.values()))) if setting.left_out else None
+
+
+def _tell_left_out(value: float, setting: Setting) -> str:
+    return "; ".join(f"not taken from {file}: {'; '.join(parts)}" for file, parts in setting.left_out.items())
+
+
+ROBOT_FILE = SettingRule("robot_file", "left_out", _left_out, _tell_left_out)

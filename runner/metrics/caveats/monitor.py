@@ -1,0 +1,140 @@
+"""Evaluation of the caveat rules in every repetition, with the worst value of each rule."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import accumulate
+from operator import attrgetter
+
+import numpy as np
+
+from runner.base.arrays import FloatArray
+from runner.base.cache import Memory
+from runner.config.caveats import CaveatsConfig
+from runner.metrics.caveats import plant_error
+from runner.metrics.caveats.plant_error import PlantStep, caveat_of
+from runner.metrics.caveats.registry import KEYS, SETTING_RULES, TRACE_RULES, rules_digest
+from runner.metrics.caveats.rule import Caveat, Found, TraceRule
+from runner.metrics.caveats.setting import Setting, Signals
+from runner.metrics.plant_error import PlantError
+
+_KEYS = {name: KEYS[name] for name in CaveatsConfig.model_fields}
+_values = attrgetter(*(f"{name}.{key}" for name, key in _KEYS.items()))
+
+_MEMORY = Memory(64)  # runs of a sweep share their setting
+_BLOCK = 64  # runs at a time: what caches hold
+
+
+@dataclass
+class _Worst:
+    """The worst that a rule measured so far: value, joint, and how many repetitions sprung it."""
+
+    value: float = -np.inf
+    joint: int = 0
+    sprung: int = 0
+
+
+class Watch:
+    """Looks at the repetitions of a run, one after another or several at once.
+
+    Args:
+        setting: The run's setting.
+        thresholds: What it must exceed.
+    """
+
+    def __init__(self, setting: Setting, thresholds: CaveatsConfig) -> None:
+        self._setting = setting
+        self._thresholds, self._limits = _by_rule(_values(thresholds))
+        self._worst: dict[str, _Worst] = {}
+        self._seen = 0
+
+    def look(self, signals: Signals) -> None:
+        """Look at the signals of one repetition, or of several that have an axis in front."""
+        look_together([self], signals)
+
+    def join(self, later: "Watch") -> None:
+        """Take what the watch of later repetitions of the same run saw."""
+        self._seen += later._seen
+        for name, theirs in later._worst.items():
+            worst = self._worst.setdefault(name, _Worst())
+            worst.sprung += theirs.sprung
+            if theirs.value > worst.value:
+                worst.value, worst.joint = theirs.value, theirs.joint
+
+    def found(self, error: PlantError | None = None, step: PlantStep | None = None) -> Found:
+        """Return what was found; of a run without a repetition that ended well only what its config says.
+
+        Args:
+            error: What the plant's step is worth, where that was measured.
+            step: That step.
+        """
+        caveats = [
+            Caveat(rule.name, self._told(rule, worst), worst.value)
+            for rule in TRACE_RULES
+            if (worst := self._worst.get(rule.name))
+        ]
+        caveats += _MEMORY.recall(_of_setting, self._setting, self._thresholds)
+        if error is not None and step is not None:
+            threshold = self._thresholds[plant_error.NAME][plant_error.KEY]
+            caveats += filter(None, [caveat_of(error, step, threshold)])
+        return Found(caveats, rules_digest(), self._thresholds)
+
+    def _note(self, rule: TraceRule, values: FloatArray, sprung: int) -> None:
+        """Note what a rule measured, shape (repetitions, n), and in how many of these it was sprung."""
+        worst = self._worst.setdefault(rule.name, _Worst())
+        worst.sprung += sprung
+        largest = int(values.argmax())
+        value = float(values.flat[largest])
+        if value > worst.value:
+            worst.value, worst.joint = value, largest % values.shape[-1]
+
+    def _told(self, rule: TraceRule, worst: _Worst) -> str:
+        text = rule.tell(worst.value, worst.joint, self._setting)
+        return text if self._setting.repetitions == 1 else f"{text}, in {worst.sprung} of {self._seen} repetitions"
+
+
+def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]]) -> list[Caveat]:
+    """Return what the config of a run says."""
+    caveats = []
+    for rule in SETTING_RULES:
+        value = rule.measure(setting)
+        if value is not None and value > thresholds[rule.name][rule.key]:
+            caveats.append(Caveat(rule.name, rule.tell(value, setting), value))
+    return caveats
+
+
+def look_together(watches: Sequence[Watch], signals: Signals) -> None:
+    """Look at the signals of several runs at once, each with a watch of its own.
+
+    Args:
+        watches: The watch of each run. Their settings may differ in numbers of the config, not in what acts: plant,
+            commands, periods, kind of path, environment and settling band are those of the first.
+        signals: Those of all runs, which stand on the first axis, or of one; repetitions may stand on the next.
+    """
+    if len(watches) == 1 and signals.q.ndim == 3 and len(signals.q) > _BLOCK:
+        for first in range(0, len(signals.q), _BLOCK):
+            look_together(watches, signals.part(first, first + _BLOCK))
+        return
+    if len(watches) > _BLOCK:
+        for first in range(0, len(watches), _BLOCK):
+            last = first + _BLOCK
+            look_together(watches[first:last], signals.part(first, last))
+        return
+    measured = [rule.measure(signals, watches[0]._setting) for rule in TRACE_RULES]
+    firsts = [0, *accumulate(values.shape[-1] for values in measured[:-1])]
+    worst = np.maximum.reduceat(np.concatenate(measured, axis=-1), firsts, axis=-1)
+    worst = worst.reshape(len(watches), -1, len(TRACE_RULES))
+    limits = np.array([watch._limits for watch in watches])
+    sprung = (worst > limits[:, None]).sum(axis=1)
+    for watch in watches:
+        watch._seen += worst.shape[1]
+    for run, number in zip(*sprung.nonzero(), strict=True):
+        values = measured[number].reshape(*worst.shape[:2], -1)[run]
+        watches[run]._note(TRACE_RULES[number], values, int(sprung[run, number]))
+
+
+@lru_cache(maxsize=8)  # as the runs of a sweep share their thresholds
+def _by_rule(values: tuple[float, ...]) -> tuple[Mapping[str, Mapping[str, float]], Sequence[float]]:
+    """Return thresholds by rule and key, as they are stored, and those of the rules on signals in their order."""
+    thresholds = {name: {key: value} for (name, key), value in zip(_KEYS.items(), values, strict=True)}
+    return thresholds, [thresholds[rule.name][rule.key] for rule in TRACE_RULES]

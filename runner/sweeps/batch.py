@@ -1,0 +1,94 @@
+"""Batch simulation of the runs of a chunk."""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import astuple
+
+import numpy as np
+
+from runner import store
+from runner.base.errors import StoreError
+from runner.metrics.summary import MOST_LISTED
+from runner.plugins.metric_units import units_of
+from runner.simulation.batch import BatchSimulator
+from runner.simulation.batch_jobs import Job, Simulated, simulate_together
+from runner.simulation.provenance import command, job_provenance
+from runner.store.json_texts import JsonTexts
+from runner.store.shards import ShardRow
+from runner.store.writing import record_texts
+from runner.sweeps.deadline import TimeLimitError, deadline
+from runner.sweeps.writer import ResultWriter, Rules, without_trace
+
+Named = tuple[str, Simulated]
+
+
+def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, writer: ResultWriter) -> tuple[set[str], bool]:
+    """Simulate those of some runs that can be simulated together; return which are made, and whether one failed.
+
+    Runs of so many repetitions that their records do not list them are left to be made one by one, block after block.
+
+    Where anything goes wrong with them all, as a part of the user's may do, the rest is left to be made one by one,
+    which tells whose fault it is.
+
+    Args:
+        jobs: Name and checked config of each.
+        rules: How they are made and kept; the limit of a run's time holds for those that end together.
+        writer: Takes what is made.
+
+    Raises:
+        StoreError: if the disk does not take it.
+    """
+    batcher, texts, made, failed = BatchSimulator(), JsonTexts(), set[str](), False
+    try:
+        with deadline(rules.time_limit):
+            few = [(name, job) for name, job in jobs if job[0].settings.repetitions <= MOST_LISTED]
+            found = [(name, job, batcher.repetitions(job[0])) for name, job in few]
+        chosen = [(name, job, runs) for name, job, runs in found if runs is not None]
+        steps = simulate_together([job for _, job, _ in chosen], [runs for *_, runs in chosen], batcher)
+        while True:
+            with deadline(rules.time_limit):
+                complete = next(steps, None)
+            if complete is None:
+                break
+            named = [(chosen[run.place][0], run) for run in complete]
+            kept = [(n, run) for n, run in named if run.failure is not None or rules.keeps_trace(n, False)]
+            names = {name for name, _ in kept}
+            rows = list(_rows([(name, run) for name, run in named if name not in names], texts, batcher))
+            writer.put_rows(rows)
+            made.update(row.outcome.name for row in rows)
+            for name, run in kept:
+                failed = writer.put(name, without_trace(name, run.result(), rules)) or failed
+                made.add(name)
+    except StoreError:
+        raise
+    except (Exception, TimeLimitError):
+        return made, failed
+    return made, failed
+
+
+def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> Iterator[ShardRow]:
+    """Yield runs that ended well as rows of a shard."""
+    alike: dict[tuple[object, ...], list[Named]] = {}
+    for name, run in runs:
+        alike.setdefault((run.names, len(run.values)), []).append((name, run))
+    for some in alike.values():
+        names, values = some[0][1].names, np.array([run.values for _, run in some])  # runs, repetitions, metrics
+        metrics = tuple(zip(names, units_of(names), strict=True))
+        records = record_texts(
+            {metric: values[:, :, index] for index, metric in enumerate(names)},
+            [run.caveats for _, run in some],
+            some[0][1].timing,
+            [_provenance(run.job, batcher) for _, run in some],
+            texts,
+        )
+        for (name, run), record in zip(some, records, strict=True):
+            config, composed = run.job
+            end = store.Outcome(name, "", False, len(run.caveats.caveats))
+            yield ShardRow(end, texts.of(composed.resolved), config.arm.urdf, record, metrics, run.values)
+
+
+def _provenance(job: Job, batcher: BatchSimulator) -> dict[str, object]:
+    """Return where a run comes from, which is much the same for runs that share their parts."""
+    config, composed = job
+    parts = ("provenance", config.arm, config.plant, *astuple(config.timing), composed.choices, config.commands)
+    common = batcher.memory.known(parts, lambda: job_provenance(config, composed))
+    return {**common, "command": command(composed), "seed": config.settings.seed}
