@@ -19,7 +19,7 @@ from bench.allowed_values import describe
 from bench.compiled_table import compiled_section
 from runner.base.paths import conf_dir
 from runner.calibration.procedures import CALIBRATIONS
-from runner.cli.main import COMMANDS
+from runner.cli.help import COMMANDS
 from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
 from runner.config.compose.documentation import meanings, nested_model

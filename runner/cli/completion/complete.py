@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from runner.cli.completion.arguments import argument_words, files
 from runner.cli.completion.line import Line
 from runner.cli.completion.overrides import override_words
-from runner.cli.main import COMMANDS, HELP, SPELLED_OUT
+from runner.cli.help import COMMANDS, HELP, SPELLED_OUT
 
 _ROOTS = {"calibrate": "calibrate"}  # commands whose config hangs on another file of conf/ than that of a run
 _FLAG = re.compile(r"^  runner (--?[\w-]+)(?: ([a-z]+)(?= ))?", re.MULTILINE)  # in HELP, as `--cfg job`

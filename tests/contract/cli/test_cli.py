@@ -13,7 +13,7 @@ import yaml
 from support.engines import ASKED
 from support.printed import without_caveats
 
-from runner.cli.main import COMMANDS, GUIDE, HELP
+from runner.cli.help import COMMANDS, GUIDE, HELP
 from runner.config.compose.options import group_options
 from runner.store import open_sweep
 from runner.sweeps import job
