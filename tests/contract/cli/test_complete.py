@@ -4,8 +4,8 @@ import pytest
 
 from runner.cli.completion.complete import complete
 from runner.cli.completion.line import read_line
-from runner.cli.list import TOPICS
 from runner.cli.help import COMMANDS
+from runner.cli.list import TOPICS
 from runner.config.compose.options import group_options
 from runner.plugins.metric_units import units
 
