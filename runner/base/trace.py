@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Self
+from typing import Self, TypedDict
 
 import numpy as np
 
@@ -164,7 +164,7 @@ class Traces(Signals):
         """Return some of the runs."""
         return replace(self, **self._own(own))
 
-    def _own(self, runs: int | slice | list[int]) -> dict[str, Any]:
+    def _own(self, runs: int | slice | list[int]) -> "_Own":
         """Return the signals of one run or some that are not common to all."""
         return {
             "q": self.q[runs],
@@ -193,10 +193,37 @@ class Traces(Signals):
         return difference
 
 
-def _in_common(signals: Signals) -> dict[str, Any]:
+class _Common(TypedDict):
+    t: FloatArray
+    offsets: FloatArray
+    stage_names: tuple[str, ...]
+    joint_names: tuple[str, ...]
+    joint_units: tuple[str, ...]
+    tick_seconds: FloatArray
+    contact: ContactSignals | None
+
+
+class _Own(TypedDict):
+    q: FloatArray
+    dq: FloatArray
+    tau: FloatArray
+    end_points: FloatArray
+    desired: FloatArray
+    limits: FloatArray
+    q_command: FloatArray | None
+
+
+def _in_common(signals: Signals) -> _Common:
     """Return the signals that several runs have in common."""
-    names = ("t", "offsets", "stage_names", "joint_names", "joint_units", "tick_seconds", "contact")
-    return {name: getattr(signals, name) for name in names}
+    return {
+        "t": signals.t,
+        "offsets": signals.offsets,
+        "stage_names": signals.stage_names,
+        "joint_names": signals.joint_names,
+        "joint_units": signals.joint_units,
+        "tick_seconds": signals.tick_seconds,
+        "contact": signals.contact,
+    }
 
 
 def by_rows(values: FloatArray) -> FloatArray:

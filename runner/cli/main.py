@@ -13,11 +13,11 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, nearest, user_place
+from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import show_progress
 from runner.base.sanitize import one_line
 from runner.cli.completion import answer, is_asked
 from runner.cli.help import COMMANDS, GUIDE, HELP, SPELLED_OUT
-from runner.cli.help import COMMANDS as FORMER_COMMANDS
 
 
 def main() -> None:

@@ -1,13 +1,17 @@
 """Stored runs: content-addressed folders, written atomically, readable without the simulator."""
 
-from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
-from runner.store.finished import Finished, find_outcome, find_run
-from runner.store.identity import run_hash, run_hashes, simulated_part
-from runner.store.run import Run, is_run, judge_run, open_run
-from runner.store.seal import DamagedError, SchemaError
-from runner.store.shards import Outcome
-from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_grid, write_sweep
-from runner.store.writing import prepare, write_run
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
+    from runner.store.finished import Finished, find_outcome, find_run
+    from runner.store.identity import run_hash, run_hashes, simulated_part
+    from runner.store.run import Run, is_run, judge_run, open_run
+    from runner.store.seal import DamagedError, SchemaError
+    from runner.store.shards import Outcome
+    from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_grid, write_sweep
+    from runner.store.writing import prepare, write_run
 
 __all__ = [
     "Calibration",
@@ -36,3 +40,21 @@ __all__ = [
     "write_run",
     "write_sweep",
 ]
+_MODULES = {
+    "calibration": "Calibration find_calibration open_calibration write_calibration",
+    "finished": "Finished find_outcome find_run",
+    "identity": "run_hash run_hashes simulated_part",
+    "run": "Run is_run judge_run open_run",
+    "seal": "DamagedError SchemaError",
+    "shards": "Outcome",
+    "sweep": "Sweep is_sweep open_runs open_sweep write_grid write_sweep",
+    "writing": "prepare write_run",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is used when it is used: `latest` and `recall` answer without NumPy and pydantic."""
+    for module, names in _MODULES.items():
+        if name in names.split():
+            return getattr(import_module(f"runner.store.{module}"), name)
+    raise AttributeError(f"module 'runner.store' has no attribute '{name}'")

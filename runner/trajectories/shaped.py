@@ -3,13 +3,16 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.trajectories.impulses import Impulses
-from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.trajectory import Trajectory
+
+if TYPE_CHECKING:  # readers of stored runs use Shifted, and do without the simulator
+    from runner.trajectories.joint_motion import JointMotion
 
 
 @dataclass(frozen=True)
@@ -92,7 +95,7 @@ class ShapedJoints:
         impulses: The impulses.
     """
 
-    motion: JointMotion
+    motion: "JointMotion"
     impulses: Impulses
 
     @property

@@ -2,11 +2,11 @@
 
 import pytest
 
+from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.former_names import FILES, OPTIONS
 from runner.base.former_names import TOPICS as FORMER_TOPICS
 from runner.cli.completion.arguments import parser_of
 from runner.cli.help import COMMANDS
-from runner.cli.help import COMMANDS as FORMER_COMMANDS
 from runner.cli.list import TOPICS
 
 

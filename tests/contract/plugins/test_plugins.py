@@ -104,7 +104,8 @@ def test_a_module_named_on_the_command_line_runs_and_is_recorded(mine):
 
 def test_the_source_of_a_plug_in_decides_about_the_runs_name(mine):
     script = (
-        "from runner import plugins, store; plugins.use_plugins(['controller=mine/spring.py']); "
+        "from runner import store; from runner.plugins.discovery import use_plugins; "
+        "use_plugins(['controller=mine/spring.py']); "
         "print(store.run_hash({'controller': {'kind': 'spring'}}, ''))"
     )
 

@@ -6,6 +6,7 @@ import pytest
 
 from runner.metrics import summary
 from runner.plugins import discovery as plugins
+from runner.plugins import metric_units
 from runner.reporting.metric_titles import TITLES, metric_label, title
 
 
@@ -45,9 +46,9 @@ def test_a_family_from_outside_may_have_titles_of_its_own(titles, text, tmp_path
         f"UNITS = {{'way_q': 'm'}}\nTITLES = {titles}\n\n\ndef evaluate(trace, context):\n    return {{}}\n"
     )
     monkeypatch.setattr(
-        summary, "added_parts", lambda group: [type("Point", (), {"name": "own", "value": str(module)})()]
+        metric_units, "added_parts", lambda group: [type("Point", (), {"name": "own", "value": str(module)})()]
     )
-    monkeypatch.setattr(summary, "load", lambda group, name, value: _executed(module))
+    monkeypatch.setattr(metric_units, "load", lambda group, name, value: _executed(module))
     assert title("way_q_y") == text
 
 
@@ -58,4 +59,4 @@ def _executed(path):
 
 
 def test_plugins_are_asked_through_the_registry():
-    assert summary.added_parts is plugins.added_parts
+    assert metric_units.added_parts is plugins.added_parts

@@ -100,8 +100,8 @@ def test_with_held_motors_it_rings_as_its_modes_say(mass, parts):
     """Eigenvalues of the step, differentiated, against e^(s h) of the modes, damping included."""
     beam, step = BeamConfig(EI=300.0, mass=mass), 1e-4
     config = Rk4FlexibleLinksConfig(
-        kind="rk4_flexible_links", step=None, links={"link2": beam, "link3": beam}, parts=parts, motor_inertia=LOCKED,
-        damping_ratio=0.03, computation=EXACT,
+        kind="rk4_flexible_links", step=None, links={"link2": beam, "link3": beam}, segments=parts,
+        motor_inertia=LOCKED, damping_ratio=0.03, computation=EXACT,
     )  # fmt: skip
     robot = macro()
     robot.model.pin_model.gravity.linear = np.zeros(3)  # whose stiffness is not in the modes

@@ -5,8 +5,8 @@ import pytest
 from support import strangers
 from support.arms import checked
 
+from runner.plants import compiled_motion
 from runner.plants.rk4 import Rk4
-from runner.simulation.compiled import compile
 
 
 @pytest.mark.parametrize("name", ["macro", "mini", "combined", "xarm7", "meca500", "franka", "crane", "mixed"])
@@ -14,7 +14,7 @@ def test_whole_motions_are_those_of_pinocchio(name, monkeypatch):
     ours = name not in strangers.STRANGERS
     arm = checked(f"robot={name}").arm if ours else strangers.config(name).arm
     plant = Rk4(arm.model, 1e-3, 2)
-    monkeypatch.setattr(compile, "evaluator", dict)
+    monkeypatch.setattr(compiled_motion, "evaluator", dict)
     reference = Rk4(arm.model, 1e-3, 2)
     assert (plant._compiled is None, reference._compiled is None) == (False, True)
     generator, scale = np.random.default_rng(2), np.diagonal(arm.model.mass_matrix(arm.home))

@@ -11,6 +11,7 @@ from support.arms import checked
 from runner.base.errors import SimulationError
 from runner.controllers import Loop
 from runner.controllers.torque_law import TorqueLaw
+from runner.plants import compiled_motion
 from runner.plugins.guard.controller import WatchedController
 from runner.sensing import EncoderNoise
 from runner.simulation.compiled import compile
@@ -250,12 +251,13 @@ def test_arms_of_many_joints_run_through_pinocchio(capsys):
     compile._tell.cache_clear()
     law = law_of("snake", "operational_space")
     assert found(law, 30) is None
-    assert compile.compile_motion(law.models[0], 0.01) is None
+    assert compiled_motion.compile_motion(law.models[0], 0.01) is None
     assert "the arm has 30 joints" in capsys.readouterr().err
 
 
 def test_without_the_library_laws_run_as_they_are(monkeypatch):
     monkeypatch.setattr(compile, "evaluator", dict)
+    monkeypatch.setattr(compiled_motion, "evaluator", dict)
     law = law_of("macro", "operational_space")
     assert found(law) is None
-    assert compile.compile_motion(law.models[0], 0.01) is None
+    assert compiled_motion.compile_motion(law.models[0], 0.01) is None
