@@ -13,7 +13,7 @@ from runner.cli.arguments import Parser
 from runner.config.compose.options import group_options
 
 if TYPE_CHECKING:
-    from runner.reporting.claims import PublishedClaim
+    from runner.reporting.published_claims import PublishedClaim
 
 _GROUPS = {
     "robots": "robot",
@@ -88,7 +88,12 @@ def _read_bullets(docstring: str) -> dict[str, str]:
 
 
 def _list_claims(_: Sequence[Path]) -> dict[str, str]:
-    from runner.reporting.claims import load_claims, load_statements, studies_with_claims, studies_with_statements
+    from runner.reporting.published_claims import (
+        load_claims,
+        load_statements,
+        studies_with_claims,
+        studies_with_statements,
+    )
 
     claims = {
         f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"

@@ -20,11 +20,11 @@ from runner.reporting.charts.figure import Maps as Maps
 from runner.reporting.charts.figure import Origin as Origin
 from runner.reporting.charts.figure import Panel as Panel
 from runner.reporting.charts.figure import Series as Series
-from runner.reporting.claims import Verdict
 from runner.reporting.equation import Equation as Equation
 from runner.reporting.equation import EquationForm as EquationForm
 from runner.reporting.equation import EquationVerdict
 from runner.reporting.equation import Matrix as Matrix
+from runner.reporting.published_claims import Verdict
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,11 @@
-"""The modules of the physics, whose content is part of the hash of each run.
+"""Physics modules, whose content is part of every run hash.
 
-They are all that makes numbers of a resolved config and a URDF: what reads these (`config`), builds robot, path, law,
-plant and sensors, simulates, calibrates and measures. Left out are the modules that make the resolved config
-(composition, units, defaults), as the hash has what they make; those that only refuse, tell or keep something; and all
-that works on finished runs (caveats, statistics, store, reports, commands), as no stored number follows from it.
+A module counts if a number of a run follows from it: it reads the resolved config (`config`), builds robot, path,
+control law, plant and sensors, simulates, calibrates or measures. Other modules are left out. Some compose the
+resolved config, which the hash contains. Some only reject, report or store something. The rest use finished runs:
+caveats, statistics, store, reports, commands.
 
-Each module counts under an id. Where it moves, change its place in the table and keep its id: no hash changes.
+Each module has an id. After a move, change the module's folder in the table and keep its id: no hash changes.
 """
 
 import ast
@@ -42,8 +42,8 @@ _TABLE = """
         whole_body_graph whole_body_posture
     environments: __init__=environments.__init__ environment=environments.environment external_wrench=interaction free
         hand link_forces=pushed_links push wall
-    metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching
-        summary tracking
+    metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary
+        tracking
     plants: __init__=plants.__init__ bullet bullet_servers compiled_flexible=flexible compiled_motion=compiled.motion
         computation=plants.computation contact_plant=touched decoupled flexible_config
         flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links flexible_wrapper=flexible_around

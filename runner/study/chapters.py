@@ -15,9 +15,9 @@ from runner.base.errors import RunnerError
 from runner.base.limits import CHAPTER, read_text
 from runner.base.progress.stages import CHAPTERS
 from runner.reporting.audit.report import rows
-from runner.reporting.claims import CLAIMS, FACTOR, Verdict, load_claims
 from runner.reporting.document import Claim, Equations, Origin, Section, Verdicts
 from runner.reporting.outline import number_sections
+from runner.reporting.published_claims import CLAIMS, FACTOR, Verdict, load_claims
 from runner.store import Calibration, Run
 from runner.study.claims import judged_claims, legend
 from runner.study.code import Code, public_functions

@@ -9,7 +9,10 @@ import numpy as np
 
 from runner.base.quantities import format_range, quantity, spread
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.reporting.claims import (
+from runner.reporting.document import Claim, ClaimResult
+from runner.reporting.equation import EquationVerdict
+from runner.reporting.figures import columns
+from runner.reporting.published_claims import (
     CLAIMS,
     CONTRADICTION,
     FACTOR,
@@ -23,9 +26,6 @@ from runner.reporting.claims import (
     simulated_by,
     verdict_on,
 )
-from runner.reporting.document import Claim, ClaimResult
-from runner.reporting.equation import EquationVerdict
-from runner.reporting.figures import columns
 from runner.reporting.words import PLANT
 from runner.statistics.spec.history import merge_histories, set_after, today
 from runner.store import Run

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import check_inside
 from runner.plugins.discovery import use_plugins
-from runner.reporting.claims import CLAIMS, load_claims
+from runner.reporting.published_claims import CLAIMS, load_claims
 from runner.store import Calibration, Run
 from runner.study.code import Code
 from runner.study.expected_caveats import ExpectedCaveat, read_expected

@@ -14,10 +14,10 @@ from runner.base.errors import ConfigError
 from runner.base.quantities import number, quantity, with_powers
 from runner.calibration.tool_direction import alignment, alignment_angles
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
-from runner.reporting.claims import Verdict, load_statements
 from runner.reporting.document import Series, Verdicts
 from runner.reporting.equation import EquationVerdict
 from runner.reporting.figures import AXES, columns, joint_columns, model_of
+from runner.reporting.published_claims import Verdict, load_statements
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
 from runner.study.chapters import Concluded

@@ -10,11 +10,11 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding, format_range, number, quantity, spread
 from runner.metrics.caveats.torques import CHATTER
 from runner.reporting.charts.thinning import envelope
-from runner.reporting.claims import PublishedClaim, judge, load_claims
 from runner.reporting.document import Panel, Series
 from runner.reporting.figures import AXES, columns, until_time
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_step import describe_plant, percent
+from runner.reporting.published_claims import PublishedClaim, judge, load_claims
 from runner.reporting.words import PLANT
 from runner.store import Run
 from runner.study.run_values import median

@@ -10,9 +10,9 @@ from runner.base.quantities import above_rounding
 from runner.controllers.operational_space.operational_space_graph import operational_space_graph
 from runner.reporting.charts.block_diagram import block_diagram
 from runner.reporting.charts.frames import frame_assignment
-from runner.reporting.claims import load_claims
 from runner.reporting.document import Block, Curves, Picture, Series, Table, Text
 from runner.reporting.figures import AXES, columns, joint_columns, model_of, origin
+from runner.reporting.published_claims import load_claims
 from runner.reporting.words import PRESET, in_words
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run

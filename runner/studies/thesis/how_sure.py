@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import number, quantity, with_ends
-from runner.reporting.claims import FACTOR, load_claims
 from runner.reporting.document import Curves, Panel, Series, Table
 from runner.reporting.figures import origin
+from runner.reporting.published_claims import FACTOR, load_claims
 from runner.reporting.sweep.effects import at_texts
 from runner.reporting.words import PRESET
 from runner.statistics.proportion import count_share

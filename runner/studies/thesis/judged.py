@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.metrics.summary import over_repetitions
-from runner.reporting.claims import PublishedClaim, Verdict, compared_with, simulated_by, verdict_on
+from runner.reporting.published_claims import PublishedClaim, Verdict, compared_with, simulated_by, verdict_on
 from runner.store import Run
 from runner.study.claims import run_name
 from runner.study.run_values import median

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from runner.base.errors import StoreError
 from runner.config.compose.options import group_options
 from runner.plugins.metric_units import unit_of
-from runner.reporting.claims import load_claims
+from runner.reporting.published_claims import load_claims
 from runner.store import Run
 from runner.store.references import Band, Reference, check_run, load_reference, shipped_references
 from runner.store.references.reference import reference_path

@@ -5,7 +5,7 @@ from pydantic import ValidationError
 
 from runner.config.compose.options import group_options
 from runner.plugins.metric_units import unit_of
-from runner.reporting.claims import CONTRADICTION, FACTOR, PublishedClaim, judge, load_claims
+from runner.reporting.published_claims import CONTRADICTION, FACTOR, PublishedClaim, judge, load_claims
 
 CLAIMS = load_claims("thesis")
 PAIRS = [(claim, where) for claim in CLAIMS for where in (claim, claim.like) if where is not None]

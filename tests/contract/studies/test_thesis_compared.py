@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from runner.reporting.claims import load_claims
+from runner.reporting.published_claims import load_claims
 from runner.reporting.words import PRESET
 from runner.store import Run
 from runner.studies.thesis.compared import APART, Compared, parting, step_of_both, takeaway

@@ -9,7 +9,7 @@ from fixtures.studies import Made
 from scipy import stats
 from support.study_sections import every_run, texts, unfinished_texts
 
-from runner.reporting.claims import load_claims
+from runner.reporting.published_claims import load_claims
 from runner.statistics.proportion import count_share
 from runner.store import Run
 from runner.studies.thesis import how_sure

@@ -5,7 +5,7 @@ import pytest
 from pydantic import ValidationError
 
 from runner.config.compose.options import group_options
-from runner.reporting.claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
+from runner.reporting.published_claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
 from runner.store.references import shipped_references
 
 CLAIMS = load_claims("xarm7")

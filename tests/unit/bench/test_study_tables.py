@@ -8,8 +8,8 @@ import pytest
 
 from bench import make_study_tables
 from bench.make_study_tables import PAGE, STORED, made_from
-from runner.reporting.claims import Verdict, load_claims, load_statements
 from runner.reporting.equation import EquationVerdict
+from runner.reporting.published_claims import Verdict, load_claims, load_statements
 
 KEPT = json.loads(STORED.read_text(encoding="utf-8"))
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pytest
 
-from runner.reporting.claims import (
+from runner.reporting.published_claims import (
     CONTRADICTION,
     PublishedClaim,
     Simulated,

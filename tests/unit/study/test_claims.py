@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
-from runner.reporting.claims import CONTRADICTION, PublishedClaim, PublishedStatement
 from runner.reporting.document import Verdicts
+from runner.reporting.published_claims import CONTRADICTION, PublishedClaim, PublishedStatement
 from runner.reporting.words import PRESET
 from runner.study.claims import judged_claims, judged_statements, legend, run_name
 from runner.study.job import PRESETS, MissingError

@@ -4,14 +4,14 @@ import pytest
 import yaml
 
 from runner.base.errors import RunnerError
-from runner.reporting import claims
-from runner.reporting.claims import load_claims, load_statements, studies_with_claims
+from runner.reporting import published_claims
+from runner.reporting.published_claims import load_claims, load_statements, studies_with_claims
 
 
 @pytest.fixture
 def entries(tmp_path, monkeypatch):
     """The thesis' claims 1 to 5 as data, and a function that stores what was made of them."""
-    monkeypatch.setattr(claims, "studies_dir", lambda: tmp_path)
+    monkeypatch.setattr(published_claims, "studies_dir", lambda: tmp_path)
     (tmp_path / "study").mkdir()
 
     def store(content):
