@@ -28,10 +28,10 @@ CLOSE = {"rel": 1e-3, "abs": 1e-9}  # what is recorded has six digits; rounding 
 
 def whole(study: str, folder: Path, jobs: Mapping[str, tuple[str, ...]]) -> Made:
     """Make all runs of a plan, and measure what no run does."""
-    study = load_study(study)
+    loaded = load_study(study)
     calibrations = make_calibrations(folder, meca500_calibrations()) if study == "meca500" else {}
-    made = Made(study, make_runs(folder, jobs, None, study.config_dirs), calibrations)
-    study.measure(folder / "outputs")
+    made = Made(study, make_runs(folder, jobs, None, loaded.config_dirs), calibrations)
+    loaded.measure(folder / "outputs")
     return made
 
 
