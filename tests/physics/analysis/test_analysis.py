@@ -32,6 +32,7 @@ SMALL = [
 LARGE = [pytest.param(overrides, OWN, marks=pytest.mark.slow) for overrides in (TWO_RATES, SEVEN, INTEGRAL)]
 
 
+@pytest.mark.costs(3)
 @pytest.mark.parametrize(("overrides", "groups"), [*SMALL, *LARGE])
 def test_derivatives_agree_with_central_differences_to_1e_6(analysed, overrides, groups):
     found = analysed(*overrides, groups=groups)
