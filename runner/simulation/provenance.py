@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from runner.base.engines import STAND_IN, installed_versions
 from runner.base.paths import package_dir
-from runner.plugins import discovery as plugins
+from runner.plugins import discovery
 from runner.statistics.spec.history import today
 from runner.symbolic.engine import evaluator
 
@@ -32,7 +32,7 @@ def describe_origin(composed: "Composed", *subcommand: str) -> dict[str, Any]:
     return {
         "date": today(),
         "command": command(composed, *subcommand),
-        "plugins": plugins.digests(),
+        "plugins": discovery.digests(),
         "commit": commit(),
         "versions": versions(),
         "machine": machine(),
@@ -56,7 +56,7 @@ def job_provenance(config: "RunConfig", composed: "Composed", notices: Sequence[
 
 def command(composed: "Composed", *subcommand: str) -> str:
     """Return the command that does what was composed, folders relative to where it was given."""
-    added = [word for text in plugins.named_parts() for word in ("--plugin", text)]
+    added = [word for text in discovery.named_parts() for word in ("--plugin", text)]
     own = [word for folder in composed.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
     resolved: Any = composed.resolved
     kept = [

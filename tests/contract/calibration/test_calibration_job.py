@@ -8,7 +8,7 @@ import yaml
 
 from runner.base.errors import StoreError
 from runner.config.compose.compose import compose
-from runner.plugins import discovery as plugins
+from runner.plugins import discovery
 from runner.simulation import provenance
 from runner.store import open_calibration
 from runner.store.seal import sealed_json
@@ -45,7 +45,7 @@ def test_another_config_is_another_calibration(job, change):
 def test_the_command_names_ones_own_parts_and_folders(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("mine").mkdir()
-    monkeypatch.setattr(plugins, "named_parts", lambda: ["calibration=mine/own.py"])
+    monkeypatch.setattr(discovery, "named_parts", lambda: ["calibration=mine/own.py"])
     composed = compose(("seed=1", "outputs=else"), [Path("mine")], root="calibrate")
     assert provenance.command(composed, "calibrate") == (
         "runner --plugin calibration=mine/own.py calibrate --config-dir mine seed=1"

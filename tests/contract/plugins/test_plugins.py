@@ -13,7 +13,7 @@ from support.printed import without_caveats, without_results
 
 from runner.base.errors import RunnerError
 from runner.cli.main import dispatch
-from runner.plugins import discovery as plugins
+from runner.plugins import discovery
 
 SPRING = '''\
 """A spring in every joint that pulls it home."""
@@ -152,15 +152,15 @@ def test_every_command_takes_a_plug_in_wherever_it_stands(mine):
 
 def test_a_module_by_name_is_found_where_python_looks(mine, monkeypatch):
     monkeypatch.syspath_prepend(mine / "mine")
-    plugins.added_parts("trajectory")
-    plugins.use_plugins(["controller=spring"])
-    assert next((point.name, point.value) for point in plugins.added_parts("controller")) == ("spring", "spring")
-    assert all(point.value != "spring" for point in plugins.added_parts("trajectory"))
-    assert plugins.named_parts() == ["controller=spring"]
+    discovery.added_parts("trajectory")
+    discovery.use_plugins(["controller=spring"])
+    assert next((point.name, point.value) for point in discovery.added_parts("controller")) == ("spring", "spring")
+    assert all(point.value != "spring" for point in discovery.added_parts("trajectory"))
+    assert discovery.named_parts() == ["controller=spring"]
 
 
 def test_worker_processes_inherit_plug_ins(mine):
-    plugins.use_plugins(["controller=mine/spring.py"])
+    discovery.use_plugins(["controller=mine/spring.py"])
     script = "from runner.controllers import CONTROLLERS; print('spring' in CONTROLLERS.names())"
     assert subprocess.run([sys.executable, "-c", script], capture_output=True, text=True).stdout == "True\n"
 
@@ -188,7 +188,7 @@ def test_a_sweep_takes_a_plug_in(mine):
 def test_what_cannot_be_found_is_said(mine, text, message):
     (mine / "json.py").touch()
     with pytest.raises(RunnerError, match=message):
-        plugins.use_plugins([text])
+        discovery.use_plugins([text])
 
 
 @pytest.mark.parametrize(
@@ -212,4 +212,4 @@ def test_the_source_of_a_package_is_all_of_it(tmp_path, monkeypatch):
         (tmp_path / "house" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "house" / name).touch()
     monkeypatch.syspath_prepend(tmp_path)
-    assert [path.name for path in plugins.source_files("house.law")] == ["__init__.py", "helper.py", "law.py"]
+    assert [path.name for path in discovery.source_files("house.law")] == ["__init__.py", "helper.py", "law.py"]

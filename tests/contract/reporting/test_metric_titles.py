@@ -5,8 +5,7 @@ import sys
 import pytest
 
 from runner.metrics import summary
-from runner.plugins import discovery as plugins
-from runner.plugins import metric_units
+from runner.plugins import discovery, metric_units
 from runner.reporting.metric_titles import TITLES, metric_label, title
 
 
@@ -59,4 +58,4 @@ def _executed(path):
 
 
 def test_plugins_are_asked_through_the_registry():
-    assert metric_units.added_parts is plugins.added_parts
+    assert metric_units.added_parts is discovery.added_parts
