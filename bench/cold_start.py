@@ -1,8 +1,8 @@
 """What a typed command costs until its answer, each in a process of its own: wall time, and CPU time against Hydra's.
 
 CPU time (user and system) is divided by that of `python -c "import hydra"`, measured in turn with the commands, so that
-a busy machine slows both. A TAB at a key composes the config the first time, and recalls its keys later in the same
-line; both are measured.
+a busy machine slows both. A TAB at a key composes the config the first time, and later in the same line reads its keys
+from a cache; both are measured.
 """
 
 import os
@@ -36,7 +36,7 @@ class _Command:
         arguments: What follows `runner`.
         target: The largest ratio; None where none is asked for.
         line: The line at whose end TAB is pressed; empty for a command.
-        first: Whether nothing is recalled.
+        first: Whether the cache folder is empty.
     """
 
     name: str
@@ -48,7 +48,6 @@ class _Command:
 
 _COMMANDS = (
     _Command("runner robot=macro, stored already", ("robot=macro",), 2.5),
-    _Command("the same, nothing recalled", ("robot=macro",), None, first=True),
     _Command("runner report nosuch", ("report", "nosuch"), 0.3),
     *(
         _Command(f"TAB at `runner {line}`", ("-sc", "query=bash"), target, f"runner {line}", first)

@@ -132,20 +132,8 @@ def _choose(arguments: Sequence[str]) -> int:
 
 
 def _run(arguments: Sequence[str]) -> int:
-    """Make a run or a sweep, or tell again of the run that the same line gave before."""
-    from runner.base.environment_variables import quiet_environment
-    from runner.store.recall.runs import find_again, line_key
-
-    quiet_environment()
-    key = line_key(arguments)
-    found = find_again(key)
-    if found is None:
-        code: int = importlib.import_module("runner.cli.run").main(arguments, key)
-        return code
-    from runner.cli.ending import tell_run
-
-    run, thresholds = found
-    return tell_run(run, False, thresholds)
+    code: int = importlib.import_module("runner.cli.run").main(arguments)
+    return code
 
 
 def _command(name: str, arguments: Sequence[str]) -> int:

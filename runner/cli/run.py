@@ -25,7 +25,6 @@ from runner.config.compose.hydra_config import hydra_config, parse
 from runner.config.compose.no_code import code_refused
 from runner.config.compose.overrides import force
 from runner.config.compose.user_settings import user_overrides
-from runner.store.recall.runs import keep_run, plain_line
 
 if TYPE_CHECKING:
     from runner.store import Run
@@ -39,6 +38,7 @@ _WITHOUT_OURS = (
 
 
 _MANY, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
+_CONFIG_DIR = ("--config-dir", "-cd")
 
 
 class _Task:
@@ -47,8 +47,8 @@ class _Task:
     An error that is raised within Hydra is kept for `main` to raise: Hydra would print its own text.
     """
 
-    def __init__(self, arguments: Sequence[str], key: str | None) -> None:
-        self._arguments, self._key = arguments, key
+    def __init__(self, arguments: Sequence[str]) -> None:
+        self._arguments = arguments
         self.run: Run | None = None
         self.made = False
         self.ended: Ended | None = None
@@ -77,12 +77,10 @@ class _Task:
         """
         from runner.sweeps.job import find_or_make  # after the config has composed: bad input is answered at once
 
-        sources = [each.provider for each in node.runtime.config_sources]
         typed = [override.removeprefix("++") for override in overrides]
         composed = from_hydra(config, node.runtime.choices, typed, own)
         self.thresholds = composed.resolved.get("caveats")
         self.run, self.made = find_or_make(composed)
-        keep_run(self._key, self._arguments, composed, self.run, sources)
 
     def make_sweep(self, overrides: Sequence[str], own: Sequence[Path]) -> None:
         """Make a sweep.
@@ -107,15 +105,10 @@ class _Task:
             self.error = error
 
 
-def main(arguments: Sequence[str], key: str | None) -> int:
-    """Make the run or the sweep of a command line; print the folder made as the last line.
-
-    Args:
-        arguments: What is typed.
-        key: The key that the run is kept under, worked out before it is composed; see line_key.
-    """
+def main(arguments: Sequence[str]) -> int:
+    """Make the run or the sweep of a command line; print the folder made as the last line."""
     quiet_environment()
-    task = _Task(arguments, key)
+    task = _Task(arguments)
     try:
         make = _composed(task, arguments)
         if make is None:
@@ -137,7 +130,7 @@ def _composed(task: _Task, arguments: Sequence[str]) -> Callable[[], None] | Non
     """Compose a line of overrides alone; return what makes its run or its sweep, None if Hydra must take the line."""
     many = any(word in _MANY for word in arguments)
     of_sweeper = [word for word in arguments if many and word.startswith(_OF_SWEEPER)]
-    line = plain_line([word for word in arguments if word not in (*_MANY, *of_sweeper)])
+    line = _plain_line([word for word in arguments if word not in (*_MANY, *of_sweeper)])
     if line is None or not all(folder.is_dir() for folder in line[1]):
         return None
     overrides, own = force([*line[0], *of_sweeper]), [folder.absolute() for folder in line[1]]
@@ -147,6 +140,21 @@ def _composed(task: _Task, arguments: Sequence[str]) -> Callable[[], None] | Non
         return None
     config = hydra_config(overrides, own)
     return partial(task.make, config, config.hydra, overrides, own)
+
+
+def _plain_line(arguments: Sequence[str]) -> tuple[list[str], list[Path]] | None:
+    """Return the overrides and the config folders of a line; None if it has other flags or keys of Hydra's."""
+    overrides, config_dirs, words = [], [], iter(arguments)
+    for word in words:
+        if word in _CONFIG_DIR:
+            config_dirs.append(Path(next(words, "")))
+        elif word.startswith("--config-dir="):
+            config_dirs.append(Path(word.partition("=")[2]))
+        elif word.startswith("-") or "=" not in word or "hydra" in word:
+            return None
+        else:
+            overrides.append(word)
+    return overrides, config_dirs
 
 
 def _let_hydra_take(task: _Task, arguments: Sequence[str]) -> None:
@@ -165,5 +173,5 @@ def _let_hydra_take(task: _Task, arguments: Sequence[str]) -> None:
 def _config_dirs(arguments: Sequence[str]) -> list[Path]:
     """Return the folders named by --config-dir, for messages about what stands in them."""
     found = [argument.partition("=")[2] for argument in arguments if argument.startswith("--config-dir=")]
-    found += [after for before, after in itertools.pairwise(arguments) if before in ("--config-dir", "-cd")]
+    found += [after for before, after in itertools.pairwise(arguments) if before in _CONFIG_DIR]
     return [Path(folder) for folder in found]

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from runner.base.paths import package_dir
 from runner.store import syntax
-from runner.store.recall.answers import keep, recall
+from runner.symbolic.cache import read_answer, write_answer
 
 # Folders and their modules. A module's id stands behind "=", or is its name.
 _TABLE = """
@@ -102,10 +102,10 @@ def content_digest(sources: Mapping[str, bytes], ids: Mapping[str, str]) -> str:
     for name, source in sources.items():
         state.update(b"%b\0%d\0%b" % (f"{name} {ids[name]}".encode(), len(source), source))
     key = f"content-{state.hexdigest()}"
-    found = recall(key)
+    found = read_answer(key)
     if not isinstance(found, str):
         found = _digest({name: _parsed(source) for name, source in sources.items()}, ids)
-        keep(key, found)
+        write_answer(key, found)
     return found
 
 

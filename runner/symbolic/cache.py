@@ -1,4 +1,4 @@
-"""Disk cache of compiled code in the user's cache folder, with permission checks.
+"""Disk cache of compiled code and small answers in the user's cache folder, with permission checks.
 
 Other users must not be able to write to the folder, because the machine code in it is loaded as it is.
 """
@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any
 
 _LARGEST = 64 * 2**20  # bytes of one file
+_MOST_ANSWERS = 1000
+_ANSWER = "answer-"  # begins the name of each
 
 
 def folder() -> Path | None:
@@ -85,6 +87,21 @@ def write(key: str, code: bytes, about: Mapping[str, Any]) -> None:
         Path(file.name).replace(place / key)
     except OSError:
         return
+
+
+def read_answer(key: str) -> Any:
+    """Return the plain data kept under a key; None if there is none."""
+    found = read(f"{_ANSWER}{key}")
+    return None if found is None else json.loads(found[0])
+
+
+def write_answer(key: str, answer: Any) -> None:
+    """Keep plain data under a key; if that fails it is computed again the next time."""
+    place = folder()
+    kept = [] if place is None else list(place.glob(f"{_ANSWER}*"))
+    for path in kept if len(kept) >= _MOST_ANSWERS else ():
+        path.unlink(missing_ok=True)
+    write(f"{_ANSWER}{key}", json.dumps(answer).encode(), {})
 
 
 def _digest(key: str, code: bytes, about: Mapping[str, Any]) -> str:

@@ -6,11 +6,11 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from runner.cli.arguments import Parser, Stored, UsageError
+from runner.cli.completion.basis import basis
 from runner.cli.completion.line import Line
 from runner.cli.completion.overrides import override_words
 from runner.store.latest import WORD, Kind, folder_of
-from runner.store.recall.answers import keep, recall
-from runner.store.recall.basis import basis
+from runner.symbolic import cache
 
 _NO_OPTION = "--?"  # which every parser refuses
 
@@ -114,13 +114,13 @@ def _metrics(_: str) -> Iterable[str]:
 def metric_names() -> Iterable[str]:
     """Return the names of our metrics, kept as long as the source is as it is: NumPy comes with their modules."""
     key = basis(["metrics"], [])
-    known: list[str] | None = None if key is None else recall(key)
+    known: list[str] | None = None if key is None else cache.read_answer(key)
     if known is None:
         from runner.cli.list import TOPICS
 
         known = [*TOPICS["metrics"]([])]
         if key is not None:
-            keep(key, known)
+            cache.write_answer(key, known)
     return known
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from runner.cli.completion.basis import basis
 from runner.cli.completion.line import Line
-from runner.store.recall.answers import keep, recall
-from runner.store.recall.basis import basis
+from runner.symbolic import cache
 
 
 def keys(line: Line, word: str, root: str) -> Iterator[str]:
@@ -33,11 +33,11 @@ def _values(line: Line, root: str) -> Mapping[str, str | None]:
     """Return the value of each key as text by its dotted name; None for one without a value that can be typed."""
     overrides = [each for each in line.words if "=" in each and not each.startswith("-")]
     known = basis(["keys of", root, *overrides], line.config_dirs)
-    kept = None if known is None else recall(known)
+    kept = None if known is None else cache.read_answer(known)
     if not isinstance(kept, dict):
         kept = dict(_compose(line, overrides, root))
         if known is not None:
-            keep(known, kept)
+            cache.write_answer(known, kept)
     values: Mapping[str, str | None] = kept
     return values
 

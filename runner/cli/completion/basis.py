@@ -1,4 +1,4 @@
-"""Digest of everything that the composition and the checks of a config depend on."""
+"""Digest of everything that the answer to a TAB depends on: the line, configs, robots, source and packages."""
 
 import hashlib
 import os
@@ -9,17 +9,16 @@ from pathlib import Path
 from runner.base.paths import conf_dir, package_dir, robots_dir
 from runner.config.compose.user_settings import user_overrides
 
-_MOST = 1000  # files and folders of the user's config folders; where there are more, nothing is recalled
+_MOST = 1000  # files and folders of the user's config folders; with more, nothing is cached
 _LARGEST = 20_000_000  # bytes of them
 _INSTALLED = (".dist-info", ".egg-info", ".egg-link", ".pth")
 
 
 def basis(typed: Sequence[str], config_dirs: Sequence[Path]) -> str | None:
-    """Return a digest of a command line and of all that may be read for it; None where that is too much to read.
+    """Return a digest of a command line and of everything that may be read for it; None if that is too much to read.
 
-    It holds the folder in which the line is typed, the user's settings, every file of our configs, URDFs and source,
-    every file of the user's config folders, and which packages of which versions are installed. What the environment
-    says counts nowhere else: no config reads it, and lines with plug-ins are not recalled.
+    It covers the folder in which the line is typed, the user's settings, every file of our configs, URDFs and source,
+    every file of the user's config folders, and the installed packages with their versions.
 
     Args:
         typed: The command line.
