@@ -12,7 +12,6 @@ from runner.audit.sources import Where, source_of, sources
 from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
 from runner.base import progress
 from runner.base.data_file import read_data
-from runner.base.progress.stages import AUDITING
 from runner.base.sanitize import table_cell
 from runner.schema.model import StrictModel
 
@@ -34,7 +33,7 @@ def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:
 def audit_all(samples: int = SAMPLES) -> dict[str, list[Judged]]:
     """Return the same for every study of ours, by its name."""
     found = {source: parts(source) for source in sources()}
-    progress.begin(AUDITING, None, sum(len(part.entries) for each in found.values() for part in each), "equations")
+    progress.begin("auditing", sum(len(part.entries) for each in found.values() for part in each), "equations")
     judged: dict[str, list[Judged]] = {source: [] for source in found}
     for source, each in found.items():
         for one in _judged(each, samples):

@@ -113,6 +113,15 @@ def above_rounding(value: float | None, unit: str = "1", digits: int = 3) -> str
     return quantity(value, unit, digits, ROUNDING) if unit != "1" else number(value, digits, ROUNDING)
 
 
+def format_duration(seconds: float) -> str:
+    """Return a duration for people, such as "89 s", "2 min" or "2.5 h"."""
+    if seconds < 90.0:
+        return f"{max(1, round(seconds))} s"
+    if seconds < 5400.0:
+        return f"{round(seconds / 60.0)} min"
+    return f"{seconds / 3600.0:.1f} h"
+
+
 def label_with_unit(name: str, unit: str) -> str:
     """Return a name with its unit, as on the axis of a figure."""
     return name if unit == "1" else f"{name} ({unit_text(unit)})"

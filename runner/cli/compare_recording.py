@@ -24,14 +24,12 @@ def print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: flo
     """
     from runner import store
     from runner.base import progress
-    from runner.base.progress.stages import READING, SOON, of_report
     from runner.recordings.compare import compare_recording
     from runner.reporting.recording_report import recording_document, report_folder
     from runner.reporting.render import write_report
     from runner.store.latest import note
 
-    progress.plan({READING: SOON, **of_report(("html", "pdf"))})
-    progress.begin(READING)
+    progress.begin("reading runs")
     found = compare_recording(store.open_run(folder), recording, columns, fill_gaps)
     print(_told(found), end="\n\n")
     made = report_folder(found)

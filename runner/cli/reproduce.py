@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING
 from runner.base import progress
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
-from runner.base.progress.stages import of_audit, of_study
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
 from runner.plugins.discovery import in_use, named_parts
@@ -128,7 +127,7 @@ def _reproduce(study: "Study | None", way: _Way) -> "tuple[str, _Reproduced]":
     from runner.study.gains import write_gains
 
     name = AUDIT if study is None else study.name
-    progress.named(name)
+    progress.set_title(name)
     folder = way.outputs / "reports" / name
     store.prepare(way.outputs)
     made = _audit(folder) if study is None else _reproduce_study(study, way)
@@ -176,7 +175,6 @@ def _reproduce_study(study: "Study", way: _Way) -> _Reproduced:
     from runner.study.claims import late_claims
     from runner.study.execute import make_all
 
-    progress.plan(of_study(len(study.jobs()) + len(study.calibrations())))
     study.measure(way.outputs)
     runs, calibrations = make_all(study, way.outputs, way.overrides, way.command)
     missing = runs.missing | calibrations.missing
@@ -197,7 +195,6 @@ def _audit(folder: Path) -> _Reproduced:
     from runner.store.atomic import write_atomically
 
     print("auditing the equations ...", file=sys.stderr)
-    progress.plan(of_audit())
     judged = audit_all()
     table = as_csv([each for source in judged.values() for each in source])
     write_atomically(folder / "equations.csv", table.encode())

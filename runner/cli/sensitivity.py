@@ -50,7 +50,7 @@ def main(arguments: Sequence[str]) -> int:
     from runner.analysis.sensitivity import check_smooth, differences, of_run
 
     run = store.open_run(options.run)
-    progress.begin("differentiating", total=None, unit="parameters")
+    progress.begin("differentiating", unit="parameters")
     found = of_run(run, options.parameters or _GROUPS, options.repetition)
     names = options.metrics or [name for name in _SHOWN if name in found.metrics]
     for name in names:

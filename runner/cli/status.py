@@ -15,7 +15,7 @@ def main(arguments: Sequence[str]) -> int:
     )
     options = parser.parse_args(arguments)
     quiet_environment()
-    from runner.base.progress import in_words
+    from runner.base.quantities import format_duration
     from runner.store import open_sweep
     from runner.sweeps.status import find_status
 
@@ -29,7 +29,7 @@ def main(arguments: Sequence[str]) -> int:
         with_some = sum(count > 0 for count in status.caveats)
         print(f"{with_some} of {len(status.caveats)} stored cells have caveats; `runner table` says which")
     if status.left and status.at_work:
-        print("at work" + ("" if status.seconds is None else f", about {in_words(status.seconds)} to go"))
+        print("at work" + ("" if status.seconds is None else f", about {format_duration(status.seconds)} to go"))
     elif status.left:
         print(f"not at work; continue with: {sweep.command}")
     return 0

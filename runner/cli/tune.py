@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING
 from runner.base import progress
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
-from runner.base.progress.stages import PREPARING, READING, REPORT_CODE, SIMULATING, SOON, of_report
 from runner.cli import report
 from runner.cli.arguments import Parser
 
@@ -63,7 +62,6 @@ def main(arguments: Sequence[str]) -> int:
     from runner.sweeps.tuning.objective import Objective
     from runner.sweeps.tuning.run import tune
 
-    progress.plan({SIMULATING: None, PREPARING: REPORT_CODE, READING: SOON, **of_report(("html", "pdf"))})
     tuning = tune(
         options.overrides,
         [Objective(metric, direction) for direction, metric in objectives],
@@ -91,7 +89,7 @@ def _tell(tuning: "Tuning") -> int:
         print(f"chosen: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
     for sentence in (*at_ends(tuning), *([CHOSEN] if failed < len(trials) else [])):
         print(f"runner: {sentence}", file=sys.stderr)
-    progress.begin(PREPARING)
+    progress.begin("preparing the report")
     report.main([str(tuning.folder)])
     return 0 if failed < len(trials) else 1
 

@@ -46,7 +46,7 @@ def main(arguments: Sequence[str]) -> int:
         raise RunnerError(f"no folder {options.outputs}; name an outputs folder, as in `runner verify outputs`")
     quiet_environment()
     found = []
-    progress.begin("verifying", total=None, unit="things")
+    progress.begin("verifying", unit="files")
     for each in verify(options.outputs):
         found.append(each)
         progress.step()

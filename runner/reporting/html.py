@@ -12,7 +12,6 @@ from urllib.parse import quote
 
 from runner.base import progress
 from runner.base.paths import templates_dir
-from runner.base.progress.stages import HTML
 from runner.reporting import formulas, outline, playback
 from runner.reporting.charts import palette
 from runner.reporting.curves import plotly_spec
@@ -32,7 +31,7 @@ _SCRIPTS = ("report", *_OF_PLOTS, "figure_tools")
 
 def render(document: Document) -> str:
     """Return a document as an HTML page."""
-    progress.begin(HTML)
+    progress.begin("writing the HTML")
     images = formulas.draw_all(document)
     sheet = FormulaSheet()
     has_plots, has_run_list, has_playback = (

@@ -7,7 +7,6 @@ from pathlib import Path
 import typst
 
 from runner.base import progress
-from runner.base.progress.stages import FIGURES, PDF
 from runner.reporting import formulas, outline
 from runner.reporting.charts import map_stills, stills
 from runner.reporting.document import Curves, Document, Maps
@@ -19,7 +18,7 @@ from runner.reporting.templating import typst_environment
 
 def render(document: Document) -> bytes:
     """Return a document as PDF; the same document gives the same bytes."""
-    progress.begin(FIGURES, None, outline.count_figures(document), "figures")
+    progress.begin("drawing figures", outline.count_figures(document), "figures")
     images = formulas.draw_all(document)
     with tempfile.TemporaryDirectory() as name:
         folder = _Folder(Path(name))
@@ -41,7 +40,7 @@ def render(document: Document) -> bytes:
         )
         path = folder.root / "report.typ"
         path.write_text(source, encoding="utf-8")
-        progress.begin(PDF)
+        progress.begin("writing the PDF")
         return typst.compile(
             path, root=folder.root, format="pdf", ignore_system_fonts=True, timestamp=_timestamp(document.date)
         )

@@ -3,10 +3,8 @@
 from collections.abc import Callable, Collection
 from pathlib import Path
 
-from runner.base import progress
 from runner.base.errors import RunnerError
-from runner.base.progress.stages import of_report
-from runner.reporting import html, outline, pdf
+from runner.reporting import html, pdf
 from runner.reporting.consistency import color_series, in_readable_units
 from runner.reporting.document import Document
 from runner.store.atomic import write_atomically
@@ -35,7 +33,6 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
     if unknown:
         raise RunnerError(f"unknown report format {', '.join(unknown)}; allowed: {', '.join(_RENDERERS)}")
     folder.mkdir(parents=True, exist_ok=True)
-    progress.plan(of_report(formats, outline.count_figures(document)))
     shown = in_readable_units(color_series(document))
     written = [folder / f"report.{name}" for name in formats]
     for name, path in zip(formats, written, strict=True):

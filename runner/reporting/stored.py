@@ -8,7 +8,6 @@ from pathlib import Path
 from runner import store
 from runner.base import progress
 from runner.base.errors import RunnerError
-from runner.base.progress.stages import READING, SOON, of_report
 from runner.config.compose.user_settings import outputs_dir
 from runner.reporting import render
 from runner.reporting.comparison.operand import letter, open_side
@@ -32,7 +31,6 @@ def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str
     Raises:
         RunnerError: if a folder is none of these, or damaged; for an unknown metric or format.
     """
-    progress.plan({READING: SOON, **of_report(formats)})
     document, folder = compose_report(folders, metrics)
     render.write_report(document, folder, formats)
     note(folder)
@@ -62,7 +60,7 @@ def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> tupl
     if any(tunings):
         document, name = tuning_document(open_tuning(folders[0]), reports / "any"), names[0]
     elif not all(sweeps):
-        progress.begin(READING)
+        progress.begin("reading runs")
         runs = [run for folder in folders for run in store.open_runs(folder)]
         document, name = run_document(runs), "".join(run.hash for run in runs)
     elif len(sweeps) == 1:

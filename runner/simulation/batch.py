@@ -12,7 +12,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.cache import Memory
-from runner.base.progress.ticks import add_ticks
+from runner.base.ticks import add_ticks
 from runner.base.trace import Trace, Traces
 from runner.config.run import RunConfig
 from runner.config.timing import Timing

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.errors import SimulationError
-from runner.base.progress.ticks import track_ticks
+from runner.base.ticks import track_ticks
 from runner.base.trace import Trace
 from runner.sensing import Encoders, TorqueSensors, WristSensor
 from runner.simulation.closed_loop import ClosedLoop

@@ -13,7 +13,6 @@ from runner.audit.sources import Source
 from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.limits import CHAPTER, read_text
-from runner.base.progress.stages import CHAPTERS
 from runner.reporting.audit.report import rows
 from runner.reporting.document import Claim, Equations, Origin, Section, Verdicts
 from runner.reporting.outline import number_sections
@@ -69,7 +68,7 @@ class Chapters:
 
     def sections(self) -> list[Section]:
         """Return all chapters; one that needs what was not made says so in its place."""
-        progress.begin(CHAPTERS, None, _count(self._manifest.chapters), "chapters")
+        progress.begin("writing chapters", _count(self._manifest.chapters), "chapters")
         return self._each(self._manifest.chapters)
 
     def concluded(self, name: str) -> tuple[list[Finding], Mapping[str, Any]]:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from runner import store
 from runner.base import progress
-from runner.base.progress.stages import SOON
 from runner.simulation.provenance import portable_overrides
 from runner.store import Calibration, Run
 from runner.study.estimate import counted, estimate_all, planned, told
@@ -64,7 +63,7 @@ def make_all(
 
 def _tell_estimate(study: Study, tunings: Sequence[Tuning], way: Way) -> None:
     """Print what tunings take with the runs of their laws, before they are started."""
-    progress.begin("estimating", SOON)
+    progress.begin("estimating")
     counts = counted(study, tunings, {override for each in tunings for override in each.chosen})
     amounts = estimate_all(planned(counts, way), [*counts.values()])
     laws = list(dict.fromkeys(each.law for each in tunings))

@@ -12,7 +12,7 @@ import numpy as np
 from runner import store
 from runner.base import progress
 from runner.base.arrays import FloatArray
-from runner.base.progress.ticks import add_ticks, counter
+from runner.base.ticks import add_ticks, counter
 from runner.calibration import consistency
 from runner.calibration.procedures import Outcome
 from runner.config.calibration import CalibrationConfig, validate_calibration

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.base.progress import in_words
+from runner.base.quantities import format_duration
 from runner.config.compose.compose import Composed
 from runner.config.validation import validate
 from runner.simulation.batch_jobs import seconds_together
@@ -55,7 +55,7 @@ class Estimate:
             more: Time that is not shared among them, in s.
         """
         several = "es" if processes > 1 else ""
-        return f"{self.known} {in_words(more + self.seconds / together)} on {processes} process{several}"
+        return f"{self.known} {format_duration(more + self.seconds / together)} on {processes} process{several}"
 
 
 class Pace:

@@ -59,7 +59,7 @@ def work_out(outputs: Path, runs: Iterable[Run]) -> None:
     left = [run for run in given if run.hash not in known and run.status == "ok"]
     if draws < SMALLEST_SAMPLE or len(given) > MOST_RUNS or not left:
         return
-    progress.begin("trying a finer step", None, len(left), "runs")
+    progress.begin("trying a finer step", len(left), "runs")
     for run in left:
         made = _made(run)
         if made is not None:

@@ -12,8 +12,7 @@ import numpy as np
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError, SimulationError
-from runner.base.progress.stages import SIMULATING, SOON
-from runner.base.progress.ticks import counter
+from runner.base.ticks import counter
 from runner.base.trace import Failure, Trace
 from runner.config.compose.compose import Composed, compose
 from runner.config.limits import check_cpu_time
@@ -201,14 +200,13 @@ def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
     if stored is not None:
         note(stored.folder)
         return store.judge_run(stored, config.spec.metrics), False
-    ticks, seconds = config.timing.ticks * config.settings.repetitions, None
+    ticks = config.timing.ticks * config.settings.repetitions
     if ticks > _SURELY_ALLOWED:
-        seconds = seconds_per_tick(config, composed) * ticks
-        check_cpu_time(config.limits, seconds, 1)
+        check_cpu_time(config.limits, seconds_per_tick(config, composed) * ticks, 1)
     store.prepare(outputs)
-    progress.begin(SIMULATING, seconds, ticks, "ticks", counter())
+    progress.begin("simulating", ticks, "ticks", counter())
     result = simulate_job(config, composed, threads_allowed())
-    progress.begin("storing the run", SOON)
+    progress.begin("storing the run")
     made = store.write_run(outputs, name, result)
     note(made.folder)
     return made, True

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
-from runner.base.progress.stages import READING
 from runner.store import Run, Sweep
 from runner.store.axes import GridOverrides
 from runner.store.finer import finer_names, read_finer
@@ -162,7 +161,7 @@ def measure_sweep(sweep: Sweep) -> Measurements:
         StoreError: If a run is missing or damaged.
     """
     gathered = Gathered(len(sweep.hashes))
-    progress.begin(READING, None, len(sweep.hashes), "cells")
+    progress.begin("reading runs", len(sweep.hashes), "cells")
     for found in sweep.found():
         if isinstance(found, InShard):
             gathered.add_shard(found.path, found.rows, found.cells)

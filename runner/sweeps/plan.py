@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError
-from runner.base.progress.stages import CHECKING
 from runner.config.calibration import validate_calibration
 from runner.config.compose.compose import Composed
 from runner.config.limits import LimitsConfig, memory_of_run
@@ -154,7 +153,7 @@ def check(plan: Plan) -> Checked:
     memory = 0.0
     resolved = Resolved()
     assembled: dict[tuple[str, bytes], ConfigError | None] = {}
-    progress.begin(CHECKING, None, len(plan), "cells")
+    progress.begin("checking", len(plan), "cells")
     for block in plan.blocks():
         cells = slice(block.cells.start, block.cells.stop, block.cells.step)
         try:

@@ -16,7 +16,6 @@ from omegaconf import DictConfig
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError, StoreError
-from runner.base.progress.stages import SIMULATING, SOON
 from runner.config.limits import check_cpu_time, check_memory_together
 from runner.config.sweep import SweepConfig
 from runner.plugins.discovery import in_use
@@ -116,10 +115,9 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
         StoreError: if the disk does not take them, or a worker cannot work.
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
-    progress.plan({SIMULATING: None})
     checked = check(plan)
     names, outputs = checked.names, checked.outputs
-    progress.begin("looking for stored runs", SOON)
+    progress.begin("looking for stored runs")
     store.prepare(outputs)
     with at_work(outputs):
         folder = _write_sweep(plan, checked, command)
@@ -228,20 +226,19 @@ def make_jobs(
     """
     _tell(_count(checked, len(cells), stored))
     if not len(cells):
-        progress.plan({SIMULATING: 0.0})
         return
     check_memory_together(checked.memory, 1 if engine.address else min(max(engine.workers, 1), len(cells)))
     ticks = int(checked.costs[cells].sum())
-    progress.begin("estimating", SOON)
+    progress.begin("estimating")
     expected = estimate(plan, checked, cells, queue.rules.kept)
     check_cpu_time(checked.limits, expected.seconds, len(cells), expected.known)
     pace = Pace(queue.rules.sweep)
     with _workers(queue, len(cells), engine, expected) as reports:
-        progress.begin(SIMULATING, None, ticks, "ticks", lambda: queue.ticks_made)
+        progress.begin("simulating", ticks, "ticks", lambda: queue.ticks_made)
         for report in reports:
             pace.add(len(report.outcomes))
             yield report
-    progress.begin("summing up", SOON)
+    progress.begin("summing up")
 
 
 def _count(checked: Checked, left: int, stored: int) -> str:
@@ -254,14 +251,11 @@ def _count(checked: Checked, left: int, stored: int) -> str:
 def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Iterator[Iterator[Report]]:
     """Start what makes the jobs of a queue, which is expected to take some time; yield what became of each chunk."""
     if engine.address is not None:
-        _expect(expected, 1)
         with remote_client(engine.address) as client, contextlib.closing(on_cluster(queue, client)) as reports:
             processes = max(1, len(client.nthreads()))
-            _expect(expected, processes)
             _tell(expected.in_words(processes, processes))
             yield reports
     elif engine.workers == 0:
-        _expect(expected, 1)
         _tell(expected.in_words(1, 1))
         with contextlib.closing(in_process(queue)) as reports:
             yield reports
@@ -269,19 +263,13 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
         workers = min(engine.workers, jobs)
         together = min(workers, os.cpu_count() or 1)
         start = START_UP * workers / together
-        _expect(expected, together)
         _tell(expected.in_words(workers, together, start))
-        progress.begin("starting processes", start)
+        progress.begin("starting processes")
         with (
             local_client(workers, _scratch(queue.rules)) as client,
             contextlib.closing(on_cluster(queue, client)) as reports,
         ):
             yield reports
-
-
-def _expect(expected: Estimate, together: int) -> None:
-    """Plan the simulation on processes of which so many run at a time; nothing follows from a bound."""
-    progress.plan({SIMULATING: expected.seconds / together if expected.known == "about" else None})
 
 
 def _tell(text: str) -> None:

@@ -14,7 +14,7 @@ from typing import TypeVar
 from runner import store
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import DISK_FULL, RunnerError, StoreError, describe_write_error, user_place
-from runner.base.progress.ticks import report_ticks
+from runner.base.ticks import report_ticks
 from runner.config.calibration import validate_calibration
 from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig

@@ -11,7 +11,7 @@ from support.patience import PATIENCE, wait_until
 
 import runner
 from runner import store
-from runner.base.progress import ticks
+from runner.base import ticks
 from runner.sweeps import engine
 
 WHOLE = ["config.yaml", "metrics.json", "robot.urdf", "trace.parquet"]

@@ -8,7 +8,6 @@ from runner.audit.audit import counts, inventory
 from runner.audit.rollout import run_rollout
 from runner.audit.verdict import SAMPLES, VERDICTS, Judged
 from runner.base import progress
-from runner.base.progress.stages import BELIEVING
 from runner.base.quantities import quantity
 from runner.reporting.audit.forms import Likeness, forms_of
 from runner.reporting.document import (
@@ -50,7 +49,7 @@ def audit_document(judged: Mapping[str, Sequence[Judged]]) -> Document:
     """
     everything = [each for source in judged.values() for each in source]
     total = counts(everything)
-    progress.begin(BELIEVING, None, sum(len(_rollouts(each)) for each in judged.values()), "wrong formulas")
+    progress.begin("trying", sum(len(_rollouts(each)) for each in judged.values()), "wrong formulas")
     return Document(
         title="Equations of three published sources, checked by machine",
         subtitle="Every printed equation against the arm's true kinematics and dynamics",

@@ -5,7 +5,7 @@ import re
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.base.progress.ticks import counter
+from runner.base.ticks import counter
 from runner.config.compose.compose import compose
 from runner.config.limits import LimitsConfig, check_cpu_time, check_memory_together, memory_of_run
 from runner.config.validation import validate

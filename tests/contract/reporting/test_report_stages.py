@@ -1,13 +1,14 @@
-"""What commands say of their stages is what they planned."""
+"""Stages that commands begin, with their steps."""
 
 import pytest
 from support.sample_document import document
 
 from runner.audit.audit import audit_all
 from runner.base import progress
-from runner.base.progress.stages import AUDITING, FIGURES, HTML, PDF, of_report
 from runner.reporting import outline
 from runner.reporting.render import write_report
+
+STAGES = {"html": ["writing the HTML"], "pdf": ["drawing figures", "writing the PDF"]}
 
 
 @pytest.fixture
@@ -15,7 +16,7 @@ def told(monkeypatch):
     """What is begun, with its total, and the number of steps of each."""
     found = {}
 
-    def begin(name, seconds=None, total=1.0, unit="", count=None):
+    def begin(name, total=None, unit="", count=None):
         found[name] = [total, 0]
 
     def step(made=1.0):
@@ -26,25 +27,22 @@ def told(monkeypatch):
     return found
 
 
-def test_a_report_goes_through_the_stages_that_are_planned_for_it(tmp_path, told):
+def test_a_report_goes_through_its_stages(tmp_path, told):
     write_report(document(), tmp_path)
-    assert list(told) == list(of_report(("html", "pdf"))) == [HTML, FIGURES, PDF]
+    assert list(told) == [*STAGES["html"], *STAGES["pdf"]]
     figures = outline.count_figures(document())
-    assert told[FIGURES] == [figures, figures]
+    assert told["drawing figures"] == [figures, figures]
     assert figures > 0
 
 
-@pytest.mark.parametrize(("formats", "stages"), [(("html",), [HTML]), (("pdf",), [FIGURES, PDF])])
-def test_a_report_in_one_format_has_its_stages_alone(formats, stages):
-    assert list(of_report(formats)) == stages
-
-
-def test_more_figures_are_expected_to_take_longer():
-    assert sum(of_report(("html", "pdf"), 20).values()) > 1.5 * sum(of_report(("html", "pdf"), 10).values())
+@pytest.mark.parametrize("formats", STAGES)
+def test_a_report_in_one_format_has_its_stages_only(tmp_path, told, formats):
+    write_report(document(), tmp_path, (formats,))
+    assert list(told) == STAGES[formats]
 
 
 def test_the_audit_steps_once_for_each_equation(told, monkeypatch):
     monkeypatch.setattr("runner.audit.audit.sources", lambda: ["meca500", "xarm7"])
     judged = audit_all(samples=2)
     count = sum(map(len, judged.values()))
-    assert told == {AUDITING: [count, count]}
+    assert told == {"auditing": [count, count]}

@@ -41,15 +41,6 @@ def test_an_estimate_and_a_bound_are_told_with_the_start_of_processes_on_two_cor
     assert f"runner: {words}\n" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(("known", "told"), [("about", EXPECTED), ("up to", None), ("more than", None)])
-def test_progress_expects_nothing_of_a_bound(tmp_path, monkeypatch, known, told):
-    planned = []
-    monkeypatch.setattr(run, "estimate", lambda *_: Estimate(EXPECTED, known))
-    monkeypatch.setattr(run.progress, "plan", planned.append)
-    run_sweep(plan_sweep([*SHORT, "plant=rk4", f"outputs={tmp_path}", "seed=0,1"]), Engine(0, None), "runner -m ...")
-    assert planned[-1] == {run.SIMULATING: told}
-
-
 class Steps:
     """A clock that moves on by a step each time it is read."""
 

@@ -7,6 +7,7 @@ import pytest
 from runner.base.quantities import (
     above_rounding,
     digits_between,
+    format_duration,
     format_range,
     label_with_unit,
     number,
@@ -183,3 +184,10 @@ def test_what_is_below_rounding_is_said_to_be_that():
 
 def test_degrees_stand_by_their_number():
     assert quantity(22.92, "°") == "22.9°"
+
+
+@pytest.mark.parametrize(
+    ("seconds", "words"), [(0.2, "1 s"), (89.4, "89 s"), (90.0, "2 min"), (5399.0, "90 min"), (9000.0, "2.5 h")]
+)
+def test_durations_in_words(seconds, words):
+    assert format_duration(seconds) == words

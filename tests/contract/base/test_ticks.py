@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.patience import PATIENCE
 
-from runner.base.progress import ticks
+from runner.base import ticks
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.sweeps.job import simulate_job

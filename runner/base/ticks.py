@@ -7,7 +7,7 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import NDArray
 
-_EVERY = 1.0  # s between two times that the count is told
+_EVERY = 1.0  # s between two reports of the count
 
 
 class _Count:
@@ -46,14 +46,14 @@ def completed_ticks() -> int:
 
 
 def counter() -> Callable[[], int]:
-    """Return what tells, from any thread, how many ticks have been simulated since now."""
+    """Return a function that returns the number of ticks simulated since now, from any thread."""
     before = completed_ticks()
     return lambda: completed_ticks() - before
 
 
 @contextmanager
 def report_ticks(tell: Callable[[int], None] | None) -> Iterator[None]:
-    """Tell each second from a thread how many ticks have been simulated within; None tells nobody."""
+    """Report each second, from a thread, how many ticks have been simulated within; do nothing for None."""
     if tell is None:
         yield
         return

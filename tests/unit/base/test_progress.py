@@ -1,4 +1,4 @@
-"""The line on a terminal, drawn on a stream that says it is one."""
+"""The line on a terminal, drawn on a stream that reports to be one."""
 
 import contextlib
 import fcntl
@@ -9,15 +9,15 @@ import struct
 import sys
 import termios
 import threading
+import time
 from types import SimpleNamespace
 
 import pytest
 from support.patience import PATIENCE
 
 from runner.base import progress
-from runner.base.progress import display
-from runner.base.progress.display import Display, in_words
-from runner.base.progress.work import Work
+from runner.base.progress import _Display as Display
+from runner.base.progress import _Stage as Stage
 
 
 class Terminal(io.StringIO):
@@ -41,7 +41,7 @@ class Terminal(io.StringIO):
 
 
 class Screen:
-    """What a terminal shows of a text: lines, with what carriage returns wrote over."""
+    """The lines that a terminal shows of its output, after carriage returns."""
 
     def __init__(self, text):
         self.lines = [""]
@@ -64,55 +64,81 @@ class Screen:
 
 @pytest.fixture
 def terminal(monkeypatch):
-    monkeypatch.setattr(display, "_EVERY", 3600.0)  # drawn by hand
+    monkeypatch.setattr(progress, "_EVERY", 3600.0)  # drawn by hand
     return Terminal()
 
 
-@pytest.fixture
-def work():
-    found = Work(lambda: 5.0)
-    found.plan({"a": 10.0, "b": 10.0})
-    found.begin("a", None, 20_000, "ticks")
-    return found
+def shown(stream, **stage):
+    """Return a display on a stream, whose stage began 10 s ago."""
+    display = Display(stream)
+    display.stage = Stage(**({"name": "a", "total": 20_000, "unit": "ticks", "began": time.time() - 10.0} | stage))
+    return display
 
 
-def test_it_says_stage_count_share_clock_and_time_left(terminal, work):
-    with terminal, Display(work, terminal) as line:
-        work.step(10_000)
-        line.draw()
-        (shown,) = terminal.shown
-    assert shown.startswith("a, 10.0 of 20.0 k ticks |")
-    assert shown.endswith(f"| {100.0 * work.share:.0f} %, 0:00, about {in_words(work.left)} left")
+def test_it_shows_stage_count_and_the_time_that_is_left(terminal):
+    with terminal, shown(terminal) as display:
+        display.stage.reached += 10_000
+        display.draw()
+        (line,) = terminal.shown
+    assert line.startswith("a:  50%|")
+    assert "| 10.0k/20.0k [00:10<00:10, " in line
+    assert line.endswith(" ticks/s]")
 
 
-def test_a_narrow_terminal_gets_a_shorter_bar(terminal, work, monkeypatch):
-    monkeypatch.setattr(display.os, "get_terminal_size", lambda _: (61, 20))
+def test_a_count_is_asked_for_and_never_falls(terminal):
+    counts = iter([3, 2, 8, 30])
+    with terminal, shown(terminal, total=10, count=lambda: next(counts)) as display:
+        for expected in (3, 3, 8, 10):
+            display.draw()
+            (line,) = terminal.shown
+            assert f"| {expected}/10 [" in line
+
+
+@pytest.mark.parametrize(
+    ("stage", "line"),
+    [
+        ({"total": None, "unit": "files"}, "a: 0 files [00:10, ? files/s]"),
+        ({"total": None, "unit": ""}, "a [00:10]"),
+    ],
+)
+def test_a_stage_of_unknown_length_shows_no_share(terminal, stage, line):
+    with terminal, shown(terminal, **stage) as display:
+        display.draw()
+        assert terminal.shown == [line]
+
+
+def test_each_stage_has_a_bar_with_its_title(terminal, monkeypatch):
+    monkeypatch.setattr(progress, "_terminal", lambda: contextlib.nullcontext(terminal))
+    with terminal, progress.show_progress():
+        progress.begin("a", 4, "runs")
+        progress.step(2)
+        progress._display.draw()
+        assert terminal.shown[0].startswith("a:  50%|")
+        progress.set_title("study")
+        progress.begin("b")
+        progress._display.draw()
+        assert terminal.shown == ["study: b [00:00]"]
+    assert terminal.shown == [""]
+
+
+def test_a_narrow_terminal_gets_a_shorter_bar(terminal, monkeypatch):
+    monkeypatch.setattr(progress.os, "get_terminal_size", lambda _: (61, 20))
     monkeypatch.setattr(Terminal, "fileno", lambda _: 0)
-    work.step(10_000)
-    with terminal, Display(work, terminal) as line:
-        line.draw()
-        (shown,) = terminal.shown
-    assert len(shown) < 60
-    assert shown.endswith(" left")
-    assert shown.index("|", shown.index("|") + 1) - shown.index("|") - 1 < 20
+    with terminal, shown(terminal) as display:
+        display.draw()
+        (line,) = terminal.shown
+    assert len(line) <= 61
 
 
-def test_it_tells_no_share_while_that_is_unknown(terminal):
-    with terminal, Display(Work(lambda: 5.0), terminal) as line:
-        line.draw()
-        (shown,) = terminal.shown
-    assert shown.split() == ["starting", "|", "|", "0:00"]
-
-
-def test_nothing_is_left_of_it(terminal, work):
-    with terminal, Display(work, terminal) as line:
+def test_nothing_is_left_of_it(terminal):
+    with terminal, shown(terminal) as line:
         line.draw()
     assert terminal.shown == [""]
 
 
-def test_nothing_is_left_of_it_after_an_interrupt(terminal, work):
+def test_nothing_is_left_of_it_after_an_interrupt(terminal):
     def interrupted():
-        with Display(work, terminal) as line:
+        with shown(terminal) as line:
             line.draw()
             raise KeyboardInterrupt
 
@@ -123,20 +149,20 @@ def test_nothing_is_left_of_it_after_an_interrupt(terminal, work):
     assert terminal.shown == ["runner: interrupted", ""]
 
 
-def test_what_is_printed_takes_its_place_and_it_comes_back_below(terminal, work):
-    with terminal, Display(work, terminal) as line:
+def test_what_is_printed_takes_its_place_and_it_comes_back_below(terminal):
+    with terminal, shown(terminal) as line:
         line.draw()
         print("runner: 8 runs", file=sys.stderr)
         print("outputs/runs/1")
         line.draw()
         first, second, third = terminal.shown
     assert (first, second) == ("runner: 8 runs", "outputs/runs/1")
-    assert third.startswith("a, 0.0 of 20.0 k")
+    assert third.startswith("a:   0%|")
     assert terminal.shown == ["runner: 8 runs", "outputs/runs/1", ""]
 
 
-def test_it_waits_for_the_end_of_a_line_that_someone_began(terminal, work):
-    with terminal, Display(work, terminal) as line:
+def test_it_waits_for_the_end_of_a_line_that_someone_began(terminal):
+    with terminal, shown(terminal) as line:
         print("a question? ", end="")
         line.draw()
         assert terminal.shown == ["a question?"]
@@ -145,33 +171,33 @@ def test_it_waits_for_the_end_of_a_line_that_someone_began(terminal, work):
         assert len(terminal.shown) == 2
 
 
-def test_its_thread_draws_and_ends_with_the_work(terminal, work, monkeypatch):
-    monkeypatch.setattr(display, "_EVERY", 0.001)
+def test_its_thread_draws_and_ends_with_the_work(terminal, monkeypatch):
+    monkeypatch.setattr(progress, "_EVERY", 0.001)
     drawn = threading.Event()
     monkeypatch.setattr(Display, "draw", lambda _: drawn.set())
     before = threading.active_count()
-    with terminal, Display(work, terminal):
+    with terminal, shown(terminal):
         assert drawn.wait(PATIENCE)
     assert threading.active_count() == before
 
 
-def test_a_terminal_that_is_gone_does_no_harm(work):
+def test_a_terminal_that_is_gone_does_no_harm():
     other = Terminal()
-    with Display(work, other) as line:
+    with shown(other) as line:
         line.draw()
         other.close()
 
 
-def test_the_outputs_are_given_back_and_look_the_same_meanwhile(terminal, work):
+def test_the_outputs_are_given_back_and_look_the_same_meanwhile(terminal):
     with terminal:
-        with Display(work, terminal):
+        with shown(terminal):
             assert sys.stdout is not terminal
             assert sys.stdout.isatty()
         assert (sys.stdout, sys.stderr) == (terminal, terminal)
 
 
 def test_what_shows_its_progress_within_what_does_is_shown_once(terminal, monkeypatch):
-    monkeypatch.setattr(progress, "terminal", lambda: contextlib.nullcontext(terminal))
+    monkeypatch.setattr(progress, "_terminal", lambda: contextlib.nullcontext(terminal))
     before = threading.active_count()
     with terminal, progress.show_progress():
         assert threading.active_count() == before + 1
@@ -194,36 +220,29 @@ def test_a_notebook_shows_it_though_it_is_no_terminal(monkeypatch):
     kernel = SimpleNamespace(config={"IPKernelApp": {}})
     monkeypatch.setitem(sys.modules, "IPython", SimpleNamespace(get_ipython=lambda: kernel))
     stream = io.StringIO()
-    with contextlib.redirect_stderr(stream), display.terminal() as found:
+    with contextlib.redirect_stderr(stream), progress._terminal() as found:
         assert found is stream
     with contextlib.redirect_stderr(stream), progress.show_progress():
         assert sys.stderr is not stream
     kernel.config = {}  # IPython in a shell
-    with contextlib.redirect_stderr(stream), display.terminal() as found:
+    with contextlib.redirect_stderr(stream), progress._terminal() as found:
         assert found is None
 
 
-@pytest.mark.parametrize(
-    ("seconds", "words"), [(0.2, "1 s"), (89.4, "89 s"), (90.0, "2 min"), (5399.0, "90 min"), (9000.0, "2.5 h")]
-)
-def test_durations_in_words(seconds, words):
-    assert in_words(seconds) == words
-
-
 @pytest.mark.parametrize("size", [(0, 0), (30, 100)])
-def test_a_terminal_that_does_not_tell_its_size_is_drawn_on(monkeypatch, work, size):
+def test_a_terminal_that_does_not_tell_its_size_is_drawn_on(monkeypatch, size):
     """One that another program opened, such as a container, may say that it has no lines and no columns."""
-    monkeypatch.setattr(display, "_EVERY", 3600.0)
+    monkeypatch.setattr(progress, "_EVERY", 3600.0)
     reader, writer = os.openpty()
     fcntl.ioctl(writer, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))
-    with os.fdopen(writer, "w") as stream, Display(work, stream) as line:
-        work.step(10_000)
+    with os.fdopen(writer, "w") as stream, shown(stream) as line:
+        line.stage.reached = 10_000
         line.draw()
         stream.flush()
         text = ""
         for _ in range(100):
-            if "left" not in text:
+            if "10.0k/20.0k" not in text:
                 assert select.select([reader], [], [], PATIENCE)[0]
                 text += os.read(reader, 4096).decode()
     os.close(reader)
-    assert "a, 10.0 of 20.0 k ticks |" in text
+    assert "| 10.0k/20.0k [" in text
