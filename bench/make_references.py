@@ -19,7 +19,7 @@ from tqdm import tqdm
 from runner.base.environment_variables import quiet_environment
 from runner.config.compose.options import group_options
 from runner.store import Run, open_run
-from runner.store.references.reference import reference_path
+from runner.store.baselines import baseline_path
 
 SEEDS = range(5)
 MARGIN = 0.02
@@ -226,7 +226,7 @@ def main() -> None:
         for preset in PRESETS:
             runs = [open_run(stored[experiment, preset, seed]) for seed in SEEDS]
             bands = {metric: make_band(runs, experiment, preset, metric) for metric in metrics}
-            path = reference_path(f"{experiment}.{preset}")
+            path = baseline_path(f"{experiment}.{preset}")
             path.parent.mkdir(parents=True, exist_ok=True)
             head = (
                 f"# {group_options('experiment')[experiment]}, preset {preset}\n# Made by bench/make_references.py.\n"

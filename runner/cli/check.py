@@ -19,7 +19,7 @@ from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.store import Run, Sweep
-    from runner.store.references import Band, Finding, Learned, Move, Reference
+    from runner.store.baselines import Band, Bands, Cells, Finding, Move
 
 _MOVE_COLUMNS = ("cell", "metric", "was", "is", "moved", "beyond the seeds' spread")
 
@@ -50,15 +50,15 @@ def main(arguments: Sequence[str]) -> int:
     options = parser.parse_args(arguments)
     quiet_environment()
     from runner import store
-    from runner.store.references import cell_names, learn, load_learned
+    from runner.store.baselines import Bands, cell_names, load_baseline, save_baseline
 
     if options.save_baseline:
-        count = learn(store.open_sweep(options.folder), options.save_baseline)
+        count = save_baseline(store.open_sweep(options.folder), options.save_baseline)
         print(f"saved: {count} metrics of {options.folder} are now in {options.save_baseline}")
         return 0
-    learned = load_learned(options.baseline) if options.baseline else None
-    if learned is not None:
-        return _check_sweep(store.open_sweep(options.folder), learned, options.markdown)
+    baseline = load_baseline(options.baseline) if options.baseline else None
+    if not (baseline is None or isinstance(baseline, Bands)):
+        return _check_sweep(store.open_sweep(options.folder), baseline, options.markdown)
     if options.markdown:
         parser.error("--markdown needs the baseline of a sweep, made by --save-baseline")
     runs = store.open_runs(options.folder)
@@ -73,7 +73,7 @@ def main(arguments: Sequence[str]) -> int:
 
         cells = cell_names(store.open_sweep(options.folder)) if store.is_sweep(options.folder) else []
         return check_spec(runs, cells, options.max_failure_probability)
-    return _check_bands(runs, options.baseline)
+    return _check_bands(runs, baseline)
 
 
 def _probability(text: str) -> float:
@@ -86,14 +86,14 @@ def _probability(text: str) -> float:
     return value
 
 
-def _check_sweep(sweep: "Sweep", learned: "Learned", markdown: bool) -> int:
+def _check_sweep(sweep: "Sweep", baseline: "Cells", markdown: bool) -> int:
     """Print what changed since a sweep's baseline was saved; return 1 if it is more than the seeds' spread."""
-    from runner.store.references import find_moves
+    from runner.store.baselines import find_moves
 
-    moves = find_moves(sweep, learned)
+    moves = find_moves(sweep, baseline)
     beyond = sum(move.beyond for move in moves)
-    total = sum(map(len, learned.values()))
-    summary = f"{total} metrics of {len(learned)} cells: {len(moves)} moved, {beyond} beyond the seeds' spread"
+    total = sum(map(len, baseline.values()))
+    summary = f"{total} metrics of {len(baseline)} cells: {len(moves)} moved, {beyond} beyond the seeds' spread"
     rows = [list(_MOVE_COLUMNS), *map(_move_row, moves)]
     if markdown:
         lines = [f"**{summary}**", "", *_markdown(rows)] if moves else [f"**{summary}**"]
@@ -130,26 +130,25 @@ def _markdown(rows: "Sequence[Sequence[str]]") -> list[str]:
     return [head, "|" + "---|" * len(rows[0]), *others]
 
 
-def _check_bands(runs: "Sequence[Run]", path: Path | None) -> int:
+def _check_bands(runs: "Sequence[Run]", given: "Bands | None") -> int:
     """Check the medians of all runs; print one line if all hold, else a table of those that do not."""
-    from runner.store.references import check_run, find_shipped, load_reference
+    from runner.store.baselines import check_run, find_shipped
 
-    given = load_reference(path) if path else None
     pairs = [(run, given or find_shipped(run)) for run in runs]
-    results = [(run, reference, check_run(run, reference)) for run, reference in pairs]
+    results = [(run, baseline, check_run(run, baseline)) for run, baseline in pairs]
     short = [result for result in results if not all(finding.good for finding in result[2])]
     if short:
         print("\n\n".join(_report(*result) for result in short))
         return 1
-    names = ", ".join(dict.fromkeys(reference.name for _, reference in pairs))
+    names = ", ".join(dict.fromkeys(baseline.name for _, baseline in pairs))
     count = sum(len(findings) for _, _, findings in results)
     print(f"good: {count} metrics of {len(runs)} {'run' if len(runs) == 1 else 'runs'} lie in the bands of {names}")
     return 0
 
 
-def _report(run: "Run", reference: "Reference", findings: "Sequence[Finding]") -> str:
+def _report(run: "Run", baseline: "Bands", findings: "Sequence[Finding]") -> str:
     wrong = [finding for finding in findings if not finding.good]
-    head = f"{run.folder}: {len(wrong)} of {len(findings)} metrics fall short of {reference.name}"
+    head = f"{run.folder}: {len(wrong)} of {len(findings)} metrics fall short of {baseline.name}"
     rows = [[f.metric, number(f.value), _range(f.band), f.band.reason] for f in wrong]
     failure = [f"  {run.failure_text}"] if run.failure else []
     return "\n".join([head, *failure, align_columns([["metric", "found", "band", "reason"], *rows])])

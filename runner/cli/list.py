@@ -114,9 +114,9 @@ def _printed(claim: "PublishedClaim") -> str:
 
 
 def _list_baselines(_: Sequence[Path]) -> dict[str, str]:
-    from runner.store.references.reference import described_references
+    from runner.store.baselines import shipped_baselines
 
-    return described_references()
+    return shipped_baselines()
 
 
 def _list_studies(_: Sequence[Path]) -> dict[str, str]:

@@ -18,7 +18,7 @@ from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks, spec_of_several
 from runner.reporting.words import PLANT, in_words
 from runner.store import Run
-from runner.store.references import check_run, find_shipped
+from runner.store.baselines import check_run, find_shipped
 
 _KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
@@ -105,13 +105,13 @@ def _abstract(run: Run) -> str:
     if run.spec is not None:
         ended += f" {spec_abstract(run.spec)}"
     try:
-        reference = find_shipped(run)
+        baseline = find_shipped(run)
     except RunnerError:
         return ended
-    found = check_run(run, reference)
+    found = check_run(run, baseline)
     wrong = [title(finding.metric) for finding in found if not finding.good]
     where = f"; outside are: {', '.join(wrong)}" if wrong else ""
-    return f"{ended} {len(found) - len(wrong)} of {len(found)} metrics lie in the bands of {reference.name}{where}."
+    return f"{ended} {len(found) - len(wrong)} of {len(found)} metrics lie in the bands of {baseline.name}{where}."
 
 
 def _cover(run: Run) -> Cover:

@@ -9,8 +9,7 @@ import pytest
 from support.pages import ROOT
 from support.printed import without_caveats, without_results
 
-from runner.store.references import shipped_references
-from runner.store.references.reference import reference_path
+from runner.store.baselines import baseline_path, shipped_baselines
 
 SCRIPT = """\
 import sys
@@ -34,7 +33,7 @@ def test_the_wheel_holds_configs_robots_templates_and_references(wheel):
     for folder in ("conf", "robots", "reports/templates", "examples"):
         ours = {path.relative_to(ROOT).as_posix() for path in (ROOT / folder).rglob("*.*") if path.suffix != ".pyc"}
         assert {f"runner/_data/{name}" for name in ours} <= names
-    assert {reference_path(name).relative_to(ROOT).as_posix() for name in shipped_references()} <= names
+    assert {baseline_path(name).relative_to(ROOT).as_posix() for name in shipped_baselines()} <= names
     assert not [name for name in names if name.startswith(("tests", "bench", "outputs"))]
 
 

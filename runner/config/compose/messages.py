@@ -53,7 +53,7 @@ def describe(group: str, model: type[StrictModel], error: ValidationError) -> It
 
 def _locate(group: str, place: tuple[int | str, ...]) -> tuple[str, list[str]]:
     """Return the dotted key of a problem, and its parts below the group."""
-    location = [str(part) for part in place if not str(part).startswith(("list[", "function-", "constrained"))]
+    location = [str(part) for part in place if not str(part).startswith(("list[", "[key]", "function-", "constrained"))]
     return ".".join([*([group] if group else []), *location]), location
 
 

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
-from runner.store.references import shipped_references
+from runner.store.baselines import shipped_baselines
 
 GOOD = "schema: 1\nmetrics:\n  peak_torque: {min: 0.0, reason: torques have no sign here}\n"
 BAD = """\
@@ -90,10 +90,8 @@ def test_a_changed_controller_falls_short_of_the_shipped_reference(cli):
 def test_without_a_shipped_reference_the_way_out_is_named(cli, copy_run):
     ending = cli("check", copy_run("goal"))
     assert ending.code == 2
-    assert (
-        "no baseline comes with the runner for a run without an experiment; give one by --baseline FILE" in ending.err
-    )
-    assert f"`runner list baselines` prints the {len(shipped_references())} that come with it\n" in ending.err
+    assert "no bundled baseline for a run without an experiment. Give one by --baseline FILE" in ending.err
+    assert f"`runner list baselines` prints the {len(shipped_baselines())} bundled ones.\n" in ending.err
     assert len(ending.err) < 400
     run = cli("experiment=thesis/lag", "duration=0.05").folder
     assert "for 'thesis/lag.full_equations'" in cli("check", run).err

@@ -100,7 +100,7 @@ def test_cells_that_are_new_gone_or_failed_are_told(cli, outputs, learned):
     ("content", "message"),
     [
         ("schema: 2\ncells: {a: {energy: {unit: J, median: 1.0, min: 1.0, max: 1.0, seeds: 1}}}", "schema: must be 1"),
-        ("schema: 1\ncells: {}", "cells: must hold the metrics of at least one cell"),
+        ("schema: 1\ncells: {}", "cells: must have at least one metric"),
         (
             "schema: 1\ncells: {a: {energy: {unit: J, median: x, min: 1.0, max: 1.0, seeds: 1}}}",
             "cells.a.energy.median",

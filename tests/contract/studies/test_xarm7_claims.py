@@ -6,7 +6,7 @@ from pydantic import ValidationError
 
 from runner.config.compose.options import group_options
 from runner.reporting.published_claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
-from runner.store.references import shipped_references
+from runner.store.baselines import shipped_baselines
 
 CLAIMS = load_claims("xarm7")
 T = np.linspace(0.0, 2.0 * np.pi, 101)
@@ -36,7 +36,7 @@ def test_each_names_an_experiment_and_where_it_stands(claim):
 def test_every_experiment_that_works_has_a_reference():
     working = {claim.experiment for claim in CLAIMS if not claim.fails}
     assert {f"{name}.{preset}" for name in working for preset in ("full_equations", "as_reported")} <= set(
-        shipped_references()
+        shipped_baselines()
     )
 
 

@@ -1,4 +1,4 @@
-"""References: bands at both ends, missing values and bad files; the shipped ones are valid."""
+"""Baselines: bands at both ends, missing values and bad files; the shipped ones are valid."""
 
 import math
 
@@ -10,8 +10,7 @@ from runner.config.compose.options import group_options
 from runner.plugins.metric_units import unit_of
 from runner.reporting.published_claims import load_claims
 from runner.store import Run
-from runner.store.references import Band, Reference, check_run, load_reference, shipped_references
-from runner.store.references.reference import reference_path
+from runner.store.baselines import Band, Bands, check_run, load_baseline, load_shipped, shipped_baselines
 
 
 @pytest.fixture
@@ -19,7 +18,7 @@ def load(tmp_path):
     def write_and_load(text):
         path = tmp_path / "baseline.yaml"
         path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return load_reference(path)
+        return load_baseline(path)
 
     return write_and_load
 
@@ -85,7 +84,6 @@ metrics:
 """,
     )
     starts = [
-        "metric: unknown key (did you mean metrics?); keys: schema, metrics",
         "schema: must be 1; found 2",
         "metrics.setling_time: unknown metric (did you mean settling_time?); metrics: settling_time, ",
         "metrics.energy: min 2 is above max 1; found ",
@@ -96,6 +94,7 @@ metrics:
         "metrics.control_effort.min: must be a number; found 'much'",
         "metrics.control_effort.max: must be a finite number; found inf",
         "metrics.saturation_fraction: must be a group of keys; found 3",
+        "metric: unknown key (did you mean metrics?); keys: schema, metrics",
     ]
     assert [text[: len(start)] for text, start in zip(found, starts, strict=True)] == starts
 
@@ -103,9 +102,8 @@ metrics:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("schema: 1\n", "metrics: must name a band for at least one metric; found None"),
-        ("schema: 1\nmetrics: {}\n", "metrics: must name a band for at least one metric; found {}"),
-        ("- 1\n", "must hold schema and metrics"),
+        ("schema: 1\n", "metrics: missing"),
+        ("schema: 1\nmetrics: {}\n", "metrics: must have at least one metric; found {}"),
     ],
 )
 def test_a_reference_needs_bands(load, text, message):
@@ -115,10 +113,11 @@ def test_a_reference_needs_bands(load, text, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("schema: 1\nschema: 1\n", "line 2, column 1: found duplicate key schema"),
+        ("schema: 1\nschema: 1\n", "line 2: the key 'schema' stands twice"),
         ("schema: [\n", "line 2, column 1: "),
         (b"\xff\xfe\x00", "cannot read the baseline "),
         ("3", "cannot read the baseline "),
+        ("- 1\n", "it must have schema, and metrics or cells"),
         ("schema: ${nope}\n", "schema: must be 1; found '${nope}'"),
     ],
 )
@@ -130,12 +129,12 @@ def test_what_is_no_yaml_is_said_with_its_line(load, text, message):
 
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(StoreError, match=r"cannot read the baseline .*gone\.yaml: .*No such file"):
-        load_reference(tmp_path / "gone.yaml")
+        load_baseline(tmp_path / "gone.yaml")
 
 
 def test_inside_outside_null_and_absent(tmp_path):
     band = Band(min=1.0, max=2.0, reason="r")
-    reference = Reference("mine", dict.fromkeys(("inside", "outside", "null", "absent"), band))
+    reference = Bands("mine", dict.fromkeys(("inside", "outside", "null", "absent"), band))
     findings = check_run(stored(tmp_path, inside=1.5, outside=2.5, null=None), reference)
     assert [(finding.value, finding.good) for finding in findings] == [
         (1.5, True),
@@ -146,26 +145,26 @@ def test_inside_outside_null_and_absent(tmp_path):
 
 
 def test_a_failed_run_has_no_good_metric(tmp_path):
-    reference = Reference("mine", {"energy": Band(max=2.0, reason="r")})
+    reference = Bands("mine", {"energy": Band(max=2.0, reason="r")})
     assert not check_run(stored(tmp_path, status="failed", energy=1.0), reference)[0].good
 
 
-def test_the_shipped_references_are_valid():
+def test_the_shipped_baselines_are_valid():
     wrong = []
-    for name in shipped_references():
-        reference = load_reference(reference_path(name), name)
+    for name in shipped_baselines():
+        reference = load_shipped(name)
         experiment, _, preset = name.rpartition(".")
         if experiment not in group_options("experiment") or preset not in group_options("preset"):
             wrong.append(name)
         for metric, band in reference.bands.items():
             if not unit_of(metric) or band.min is None or band.max is None:
                 wrong.append(f"{name}: {metric}")
-    assert shipped_references()
+    assert shipped_baselines()
     assert wrong == []
 
 
 def test_every_figure_that_carries_a_claim_has_a_reference():
     experiments = {claim.experiment for claim in load_claims("thesis")}
     assert {f"{name}.{preset}" for name in experiments for preset in ("full_equations", "as_reported")} <= set(
-        shipped_references()
+        shipped_baselines()
     )

@@ -1,0 +1,302 @@
+"""Baselines of `runner check`: bands for the metrics of a run, and what the cells of a sweep gave.
+
+A file of bands is `{schema: 1, metrics: {NAME: {min:, max:, reason:}}}`. `runner check --save-baseline` writes the file
+of a sweep, `{schema: 1, cells: {OVERRIDES: {NAME: {unit:, median:, min:, max:, seeds:}}}}`.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import yaml
+from omegaconf import OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+from pydantic import AfterValidator, Field, ValidationError
+
+from runner.base.bounded_yaml import Bounds, YamlError, read_yaml
+from runner.base.errors import RunnerError, StoreError, nearest
+from runner.base.limits import Limit, read_text
+from runner.base.paths import studies_dir
+from runner.base.sanitize import escaped
+from runner.config.compose.messages import describe
+from runner.config.compose.options import described_files
+from runner.config.spec import Bound
+from runner.plugins.metric_units import unit_of, units
+from runner.schema.model import StrictModel
+from runner.store import Run, Sweep
+from runner.store.atomic import write_atomically
+
+SCHEMA = 1
+_BOUNDS = Bounds(Limit(200_000_000, "bytes"), values=5_000_000)  # about 10^5 cells
+_ROUNDING = 1e-6  # of a value: what another machine's rounding may change
+_FOLDER = "references"  # of a study
+
+
+class Band(Bound):
+    """Range that a metric's median must be in, ends included.
+
+    Attributes:
+        reason: Why the band has these ends.
+    """
+
+    reason: Annotated[str, Field(min_length=1)]
+
+
+class Spread(StrictModel):
+    """Values of one metric over the seeds.
+
+    Attributes:
+        unit: Its unit.
+        median: Its median over the repetitions; null if half of them or more have no value.
+        min: Smallest value; null if no repetition has one.
+        max: Largest value; null if any repetition has none.
+        seeds: Number of repetitions.
+    """
+
+    unit: str
+    median: float | None
+    min: float | None
+    max: float | None
+    seeds: int
+
+    def holds(self, value: float | None) -> bool:
+        """Return True if a median is in the range of the seeds; no value counts as above every number."""
+        low = math.inf if self.min is None else self.min
+        high = math.inf if self.max is None else self.max
+        return low <= (math.inf if value is None else value) <= high
+
+
+Cells = Mapping[str, Mapping[str, Spread]]
+
+
+def _check_schema(number: object) -> object:
+    if number != SCHEMA:
+        raise ValueError(f"must be {SCHEMA}")
+    return number
+
+
+def _check_metric(name: str) -> str:
+    if unit_of(name) is None:
+        known = units()
+        raise ValueError(f"unknown metric{nearest(name, known)}; metrics: {', '.join(known)}")
+    return name
+
+
+def _check_some(entries: dict[str, Any]) -> dict[str, Any]:
+    if not any(entries.values()):
+        raise ValueError("must have at least one metric")
+    return entries
+
+
+class _BandFile(StrictModel):
+    """Content of a file of bands."""
+
+    schema_: Annotated[object, AfterValidator(_check_schema), Field(alias="schema")]
+    metrics: Annotated[dict[Annotated[str, AfterValidator(_check_metric)], Band], AfterValidator(_check_some)]
+
+
+class _CellFile(StrictModel):
+    """Content of the file of a sweep."""
+
+    schema_: Annotated[object, AfterValidator(_check_schema), Field(alias="schema")]
+    cells: Annotated[dict[str, dict[str, Spread]], AfterValidator(_check_some)]
+
+
+@dataclass(frozen=True)
+class Bands:
+    """A baseline of runs.
+
+    Attributes:
+        name: Its name or path, for messages.
+        bands: Band of each metric by name.
+    """
+
+    name: str
+    bands: Mapping[str, Band]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Comparison of one metric of a run with its band.
+
+    Attributes:
+        metric: Name of the metric.
+        value: Its median over the repetitions; None if the run has none.
+        band: Its band.
+        good: Whether the run did not fail and the value is in the band.
+    """
+
+    metric: str
+    value: float | None
+    band: Band
+    good: bool
+
+
+@dataclass(frozen=True)
+class Move:
+    """A metric, or a whole cell, that changed since the baseline was saved.
+
+    Attributes:
+        cell: Overrides that distinguish the cell from others.
+        metric: Name of the metric; empty for a whole cell.
+        was: Values in the baseline; None if it has none.
+        value: Its median now; None if there is none.
+        remark: What happened to the whole cell, such as its failure; empty for a metric.
+        beyond: Whether the change exceeds the spread of the seeds.
+    """
+
+    cell: str
+    metric: str
+    was: Spread | None
+    value: float | None
+    remark: str
+    beyond: bool
+
+
+def load_baseline(path: Path, name: str = "") -> Bands | Cells:
+    """Read a baseline of runs or of a sweep.
+
+    Args:
+        path: The file.
+        name: Its name for messages; empty for its path.
+
+    Raises:
+        StoreError: if it cannot be read or is not a baseline; lists all its problems.
+    """
+    try:
+        text = read_text(path, _BOUNDS.size)
+        content = read_yaml(text, path, _BOUNDS)
+        if not isinstance(content, dict):
+            raise ValueError("it must have schema, and metrics or cells")
+        if "cells" not in content:  # written by hand, and so read as a config is: 1e-3 is a number
+            content = OmegaConf.to_container(OmegaConf.create(text), resolve=False)
+    except YamlError as error:
+        raise StoreError(f"baseline {error}") from error
+    except (OSError, ValueError, OmegaConfBaseException) as error:
+        raise StoreError(f"cannot read the baseline {path}: {error}") from error
+    model: type[_BandFile | _CellFile] = _CellFile if "cells" in content else _BandFile
+    try:
+        file = model.model_validate(content)
+    except ValidationError as error:
+        problems = [f"  - {problem}" for problem in describe("", model, error)]
+        raise StoreError("\n".join([f"{path} is not a valid baseline:", *problems])) from None
+    return file.cells if isinstance(file, _CellFile) else Bands(name or str(path), file.metrics)
+
+
+def check_run(run: Run, baseline: Bands) -> list[Finding]:
+    """Compare the medians of a run with a baseline; every metric of a failed run falls short."""
+    findings = []
+    for metric, band in baseline.bands.items():
+        value = run.metrics.get(metric, {}).get("median")
+        good = run.status == "ok" and value is not None and band.holds(value)
+        findings.append(Finding(metric, value, band, good))
+    return findings
+
+
+def save_baseline(sweep: Sweep, path: Path) -> int:
+    """Write the baseline of a sweep; return its number of metrics.
+
+    Raises:
+        StoreError: if a run of the sweep is missing or failed, or the file cannot be written.
+    """
+    cells: dict[str, dict[str, Any]] = {}
+    for cell, run in zip(cell_names(sweep), sweep.runs(), strict=True):
+        if run.failure is not None:
+            raise StoreError(f"a failed run cannot be in a baseline: [{cell}] {run.failure_text}")
+        cells[cell] = {
+            name: {**{key: metric[key] for key in ("unit", "median", "min", "max")}, "seeds": run.record["repetitions"]}
+            for name, metric in run.metrics.items()
+        }
+    text = yaml.dump({"schema": SCHEMA, "cells": cells}, sort_keys=False, width=120, Dumper=yaml.CSafeDumper)
+    head = f"# Metrics of each cell over its seeds; written by `runner check DIR --save-baseline {path.name}` after\n"
+    write_atomically(path, f"{head}# {escaped(sweep.command)}\n{text}".encode())
+    return sum(map(len, cells.values()))
+
+
+def find_moves(sweep: Sweep, baseline: Cells) -> list[Move]:
+    """Return everything that changed between a baseline and a sweep, cell by cell.
+
+    Raises:
+        StoreError: if a run of the sweep is missing or damaged.
+    """
+    moves: list[Move] = []
+    found = set()
+    for cell, run in zip(cell_names(sweep), sweep.runs(), strict=True):
+        found.add(cell)
+        if cell not in baseline:
+            moves.append(Move(cell, "", None, None, "is new", False))
+        elif run.failure is not None:
+            moves.append(Move(cell, "", None, None, run.failure_text, True))
+        else:
+            moves += _compare(cell, run, baseline[cell])
+    return moves + [Move(cell, "", None, None, "is gone", True) for cell in baseline if cell not in found]
+
+
+def cell_names(sweep: Sweep) -> list[str]:
+    """Return the overrides of each cell of a sweep that not all cells share."""
+    shared = set(sweep.overrides[0]).intersection(*sweep.overrides)
+    return [" ".join(text for text in job if text not in shared) or "all" for job in sweep.overrides]
+
+
+def _compare(cell: str, run: Run, baseline: Mapping[str, Spread]) -> Iterator[Move]:
+    for name in dict.fromkeys([*baseline, *run.metrics]):
+        was, metric = baseline.get(name), run.metrics.get(name)
+        value = None if metric is None else metric["median"]
+        if was is None or metric is None:
+            yield Move(cell, name, was, value, "", was is not None)
+        elif not _same(was.median, value):
+            yield Move(cell, name, was, value, "", not was.holds(value))
+
+
+def _same(a: float | None, b: float | None) -> bool:
+    return a == b if a is None or b is None else math.isclose(a, b, rel_tol=_ROUNDING, abs_tol=1e-12)
+
+
+def shipped_baselines() -> dict[str, str]:
+    """Return the names of the bundled baselines, sorted, each with the first line of its comment.
+
+    A name is such as "thesis/figure_3_5.as_reported".
+    """
+    return {
+        f"{folder.parent.name}/{name}": description
+        for folder in sorted(studies_dir().glob(f"*/{_FOLDER}"))
+        for name, description in described_files(folder).items()
+    }
+
+
+def find_shipped(run: Run) -> Bands:
+    """Return the bundled baseline for the experiment and preset that a run was composed from.
+
+    Raises:
+        RunnerError: if there is none; says how to list them.
+    """
+    choices = run.provenance.get("choices", {})
+    name = f"{choices.get('experiment')}.{choices.get('preset')}"
+    known = shipped_baselines()
+    if name not in known:
+        what = f"'{name}'{nearest(name, known)}" if choices.get("experiment") else "a run without an experiment"
+        raise RunnerError(
+            f"{run.folder}: no bundled baseline for {what}. Give one by --baseline FILE; --save-baseline FILE writes "
+            f"that of a sweep. `runner list baselines` prints the {len(known)} bundled ones."
+        )
+    return load_shipped(name)
+
+
+def load_shipped(name: str) -> Bands:
+    """Read a bundled baseline.
+
+    Raises:
+        StoreError: if it cannot be read or is not one.
+    """
+    bands = load_baseline(baseline_path(name), name)
+    if not isinstance(bands, Bands):
+        raise StoreError(f"{name} holds cells of a sweep; a bundled baseline holds bands")
+    return bands
+
+
+def baseline_path(name: str) -> Path:
+    """Return the file of a bundled baseline, such as "thesis/figure_3_5.full_equations", existing or not."""
+    study, _, file = name.partition("/")
+    return studies_dir() / study / _FOLDER / f"{file}.yaml"
