@@ -7,7 +7,7 @@ import shutil
 import signal
 import threading
 import time
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import CancelledError
 from functools import partial
 from pathlib import Path
@@ -28,9 +28,14 @@ _MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**25}  # 
 _GO_ON = "finished runs are stored; the same command continues"
 
 
-def in_process(queue: Queue) -> Generator[Report]:
-    """Work off a queue in this process; yield what became of each chunk."""
-    while (chunk := queue.take(1)) is not None:
+def in_process(queue: Queue, go_on: Callable[[], bool] = lambda: True) -> Generator[Report]:
+    """Work off a queue in this process; yield what became of each chunk.
+
+    Args:
+        queue: The queue.
+        go_on: Asked before each chunk.
+    """
+    while go_on() and (chunk := queue.take(1)) is not None:
         report = work(chunk, partial(queue.tell, chunk.name))
         queue.end(chunk)
         queue.learn(report)

@@ -64,6 +64,11 @@ class Queue:
         self._handed_out = 0
         self._seconds_per_tick: float | None = None
 
+    @property
+    def left(self) -> int:
+        """Number of jobs that are not handed out."""
+        return len(self._cells) - self._next
+
     def put(self, cell: int) -> None:
         """Put one more cell at the end."""
         self._cells = np.append(self._cells[self._next :], cell)

@@ -1,10 +1,12 @@
 """Execution of a whole sweep, from its plan to its stored runs."""
 
 import contextlib
+import math
 import os
 import shutil
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+import time
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -18,7 +20,7 @@ from runner.base import progress
 from runner.base.errors import ConfigError, StoreError
 from runner.config.limits import check_cpu_time, check_memory_together
 from runner.config.sweep import SweepConfig
-from runner.plugins.discovery import in_use
+from runner.plugins.discovery import has_users_parts, in_use
 from runner.store.atomic import remove_leftovers
 from runner.store.finer import FOLDER as FINER
 from runner.store.latest import note
@@ -255,9 +257,9 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
             processes = max(1, len(client.nthreads()))
             _tell(expected.in_words(processes, processes))
             yield reports
-    elif engine.workers == 0:
+    elif seconds := _seconds_in_process(queue.rules, min(engine.workers, jobs), expected):
         _tell(expected.in_words(1, 1))
-        with contextlib.closing(in_process(queue)) as reports:
+        with contextlib.closing(_begun_in_process(queue, engine.workers, seconds)) as reports:
             yield reports
     else:
         workers = min(engine.workers, jobs)
@@ -270,6 +272,28 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
             contextlib.closing(on_cluster(queue, client)) as reports,
         ):
             yield reports
+
+
+def _seconds_in_process(rules: Rules, workers: int, expected: Estimate) -> float:
+    """Return the time in s for which jobs are made in this process, before workers are started for the rest.
+
+    The start of workers costs more than it saves if there is little to do. Jobs that may not end, or that may bring
+    their process down, are made by workers from the first on.
+    """
+    if workers == 0:
+        return math.inf
+    pays_from = START_UP * workers / max(min(workers, os.cpu_count() or 1) - 1, 1)
+    alone = has_users_parts() or rules.time_limit is not None or expected.known != "about"
+    return 0.0 if alone or expected.seconds > pays_from else pays_from
+
+
+def _begun_in_process(queue: Queue, workers: int, seconds: float) -> Generator[Report]:
+    """Make jobs in this process for some time, in s, and the rest on workers; yield what became of each chunk."""
+    end = time.monotonic() + seconds
+    yield from in_process(queue, lambda: time.monotonic() < end)
+    if queue.left:
+        with local_client(min(workers, queue.left), _scratch(queue.rules)) as client:
+            yield from on_cluster(queue, client)
 
 
 def _tell(text: str) -> None:

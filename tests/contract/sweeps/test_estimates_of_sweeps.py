@@ -1,6 +1,7 @@
 """Estimate of a sweep: the words on standard error, and the measurement of ticks by a clock that a test sets."""
 
 import contextlib
+from types import SimpleNamespace
 
 import pytest
 
@@ -39,6 +40,40 @@ def test_an_estimate_and_a_bound_are_told_with_the_start_of_processes_on_two_cor
     plan = plan_sweep([*SHORT, "plant=rk4", f"outputs={tmp_path}", "seed=range(0,4)"])
     run_sweep(plan, Engine(workers, None), "runner -m ...")
     assert f"runner: {words}\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("seconds", "known", "overrides", "started"),
+    [
+        (2 * START_UP, "about", [], []),
+        (2.1 * START_UP, "about", [], [2]),
+        (0.1, "more than", [], [2]),
+        (0.1, "up to", [], [2]),
+        (0.1, "about", ["sweep.time_limit=60"], [2]),
+    ],
+)
+def test_workers_start_only_where_they_pay_or_protect(tmp_path, monkeypatch, seconds, known, overrides, started):
+    workers = []
+    monkeypatch.setattr(run, "local_client", lambda count, _: contextlib.nullcontext(workers.append(count)))
+    monkeypatch.setattr(run, "on_cluster", lambda queue, _: in_process(queue))
+    monkeypatch.setattr(run, "estimate", lambda *_: Estimate(seconds, known))
+    monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
+    plan = plan_sweep([*SHORT, "plant=rk4", f"outputs={tmp_path}", "seed=0,1", *overrides])
+    assert len(run_sweep(plan, Engine(2, None), "runner -m ...").ends) == 2
+    assert workers == started
+
+
+def test_workers_take_the_rest_of_what_takes_longer_than_expected(tmp_path, monkeypatch):
+    workers, clock = [], Steps(0.8 * START_UP)
+    monkeypatch.setattr(run, "local_client", lambda count, _: contextlib.nullcontext(workers.append(count)))
+    monkeypatch.setattr(run, "on_cluster", lambda queue, _: in_process(queue))
+    monkeypatch.setattr(run, "estimate", lambda *_: Estimate(0.1))
+    monkeypatch.setattr(run.os, "cpu_count", lambda: 2)
+    monkeypatch.setattr(run, "time", SimpleNamespace(monotonic=clock))
+    plan = plan_sweep([*SHORT, f"outputs={tmp_path}", "plant=bullet", "controller.period=0.005,0.01,0.02,0.025,0.05"])
+    ended = run_sweep(plan, Engine(4, None), "runner -m ...")
+    assert len(ended.ends) == 5
+    assert 0 < workers[0] < 5
 
 
 class Steps:
