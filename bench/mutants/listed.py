@@ -78,12 +78,12 @@ MUTANTS = [
         ("the last block of runs lost", "range(0, traces.runs, block)", "range(0, traces.runs - block, block)"),
     ),
     *_of(
-        "store/writing.py",
+        "store/shards.py",
         "contract/store/test_batch_records.py",
         (
             "the largest for the least",
-            "for end in over_repetitions(own).T)",
-            "for end in over_repetitions(own).T[[0, 2, 1]])",
+            "median, low, high = (None",
+            "median, high, low = (None",
         ),
     ),
     *_of(

@@ -1,7 +1,8 @@
 """Shards: files with many finished runs of a large sweep that have no trace.
 
 `outputs/shards/NUMBER-PLACE.DIGEST.parquet` has a row for each run: its hash, its failure, the number of its caveats,
-and the values of each metric. The row also has the config, URDF and record in the format of a run's folder.
+and the values of each metric. The row also has the config, URDF and record in the format of a run's folder. The record
+has no metrics if they follow from the values; the column `metrics` has their names in order.
 
 A shard is written once, as a whole, and its name contains the digest of its content. NUMBER counts the commands that
 wrote shards, so that the later of two shards is known without a clock.
@@ -9,6 +10,7 @@ wrote shards, so that the later of two shards is known without a clock.
 
 import io
 import json
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache, partial
@@ -20,6 +22,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.base.limits import ExcessError, open_parquet
+from runner.metrics.summary import MOST_LISTED, over_repetitions
 from runner.store.arrow_columns import list_column, text_column, truth_column, whole_column
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import encode_finite
@@ -28,8 +31,8 @@ from runner.store.record import find_faults
 from runner.store.run import Run, describe_failure
 from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest
 
-_COLUMNS = ("run", "failure", "cut_short", "config", "urdf", "record", "caveats")
-_SHARED = ["failure", "urdf"]  # columns of which many rows are the same
+_COLUMNS = ("run", "config", "urdf", "record", "metrics")
+_SHARED = ["failure", "urdf", "metrics"]  # columns of which many rows are the same
 _CUT_SHORT = 2  # the rank of that
 METRIC = "metric "
 """What the name of a metric's column begins with."""
@@ -95,7 +98,7 @@ class ShardRow:
         outcome: How it ended.
         config: Its resolved config, as JSON.
         urdf: The URDF's text.
-        record: Its record, as JSON.
+        record: Its record, as JSON; without metrics if there are at most MOST_LISTED repetitions.
         metrics: Names and units of its metrics.
         values: Their values, shape (repetitions, metrics), NaN for none.
     """
@@ -140,7 +143,9 @@ def find_shards(outputs: Path, name: str) -> list[Path]:
 def _row_of(run: ShardRun) -> ShardRow:
     metrics = tuple((name, str(metric["unit"])) for name, metric in run.metrics.items())
     values = np.array([run.values(name) for name in run.metrics]).T if metrics else np.zeros((0, 0))
-    return ShardRow(outcome(run), json.dumps(run.config), run.urdf, encode_finite(run.record), metrics, values)
+    listed = len(values) <= MOST_LISTED
+    record = {key: value for key, value in run.record.items() if key != "metrics" or not listed}
+    return ShardRow(outcome(run), json.dumps(run.config), run.urdf, encode_finite(record), metrics, values)
 
 
 def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun | ShardRow]) -> Path:
@@ -161,6 +166,7 @@ def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun | ShardRow]) -
         "config": text_column([row.config for row in rows]),
         "urdf": text_column([row.urdf for row in rows]),
         "record": text_column([row.record for row in rows]),
+        "metrics": text_column([json.dumps([name for name, _ in row.metrics]) for row in rows]),
         "caveats": whole_column([end.caveats for end in ends]),
     }
     fields = [pyarrow.field(name, column.type) for name, column in columns.items()]
@@ -236,9 +242,11 @@ def open_row(path: Path, row: int) -> ShardRun:
     """
     values = _read_rows(path)
     try:
-        config, record = (json.loads(values[column][row].as_py()) for column in ("config", "record"))
+        config, record, names = (json.loads(values[column][row].as_py()) for column in ("config", "record", "metrics"))
+        if "metrics" not in record:
+            record["metrics"] = _summarize(_read_metrics(path), row, names)
         fault = find_faults(record)
-    except (ValueError, TypeError, RecursionError) as error:
+    except (KeyError, ValueError, TypeError, RecursionError) as error:
         fault = str(error)
     if fault:
         raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_MEND}")
@@ -246,9 +254,27 @@ def open_row(path: Path, row: int) -> ShardRun:
     return ShardRun(folder, config, record, values["urdf"][row].as_py(), beside=partial(_values_in, path, row))
 
 
+def _summarize(table: Any, row: int, names: Sequence[str]) -> dict[str, dict[str, object]]:
+    """Return the metrics of a row as a record of a run's folder has them."""
+    if not names:
+        return {}
+    values = np.array([_list_at(table[METRIC + name], row) for name in names])
+    found = {}
+    for name, own, ends in zip(names, values.tolist(), over_repetitions(values).tolist(), strict=True):
+        unit = table.field(METRIC + name).metadata[b"unit"].decode()
+        median, low, high = (None if math.isnan(value) else value for value in ends)
+        each = [None if math.isnan(value) else value for value in own]
+        found[name] = {"unit": unit, "values": each, "median": median, "min": low, "max": high}
+    return found
+
+
 def _values_in(path: Path, row: int, metric: str) -> FloatArray:
     """Return the values of a metric of the run in a row of a shard, shape (repetitions,), NaN for none."""
-    column = _read(path, [METRIC + metric])[METRIC + metric]
+    return _list_at(_read(path, [METRIC + metric])[METRIC + metric], row)
+
+
+def _list_at(column: Any, row: int) -> FloatArray:
+    """Return the numbers of a list in a column, NaN for none."""
     values: FloatArray = column[row].values.to_numpy(zero_copy_only=False).astype(np.float64, copy=False)
     return values
 
@@ -291,6 +317,11 @@ def read_columns(path: Path, columns: Sequence[str]) -> Any:
 @lru_cache(maxsize=4)  # runs are read in order, which is nearly the order of the shards
 def _read_rows(path: Path) -> Any:
     return _read(path, _COLUMNS)
+
+
+@lru_cache(maxsize=4)
+def _read_metrics(path: Path) -> Any:
+    return read_columns(path, ())
 
 
 def _read(path: Path, columns: Sequence[str], start: str | None = None) -> Any:

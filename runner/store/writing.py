@@ -4,7 +4,7 @@ A run with metrics is complete.
 """
 
 import io
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -12,12 +12,9 @@ from typing import Any
 import numpy as np
 import yaml
 
-from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.base.trace import Trace
 from runner.metrics.caveats import Found
-from runner.metrics.summary import over_repetitions
-from runner.plugins.metric_units import units_of
 from runner.simulation.result import RunResult
 from runner.statistics.spec import bounds_of, judge
 from runner.store.arrow_columns import float_column
@@ -86,65 +83,31 @@ def make_record(result: RunResult) -> dict[str, Any]:
 
 
 def record_texts(
-    metrics: Mapping[str, FloatArray],
+    repetitions: int,
     found: Sequence[Found],
     timing: Mapping[str, float | None],
     provenances: Sequence[Mapping[str, Any]],
     texts: JsonTexts,
 ) -> list[str]:
-    """Return the records of runs that ended well, as `make_record` gives them, as JSON.
+    """Return the records of runs that ended well, as JSON: those of `make_record` without metrics.
 
     Args:
-        metrics: Values in each repetition of each run, shape (runs, repetitions), by name; NaN for none. There are no
-            more repetitions than a record lists.
+        repetitions: Number of repetitions of each run.
         found: Caveats of each run.
-        timing: What a clock measured, of each run alike.
-        provenances: Where each run comes from.
-        texts: Keeps the texts of what runs have in common.
-
-    Raises:
-        ValueError: if a value is infinite.
+        timing: Measured times, the same for each run.
+        provenances: Provenance of each run.
+        texts: Keeps the texts of common values.
     """
-    repetitions = next(iter(metrics.values())).shape[1]
-    measured, clocked = _metric_texts(metrics), encode_finite(timing)
+    clocked = encode_finite(timing)
     records = []
-    for own, caveats, provenance in zip(measured, found, provenances, strict=True):
+    for caveats, provenance in zip(found, provenances, strict=True):
         rules = texts.of({"digest": caveats.digest, "thresholds": caveats.thresholds})
         records.append(
             f'{{"status": "ok", "repetitions": {repetitions}, '
             f'"caveats": {encode_finite([vars(caveat) for caveat in caveats.caveats])}, "caveat_rules": {rules}, '
-            f'"metrics": {own}, "timing": {clocked}, "provenance": {texts.of(provenance)}}}'
+            f'"timing": {clocked}, "provenance": {texts.of(provenance)}}}'
         )
     return records
-
-
-def _metric_texts(metrics: Mapping[str, FloatArray]) -> Iterator[str]:
-    """Yield what stands under "metrics" in the record of each run."""
-    names = tuple(metrics)
-    heads = [
-        f'{encode_finite(name)}: {{"unit": {encode_finite(unit)}, "values": ['
-        for name, unit in zip(names, units_of(names), strict=True)
-    ]
-    values = np.stack(list(metrics.values()), axis=1)  # runs, metrics, repetitions
-    if np.isinf(values).any():
-        raise ValueError("a metric is infinite, which is no number in JSON")
-    repetitions = values.shape[2]
-    for own in values:
-        each = _numbers(own.ravel().tolist())
-        lists = middle = low = high = each
-        if repetitions > 1:
-            lists = [", ".join(each[first : first + repetitions]) for first in range(0, len(each), repetitions)]
-            middle, low, high = (_numbers(end.tolist()) for end in over_repetitions(own).T)
-        entries = [
-            f'{head}{values}], "median": {median}, "min": {least}, "max": {largest}}}'
-            for head, values, median, least, largest in zip(heads, lists, middle, low, high, strict=True)
-        ]
-        yield "{" + ", ".join(entries) + "}"
-
-
-def _numbers(values: Sequence[float]) -> list[str]:
-    """Return numbers as JSON writes them; null for NaN, which alone is no equal of itself."""
-    return [repr(value) if value == value else "null" for value in values]
 
 
 def cut_short_record(reason: str, repetitions: int, provenance: Mapping[str, Any]) -> dict[str, Any]:

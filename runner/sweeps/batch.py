@@ -72,9 +72,11 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> I
         alike.setdefault((run.names, len(run.values)), []).append((name, run))
     for some in alike.values():
         names, values = some[0][1].names, np.array([run.values for _, run in some])  # runs, repetitions, metrics
+        if np.isinf(values).any():
+            raise ValueError("a metric is infinite, which is no number in JSON")
         metrics = tuple(zip(names, units_of(names), strict=True))
         records = record_texts(
-            {metric: values[:, :, index] for index, metric in enumerate(names)},
+            values.shape[1],
             [run.caveats for _, run in some],
             some[0][1].timing,
             [_provenance(run.job, batcher) for _, run in some],

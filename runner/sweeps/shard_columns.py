@@ -55,7 +55,7 @@ def read_shard(path: Path, rows: NDArray[np.intp]) -> Columns | None:
     table = read_columns(path, ("run", "failure", "config", "record")).take(rows)
     of_metrics = [name for name in table.column_names if name.startswith(METRIC)]
     try:
-        record = _parsed([_without_metrics(text) for text in table["record"].to_pylist()])
+        record = _parsed(table["record"].to_pylist())
         provenance = record.field("provenance")
         seeds = provenance.field("seed").to_numpy()
         rules = _rules(record)
@@ -149,12 +149,6 @@ def _made_by(provenance: Any) -> Iterator[tuple[str, Sequence[str]]]:
     for field in versions.type:
         yield field.name, [value for value in versions.field(field.name).unique().to_pylist() if value is not None]
     yield "made on", provenance.field("date").unique().to_pylist()
-
-
-def _without_metrics(record: str) -> str:
-    """Return a record, given as JSON, without its metrics, which are most of it."""
-    start, stop = record.find('"metrics": {'), record.find('"timing": {')
-    return record if not 0 <= start < stop else record[:start] + record[stop:]
 
 
 def _metrics(table: Any) -> Iterator[tuple[str, str, Any]]:

@@ -1,11 +1,15 @@
 """Runs of a chunk that are simulated together: which are, and that nothing else is told of them than alone."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from runner import store
 from runner.simulation import batch
+from runner.store.json_texts import JsonTexts
 from runner.sweeps import work
+from runner.sweeps.batch import _rows
 from runner.sweeps.explicit import Item, Listed
 from runner.sweeps.grid import plan_sweep
 from runner.sweeps.loading import Loader
@@ -98,6 +102,12 @@ def test_runs_that_cannot_be_stored_together_are_made_one_by_one(tmp_path, batch
     assert batches[0] == 5
     assert sorted(by_name(report.outcomes)) == sorted(chunk.names)
     assert sorted(store.Finished(tmp_path).names.astype(str)) == sorted(chunk.names)
+
+
+def test_an_infinite_metric_is_refused_as_in_a_run_alone():
+    run = SimpleNamespace(names=("energy",), values=np.array([[np.inf]]))
+    with pytest.raises(ValueError, match="infinite"):
+        next(_rows([("a", run)], JsonTexts(), None))
 
 
 @pytest.mark.costs(2)
