@@ -22,7 +22,6 @@ from runner.calibration.procedures import CALIBRATIONS
 from runner.cli.help import COMMANDS
 from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
-from runner.config.compose.documentation import meanings, nested_model
 from runner.config.compose.options import group_options
 from runner.config.input_shaper import InputShaperConfig
 from runner.config.noise import NoiseConfig
@@ -40,7 +39,7 @@ from runner.plants import PLANTS
 from runner.plugins.metric_units import families
 from runner.plugins.registry import Registry
 from runner.robots.mismatch import MismatchConfig
-from runner.schema.model import StrictModel
+from runner.schema.model import StrictModel, nested_model
 from runner.schema.units import WRITTEN
 from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig
 from runner.study.chapters import SHARED
@@ -65,8 +64,8 @@ A number may have its unit behind it, in YAML and on the command line: `controll
 stored as the number in SI units, in the config of a run and on the axes of a sweep: `controller.period=0.02` is the
 same run. A unit that does not fit its key is refused, and so is any unit where a key has none. Signs that a shell or
 Hydra reads otherwise stand in quotes: `"gravity='9.8m/s^2'"`. A key of joints takes angles where a joint turns and
-lengths where it slides; one value for joints of both kinds has no unit. A plug-in's key has the unit that the docstring
-of its config says, as in `reach: How far it goes, in m.`
+lengths where it slides; one value for joints of both kinds has no unit. A plug-in's key has the unit of its type in the
+config, as in `reach: Metres[PositiveFloat]`; `runner.schema.units` has these types.
 
 | A key in | may be written in |
 |---|---|
@@ -197,6 +196,16 @@ def _rows(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> 
 
 def _inline(value: Any) -> str:
     return yaml.safe_dump(value, default_flow_style=True, width=1000).removesuffix("\n").removesuffix("\n...")
+
+
+def meanings(model: type[StrictModel]) -> dict[str, str]:
+    """Return what the docstrings of a model and its bases say of its keys."""
+    found: dict[str, str] = {}
+    for base in reversed(model.__mro__):
+        text = inspect.cleandoc(base.__doc__ or "").partition("Attributes:\n")[2]
+        entries = re.findall(r"^    (\w+): (.+?)(?=^    \w|\Z)", text, re.M | re.S)
+        found |= {name: " ".join(meaning.split()) for name, meaning in entries if name in model.model_fields}
+    return found
 
 
 def _null(text: str) -> str:

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.schema.model import StrictModel
+from runner.schema.units import Radians
 
 
 class BacklashConfig(StrictModel):
@@ -19,9 +20,9 @@ class BacklashConfig(StrictModel):
     """
 
     kind: Literal["backlash"]
-    play: NonNegativeFloat
-    resolution: PositiveFloat
-    noise: NonNegativeFloat
+    play: Radians[NonNegativeFloat]
+    resolution: Radians[PositiveFloat]
+    noise: Radians[NonNegativeFloat]
 
 
 class Backlash:

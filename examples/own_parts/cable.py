@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat
 
 from runner.schema.model import StrictModel
+from runner.schema.units import Damping, Metres, RotaryStiffness, Stiffness
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 
@@ -27,13 +28,13 @@ class CableConfig(StrictModel):
 
     kind: Literal["cable"]
     link: str
-    point: Vector
-    anchor: Vector
-    stiffness: NonNegativeFloat
-    slack: NonNegativeFloat
-    damping: NonNegativeFloat
+    point: Metres[Vector]
+    anchor: Metres[Vector]
+    stiffness: Stiffness[NonNegativeFloat]
+    slack: Metres[NonNegativeFloat]
+    damping: Damping[NonNegativeFloat]
     joint: Annotated[int, Field(ge=1)]
-    bending: NonNegativeFloat
+    bending: RotaryStiffness[NonNegativeFloat]
 
 
 class Cable:

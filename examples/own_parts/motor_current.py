@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.schema.model import StrictModel
+from runner.schema.units import NewtonMetres
 
 
 class MotorCurrentConfig(StrictModel):
@@ -19,7 +20,7 @@ class MotorCurrentConfig(StrictModel):
 
     kind: Literal["motor_current"]
     constant: PositiveFloat
-    resolution: NonNegativeFloat
+    resolution: NewtonMetres[NonNegativeFloat]
 
 
 class MotorCurrent:

@@ -124,6 +124,15 @@ def find_arm(key: str, arm: ArmConfig, config_dirs: Sequence[Path]) -> Path:
     return path
 
 
+def sliding_joints(config: RobotConfig, config_dirs: Sequence[Path]) -> dict[str, dict[str, bool]]:
+    """Return by stage and joint whether the joint slides, as the files say."""
+    trees = [read_arm(find_arm(key, arm, config_dirs)) for key, arm in keyed_arms(config)]
+    return {
+        name: {joint: tree.joints[joint].get("type") == "prismatic" for joint in tree.chain}
+        for name, tree in zip(config.arms, trees, strict=True)
+    }
+
+
 def mixed_arms(resolved: Mapping[str, object], option: str, config_dirs: Sequence[Path]) -> Iterator[str]:
     """Yield a problem for each file of a robot of ours that a config folder has under the same name.
 

@@ -20,6 +20,7 @@ from runner.plugins.registry import KindConfig
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import Acceleration
 from runner.sensing import ForceTorqueConfig
 
 
@@ -35,7 +36,7 @@ class CalibrationSettings(StrictModel):
 
     seed: NonNegativeInt
     repetitions: PositiveInt
-    gravity: PositiveFloat
+    gravity: Acceleration[PositiveFloat]
     outputs: Annotated[str, Field(min_length=1)]
 
 

@@ -14,6 +14,7 @@ from runner.plants import PLANTS, PlantConfig
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import Hertz
 from runner.trajectories import Trajectory
 from runner.trajectories.impulses import in_turn, zero_vibration
 from runner.trajectories.joint_motion import TipOfJoints
@@ -44,8 +45,8 @@ class InputShaperConfig(StrictModel):
     """
 
     kind: Literal["zv", "zvd"]
-    frequency: Annotated[float | str | list[float | str], BeforeValidator(_frequency)]
-    damping_ratio: Annotated[float, Field(ge=0.0, lt=1.0)] | None
+    frequency: Hertz[Annotated[float | str | list[float | str], BeforeValidator(_frequency)]]
+    damping_ratio: Hertz[Annotated[float, Field(ge=0.0, lt=1.0)] | None]
 
     def find(self, modes: Sequence[Mode]) -> list[Mode]:
         """Return the modes that are to be at rest after the motion.

@@ -12,6 +12,7 @@ from runner.config.compose.problems import Problems
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, by_stage
+from runner.schema.units import JointPosition, RadiansPerSecond
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import DEFAULT_BANDWIDTH, Velocity
 
@@ -32,12 +33,12 @@ class NoiseConfig(StrictModel):
         velocity_bandwidth: Cut-off of the low-pass, and both poles of the observer, in rad/s.
     """
 
-    position: NonNegativePerStage
+    position: JointPosition[NonNegativePerStage]
     distribution: Literal["uniform", "gaussian", "none"]
-    bias: FinitePerStage = 0.0
-    resolution: NonNegativePerStage = 0.0
+    bias: JointPosition[FinitePerStage] = 0.0
+    resolution: JointPosition[NonNegativePerStage] = 0.0
     velocity: Velocity
-    velocity_bandwidth: PositiveFloat = DEFAULT_BANDWIDTH
+    velocity_bandwidth: RadiansPerSecond[PositiveFloat] = DEFAULT_BANDWIDTH
 
     def by_joint(self, arm: Robot) -> EncoderNoise:
         """Return the noise, bias and step of each joint of a robot.

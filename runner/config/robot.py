@@ -10,6 +10,18 @@ from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, fi
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import FrictionConfig
 from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, TorquePerStage
+from runner.schema.units import (
+    JointInertia,
+    JointPosition,
+    JointSpeed,
+    JointTorque,
+    Kilograms,
+    Metres,
+    MomentOfInertia,
+    Radians,
+    RadiansPerSecond,
+    Seconds,
+)
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 _LONGEST_NAME = 200
@@ -51,11 +63,11 @@ class ArmConfig(StrictModel):
     urdf: FileName | None
     mjcf: FileName | None
     tip: Name
-    home: list[float]
+    home: JointPosition[list[float]]
     inertials: Name | None
-    masses: dict[str, PositiveFloat]
-    armature: Armature
-    velocity_limits: dict[str, PositiveFloat]
+    masses: Kilograms[dict[str, PositiveFloat]]
+    armature: JointInertia[Armature]
+    velocity_limits: JointSpeed[dict[str, PositiveFloat]]
 
 
 class MountConfig(StrictModel):
@@ -68,8 +80,8 @@ class MountConfig(StrictModel):
     """
 
     frame: Name
-    translation: Vector
-    rotation: Vector
+    translation: Metres[Vector]
+    rotation: Radians[Vector]
 
 
 class StageConfig(ArmConfig):
@@ -90,8 +102,8 @@ class PayloadChange(StrictModel):
         mass: The payload's mass from then on, in kg.
     """
 
-    at: PositiveFloat
-    mass: NonNegativeFloat
+    at: Seconds[PositiveFloat]
+    mass: Kilograms[NonNegativeFloat]
 
 
 class PayloadConfig(StrictModel):
@@ -104,8 +116,8 @@ class PayloadConfig(StrictModel):
             another; the controllers go on to believe `mass`.
     """
 
-    mass: NonNegativeFloat
-    position: Vector
+    mass: Kilograms[NonNegativeFloat]
+    position: Metres[Vector]
     schedule: list[PayloadChange] = Field(default_factory=list)
 
     @field_validator("schedule")
@@ -133,11 +145,11 @@ class ToolConfig(StrictModel):
         tip_radius: Radius of the ball at its tip that touches walls, in m.
     """
 
-    mass: PositiveFloat
-    centre_of_mass: Vector
-    inertia: Annotated[list[PositiveFloat], Field(min_length=3, max_length=3)]
-    tip: Vector
-    tip_radius: PositiveFloat
+    mass: Kilograms[PositiveFloat]
+    centre_of_mass: Metres[Vector]
+    inertia: MomentOfInertia[Annotated[list[PositiveFloat], Field(min_length=3, max_length=3)]]
+    tip: Metres[Vector]
+    tip_radius: Metres[PositiveFloat]
 
 
 class RobotConfig(StrictModel):
@@ -163,20 +175,20 @@ class RobotConfig(StrictModel):
     """
 
     name: Name
-    start: Vector | None
-    goal: Vector
-    path_size: PositiveFloat
+    start: Metres[Vector | None]
+    goal: Metres[Vector]
+    path_size: Metres[PositiveFloat]
     tool: ToolConfig | None
     friction: FrictionConfig
     payload: PayloadConfig
-    rated_payload: PositiveFloat | None
-    natural_frequency: PositivePerStage
+    rated_payload: Kilograms[PositiveFloat | None]
+    natural_frequency: RadiansPerSecond[PositivePerStage]
     damping_ratio: PositivePerStage
-    period: PositivePerStage
-    joint_error_limit: NonNegativePerStage
+    period: Seconds[PositivePerStage]
+    joint_error_limit: JointPosition[NonNegativePerStage]
     no_joint_error: NonNegativePerStage
-    torque_limit: TorquePerStage | None
-    settling_band: PositiveFloat
+    torque_limit: JointTorque[TorquePerStage | None]
+    settling_band: Metres[PositiveFloat]
 
     @property
     def arms(self) -> Mapping[str, ArmConfig]:

@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 
 from runner.schema.model import StrictModel
+from runner.schema.units import Acceleration, Seconds
 
 
 class RunSettings(StrictModel):
@@ -21,7 +22,7 @@ class RunSettings(StrictModel):
 
     seed: NonNegativeInt
     repetitions: PositiveInt
-    duration: PositiveFloat | None
-    gravity: NonNegativeFloat
+    duration: Seconds[PositiveFloat | None]
+    gravity: Acceleration[NonNegativeFloat]
     plant_error: bool
     outputs: Annotated[str, Field(min_length=1)]

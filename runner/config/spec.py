@@ -8,9 +8,9 @@ from pydantic import field_validator, model_validator
 
 from runner.base.errors import nearest
 from runner.base.sanitize import quoted
-from runner.config.compose.documentation import Units
 from runner.plugins.metric_units import unit_of, units
 from runner.schema.model import StrictModel
+from runner.schema.units import Unit
 
 _METRICS = "metrics"
 
@@ -65,9 +65,9 @@ class SpecConfig(StrictModel):
         return value
 
     @classmethod
-    def find_units(cls, path: Sequence[str]) -> Units | None:
-        """Return the units of a key: an end of a bound counts in the unit of its metric."""
+    def find_unit(cls, path: Sequence[str]) -> Unit | None:
+        """Return the unit of a key: an end of a bound has the unit of its metric."""
         if len(path) != len(("metrics", "NAME", "max")) or path[0] != _METRICS or path[2] not in ("min", "max"):
             return None
         unit = unit_of(path[1])
-        return None if unit is None else Units("" if unit == "1" else unit)
+        return None if unit is None else Unit("" if unit == "1" else unit)

@@ -5,6 +5,7 @@ from typing import Literal
 from pydantic import PositiveFloat, PositiveInt
 
 from runner.schema.model import StrictModel
+from runner.schema.units import Seconds
 
 
 class SweepConfig(StrictModel):
@@ -24,4 +25,4 @@ class SweepConfig(StrictModel):
     retry: Literal["none", "failed"]
     on_failure: Literal["continue", "stop"]
     attempts: PositiveInt
-    time_limit: PositiveFloat | None
+    time_limit: Seconds[PositiveFloat | None]

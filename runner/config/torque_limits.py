@@ -7,6 +7,7 @@ from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import expand
 from runner.schema.per_stage import TorquePerStage, by_stage
+from runner.schema.units import JointTorque
 
 
 class TorqueLimitsConfig(StrictModel):
@@ -17,7 +18,7 @@ class TorqueLimitsConfig(StrictModel):
             one for each, by stage where the robot has several; None is no limit.
     """
 
-    max: TorquePerStage | None
+    max: JointTorque[TorquePerStage | None]
 
     def by_joint(self, arm: Robot) -> FloatArray:
         """Return the limit of each joint of a robot, shape (nq,), in N m: the URDF's effort where that is smaller.

@@ -14,6 +14,7 @@ from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structur
 from runner.plugins.guard import WatchedController
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import RadiansPerSecond
 from runner.symbolic.maths import Array, Scalar
 
 
@@ -27,7 +28,7 @@ class DisturbanceObserverConfig(StrictModel):
             read, which is less by the friction.
     """
 
-    bandwidth: PositiveFloat | dict[str, PositiveFloat] | None
+    bandwidth: RadiansPerSecond[PositiveFloat | dict[str, PositiveFloat] | None]
     torque: Literal["commanded", "measured"]
 
     def by_loop(self, loops: Sequence[Loop]) -> list[float] | None:

@@ -16,6 +16,7 @@ from runner.plugins.guard import WatchedController
 from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import NotchPerStage
+from runner.schema.units import Hertz
 from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
 
 
@@ -28,8 +29,8 @@ class NotchConfig(StrictModel):
         width: Distance of the frequencies at which 0.71 passes, in Hz.
     """
 
-    frequency: NotchPerStage
-    width: PositiveFloat
+    frequency: Hertz[NotchPerStage]
+    width: Hertz[PositiveFloat]
 
     def by_joint(self, arm: Robot) -> FloatArray:
         """Return the frequency of each joint, shape (nq,), in Hz; infinite where there is no notch.

@@ -7,6 +7,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import Damping, Metres, Seconds, Stiffness
 from runner.trajectories.blend import quintic_blend
 
 
@@ -23,11 +24,11 @@ class HandConfig(StrictModel):
     """
 
     kind: Literal["hand_guiding"]
-    displacement: Annotated[list[float], Field(min_length=3, max_length=3)]
-    start_time: NonNegativeFloat
-    duration: PositiveFloat
-    stiffness: PositiveFloat
-    damping: NonNegativeFloat
+    displacement: Metres[Annotated[list[float], Field(min_length=3, max_length=3)]]
+    start_time: Seconds[NonNegativeFloat]
+    duration: Seconds[PositiveFloat]
+    stiffness: Stiffness[PositiveFloat]
+    damping: Damping[NonNegativeFloat]
 
 
 class Hand:

@@ -10,6 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.environments.environment import Environment
 from runner.schema.model import StrictModel
+from runner.schema.units import Hertz, NewtonMetres, Newtons, Seconds
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 
@@ -28,12 +29,12 @@ class PushConfig(StrictModel):
     """
 
     kind: Literal["push"]
-    force: Vector
-    moment: Vector
+    force: Newtons[Vector]
+    moment: NewtonMetres[Vector]
     link: str | None
-    start_time: NonNegativeFloat
-    duration: PositiveFloat | None
-    frequency: NonNegativeFloat
+    start_time: Seconds[NonNegativeFloat]
+    duration: Seconds[PositiveFloat | None]
+    frequency: Hertz[NonNegativeFloat]
 
 
 class Push:

@@ -7,6 +7,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import Damping, Metres, Stiffness
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 
@@ -26,10 +27,10 @@ class WallConfig(StrictModel):
     """
 
     kind: Literal["wall"]
-    distance: float
+    distance: Metres[float]
     normal: Vector
-    stiffness: PositiveFloat
-    damping: NonNegativeFloat
+    stiffness: Stiffness[PositiveFloat]
+    damping: Damping[NonNegativeFloat]
     friction: NonNegativeFloat = 0.0
 
     @field_validator("normal")

@@ -18,6 +18,7 @@ from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import FrictionConfig, expand
+from runner.schema.units import Seconds
 
 
 class TorquePlantConfig(StrictModel):
@@ -34,7 +35,7 @@ class TorquePlantConfig(StrictModel):
     """
 
     kind: str
-    step: PositiveFloat | None
+    step: Seconds[PositiveFloat | None]
     dynamics: Literal["coupled", "decoupled"]
     wrist_rotation: Literal["real", "parallel"]
     friction: FrictionConfig

@@ -13,6 +13,7 @@ from runner.robots.modes import Mode, find_modes
 from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import SpringPerStage
+from runner.schema.units import MomentOfInertia, RotaryStiffness, Seconds
 
 
 class FlexibleJointsConfig(StrictModel):
@@ -32,11 +33,11 @@ class FlexibleJointsConfig(StrictModel):
         static_deflection: Whether readings at the motors are corrected for the deflection under the believed weight.
     """
 
-    stiffness: SpringPerStage
-    motor_inertia: SpringPerStage
+    stiffness: RotaryStiffness[SpringPerStage]
+    motor_inertia: MomentOfInertia[SpringPerStage]
     damping_ratio: NonNegativeFloat
     torsion_damping: NonNegativeFloat
-    brake_time: dict[str, NonNegativeFloat]
+    brake_time: Seconds[dict[str, NonNegativeFloat]]
     encoders: Literal["motor", "link"]
     static_deflection: Literal["known", "unknown"]
 

@@ -17,6 +17,7 @@ from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.tool_link import TOOL_MOUNT
+from runner.schema.units import AxisInertia
 
 IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end
 Integrator = Literal["euler", "implicitfast", "rk4"]
@@ -48,7 +49,7 @@ class MujocoConfig(TorquePlantConfig):
     kind: Literal["mujoco"]
     integrator: Integrator
     in_place_of: Literal["bullet"] | None
-    min_inertia: float = Field(ge=1e-12, le=1e-3)
+    min_inertia: AxisInertia[float] = Field(ge=1e-12, le=1e-3)
     flexible_joints: FlexibleJointsConfig | None = None
 
 

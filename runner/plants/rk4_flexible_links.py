@@ -16,6 +16,7 @@ from runner.robots.modes import Mode, find_modes, largest_rate
 from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import MotorPerStage
+from runner.schema.units import Kilograms, MomentOfInertia, Newtons, Seconds
 
 _MOST_SEGMENTS = 32
 _LIGHTEST = 1e-10  # smallest inertia of a bend over the largest
@@ -29,8 +30,8 @@ class BeamConfig(StrictModel):
         mass: Mass along it, evenly spread, beside what the robot's file gives of the link, in kg.
     """
 
-    EI: PositiveFloat
-    mass: NonNegativeFloat
+    EI: Newtons[PositiveFloat]
+    mass: Kilograms[NonNegativeFloat]
 
 
 class Rk4FlexibleLinksConfig(StrictModel):
@@ -48,10 +49,10 @@ class Rk4FlexibleLinksConfig(StrictModel):
     """
 
     kind: Literal["rk4_flexible_links"]
-    step: PositiveFloat | None
+    step: Seconds[PositiveFloat | None]
     links: dict[str, BeamConfig | None]
     segments: Annotated[int, Field(ge=1, le=_MOST_SEGMENTS)]
-    motor_inertia: MotorPerStage
+    motor_inertia: MomentOfInertia[MotorPerStage]
     damping_ratio: NonNegativeFloat
     computation: ComputationConfig
 

@@ -10,6 +10,7 @@ from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import PositivePerJoint, expand
+from runner.schema.units import JointStiffness, Seconds
 
 
 class SetPoints:
@@ -65,9 +66,9 @@ class ServoConfig(StrictModel):
         interpolate: Whether set-points move evenly between commands, or jump.
     """
 
-    stiffness: PositivePerJoint
+    stiffness: JointStiffness[PositivePerJoint]
     damping_ratio: NonNegativeFloat
-    period: PositiveFloat
+    period: Seconds[PositiveFloat]
     gravity_compensation: bool
     interpolate: bool
 

@@ -13,6 +13,7 @@ from runner.plugins.registry import KindConfig, Registry
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
 from runner.schema.model import StrictModel
+from runner.schema.units import Kilograms
 
 
 class MismatchConfig(StrictModel):
@@ -33,7 +34,7 @@ class MismatchConfig(StrictModel):
     centre_of_mass: NonNegativeFloat
     length: PositiveFloat
     gravity: NonNegativeFloat
-    payload: float
+    payload: Kilograms[float]
     spread: Annotated[float, Field(ge=0.0, lt=1.0)]
 
 

@@ -7,6 +7,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
+from runner.schema.units import JointDamping, JointTorque
 
 PositivePerJoint = PositiveFloat | list[PositiveFloat]
 NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]
@@ -20,8 +21,8 @@ class FrictionConfig(StrictModel):
         coulomb: Torque against any motion, and up to which a joint at rest stays so, in N m; N where it slides.
     """
 
-    viscous: NonNegativePerJoint
-    coulomb: NonNegativePerJoint
+    viscous: JointDamping[NonNegativePerJoint]
+    coulomb: JointTorque[NonNegativePerJoint]
 
 
 def expand(key: str, value: float | list[float], joints: Sequence[str]) -> list[float]:

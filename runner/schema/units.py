@@ -1,10 +1,11 @@
-"""Quantities with units in configs, such as 45deg, 5mm, 20ms or 1e-3 rad."""
+"""Units of config keys, and quantities with units in configs, such as 45deg, 5mm, 20ms or 1e-3 rad."""
 
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from decimal import Decimal
-from typing import NamedTuple
+from typing import Annotated, NamedTuple, TypeVar
 
 from runner.base.errors import nearest
 from runner.base.sanitize import quoted
@@ -32,6 +33,61 @@ WRITTEN: Mapping[str, Mapping[str, Decimal | float]] = {
     "Hz": {"Hz": _ONE, "kHz": _KILO},
 }
 """What each unit of a key may be written as, and what that is of the unit."""
+
+_AXES_ALONG = 3
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """The unit of a config key, in the annotation of its field; all are empty for a key without unit.
+
+    Attributes:
+        first: Its unit.
+        turned: Unit of the last three of six axes, if the key has one value for each axis.
+        sliding: Unit for joints that slide, if the key has values of joints.
+    """
+
+    first: str = ""
+    turned: str = ""
+    sliding: str = ""
+
+    def at(self, place: Sequence[str | int]) -> tuple[str, ...]:
+        """Return the units that a value may have, by its place in the config: keys, and numbers in lists."""
+        if self.turned:
+            axis = place[-1]
+            return ((self.first, self.turned)[axis >= _AXES_ALONG],) if isinstance(axis, int) else ()
+        return tuple(unit for unit in (self.first, self.sliding) if unit)
+
+
+# Types of fields by unit, as in `duration: Seconds[PositiveFloat | None]`.
+Seconds = Annotated[T, Unit("s")]
+Hertz = Annotated[T, Unit("Hz")]
+PerSecond = Annotated[T, Unit("1/s")]
+Metres = Annotated[T, Unit("m")]
+MetresPerSecond = Annotated[T, Unit("m/s")]
+Acceleration = Annotated[T, Unit("m/s^2")]
+Radians = Annotated[T, Unit("rad")]
+RadiansPerSecond = Annotated[T, Unit("rad/s")]
+Kilograms = Annotated[T, Unit("kg")]
+MomentOfInertia = Annotated[T, Unit("kg m^2")]
+Newtons = Annotated[T, Unit("N")]
+NewtonMetres = Annotated[T, Unit("N m")]
+Stiffness = Annotated[T, Unit("N/m")]
+RotaryStiffness = Annotated[T, Unit("N m/rad")]
+Damping = Annotated[T, Unit("N s/m")]
+# One value for each of six axes: three along them, then three about them.
+AxisWrench = Annotated[T, Unit("N", turned="N m")]
+AxisInertia = Annotated[T, Unit("kg", turned="kg m^2")]
+AxisStiffness = Annotated[T, Unit("N/m", turned="N m/rad")]
+AxisDamping = Annotated[T, Unit("N s/m", turned="N m s/rad")]
+# Values of joints that turn or slide.
+JointPosition = Annotated[T, Unit("rad", sliding="m")]
+JointSpeed = Annotated[T, Unit("rad/s", sliding="m/s")]
+JointTorque = Annotated[T, Unit("N m", sliding="N")]
+JointInertia = Annotated[T, Unit("kg m^2", sliding="kg")]
+JointStiffness = Annotated[T, Unit("N m/rad", sliding="N/m")]
+JointDamping = Annotated[T, Unit("N m s/rad", sliding="N s/m")]
 
 _ALIKE = str.maketrans({"°": "deg", "µ": "u", "μ": "u", "²": "^2", " ": "", "*": "", "·": ""})
 _BARE: Mapping[str, str] = {

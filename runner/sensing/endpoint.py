@@ -7,6 +7,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import Metres, RadiansPerSecond, Seconds
 from runner.sensing.velocity import State, Velocity, first_state, gains, next_velocity
 
 
@@ -23,11 +24,11 @@ class EndpointSensorConfig(StrictModel):
     """
 
     read_by: list[str]
-    noise: NonNegativeFloat
-    period: PositiveFloat | None
-    delay: NonNegativeFloat
+    noise: Metres[NonNegativeFloat]
+    period: Seconds[PositiveFloat | None]
+    delay: Seconds[NonNegativeFloat]
     velocity: Velocity
-    velocity_bandwidth: PositiveFloat
+    velocity_bandwidth: RadiansPerSecond[PositiveFloat]
 
 
 @dataclass(frozen=True)

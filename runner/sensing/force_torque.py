@@ -7,6 +7,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import AxisWrench, Hertz, Kilograms, Metres, Radians
 from runner.sensing.wrench import wrench_transform
 
 AXES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
@@ -30,15 +31,15 @@ class ForceTorqueConfig(StrictModel):
         mass: Mass of the sensor, in kg: a load of the arm, which the sensor itself does not feel.
     """
 
-    range: Annotated[list[PositiveFloat], _Six]
-    resolution: Annotated[list[NonNegativeFloat], _Six]
-    noise: Annotated[list[NonNegativeFloat], _Six]
-    bias: Annotated[list[float], _Six]
+    range: AxisWrench[Annotated[list[PositiveFloat], _Six]]
+    resolution: AxisWrench[Annotated[list[NonNegativeFloat], _Six]]
+    noise: AxisWrench[Annotated[list[NonNegativeFloat], _Six]]
+    bias: AxisWrench[Annotated[list[float], _Six]]
     drift: Annotated[list[NonNegativeFloat], _Six]
-    low_pass: PositiveFloat | None
-    rotation: float
-    height: NonNegativeFloat
-    mass: NonNegativeFloat
+    low_pass: Hertz[PositiveFloat | None]
+    rotation: Radians[float]
+    height: Metres[NonNegativeFloat]
+    mass: Kilograms[NonNegativeFloat]
 
     @property
     def pose(self) -> FloatArray:

@@ -7,6 +7,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import JointTorque
 
 
 class JointTorqueConfig(StrictModel):
@@ -18,8 +19,8 @@ class JointTorqueConfig(StrictModel):
         bias: Constant error of each reading, in N m; N where a joint slides. Likewise.
     """
 
-    noise: NonNegativeFloat | list[NonNegativeFloat] | None
-    bias: FiniteFloat | list[FiniteFloat]
+    noise: JointTorque[NonNegativeFloat | list[NonNegativeFloat] | None]
+    bias: JointTorque[FiniteFloat | list[FiniteFloat]]
 
     def by_joint(self, arm: Robot) -> tuple[FloatArray, FloatArray] | None:
         """Return noise and bias of each joint of a robot, shapes (nq,), in N m; None where there are no sensors.

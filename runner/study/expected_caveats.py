@@ -10,8 +10,8 @@ from pydantic import Field
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
+from runner.config.caveats import THRESHOLDS
 from runner.metrics.caveats.plant_error import DEFAULT_PLANT
-from runner.metrics.caveats.registry import KEYS
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.markup import literal
 from runner.schema.model import StrictModel
@@ -138,7 +138,9 @@ def read_expected(folder: Path) -> tuple[ExpectedCaveat, ...]:
         return (_OF_THE_MACHINE,)
     entries = read_data(path, list[Entry])
     for rule in (rule for entry in entries for rule in entry.rules):
-        if rule not in KEYS:
-            raise RunnerError(f"{path}: there is no rule '{rule}'{nearest(rule, KEYS)}; rules: {', '.join(KEYS)}")
+        if rule not in THRESHOLDS:
+            raise RunnerError(
+                f"{path}: there is no rule '{rule}'{nearest(rule, THRESHOLDS)}; rules: {', '.join(THRESHOLDS)}"
+            )
     listed = (ExpectedCaveat(rule, runs, entry.why) for entry in entries for runs in entry.runs for rule in entry.rules)
     return (*listed, _OF_THE_MACHINE)

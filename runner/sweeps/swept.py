@@ -12,7 +12,7 @@ from hydra.core.override_parser.types import Override, RangeSweep, Transformer
 from runner.base.errors import ConfigError
 from runner.base.limits import CELLS
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.compose.in_si import as_numbers
+from runner.config.compose.units import as_numbers
 from runner.store.axes import Counted
 
 

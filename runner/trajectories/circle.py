@@ -8,6 +8,7 @@ from pydantic import PositiveFloat, PositiveInt
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import Metres, Seconds
 from runner.trajectories.closed_figure import ClosedFigure, TimeScaling
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Direction, InPlane, Point, component, plane_axes
@@ -28,13 +29,13 @@ class CircleConfig(StrictModel):
     """
 
     kind: Literal["circle"]
-    start: Point | None
-    radius: PositiveFloat
+    start: Metres[Point | None]
+    radius: Metres[PositiveFloat]
     normal: Direction
     centre_direction: InPlane
     turns: PositiveInt
     easing: TimeScaling
-    duration: PositiveFloat
+    duration: Seconds[PositiveFloat]
 
 
 @dataclass(frozen=True)

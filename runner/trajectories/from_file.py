@@ -10,6 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import Seconds
 from runner.trajectories.interpolation import Interpolated, Interpolation, interpolate
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.nearest import distance_to_curve
@@ -39,8 +40,8 @@ class FromFileConfig(StrictModel):
     kind: Literal["from_file"]
     file: str | None
     interpolation: Annotated[Interpolation, BeforeValidator(_check_interpolation)]
-    columns: dict[str, list[float]] | None
-    duration: PositiveFloat | None
+    columns: Seconds[dict[str, list[float]] | None]
+    duration: Seconds[PositiveFloat | None]
 
     @field_validator("columns")
     @classmethod

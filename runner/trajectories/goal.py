@@ -7,6 +7,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import Metres
 from runner.trajectories.nearest import distance_to_segment
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point
@@ -22,8 +23,8 @@ class GoalConfig(StrictModel):
     """
 
     kind: Literal["goal"]
-    start: Point | None
-    goal: Point
+    start: Metres[Point | None]
+    goal: Metres[Point]
 
 
 @dataclass(frozen=True)

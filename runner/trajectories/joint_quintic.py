@@ -9,6 +9,7 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import JointPosition, Seconds
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import Configuration, JointMotion, configuration_of, start_of
 
@@ -28,9 +29,9 @@ class JointQuinticConfig(StrictModel):
     """
 
     kind: Literal["joint_quintic"]
-    start_configuration: Configuration | None
-    goal_configuration: Configuration
-    duration: PositiveFloat
+    start_configuration: JointPosition[Configuration | None]
+    goal_configuration: JointPosition[Configuration]
+    duration: Seconds[PositiveFloat]
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from runner.base.errors import ConfigError
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import NonNegativePerJoint, expand
+from runner.schema.units import Hertz, JointPosition, Seconds
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import Configuration, JointMotion, start_of
 
@@ -39,14 +40,14 @@ class JointSinusoidsConfig(StrictModel):
     """
 
     kind: Literal["joint_sinusoids"]
-    start_configuration: Configuration | None
-    frequency: PositiveFloat
+    start_configuration: JointPosition[Configuration | None]
+    frequency: Hertz[PositiveFloat]
     harmonics: Annotated[int, Field(ge=1, le=100)]
-    amplitude: NonNegativePerJoint
+    amplitude: JointPosition[NonNegativePerJoint]
     seed: Annotated[int, Field(ge=0)]
-    coefficients: list[list[Pair]] | None
-    ramp: PositiveFloat
-    duration: PositiveFloat
+    coefficients: JointPosition[list[list[Pair]] | None]
+    ramp: Seconds[PositiveFloat]
+    duration: Seconds[PositiveFloat]
 
     @field_validator("duration")
     @classmethod

@@ -11,6 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import JointPosition, Seconds
 from runner.trajectories.joint_motion import Configuration, JointMotion, configuration_of, start_of
 from runner.trajectories.waypoints import check_time_shares, least_jerk_spline
 
@@ -33,10 +34,10 @@ class JointWaypointsConfig(StrictModel):
     """
 
     kind: Literal["joint_waypoints"]
-    start_configuration: Configuration | None
-    configurations: list[Configuration]
+    start_configuration: JointPosition[Configuration | None]
+    configurations: JointPosition[list[Configuration]]
     time_shares: list[PositiveFloat] | None
-    duration: PositiveFloat
+    duration: Seconds[PositiveFloat]
 
     @field_validator("configurations")
     @classmethod

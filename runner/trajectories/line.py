@@ -9,6 +9,7 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.schema.model import StrictModel
+from runner.schema.units import Metres, Seconds
 from runner.trajectories.nearest import distance_to_segment
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point
@@ -25,9 +26,9 @@ class LineConfig(StrictModel):
     """
 
     kind: Literal["line"]
-    start: Point | None
-    goal: Point
-    duration: PositiveFloat
+    start: Metres[Point | None]
+    goal: Metres[Point]
+    duration: Seconds[PositiveFloat]
 
 
 @dataclass(frozen=True)

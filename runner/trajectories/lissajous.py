@@ -8,6 +8,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, ValidationInfo, fie
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import Metres, Radians, Seconds
 from runner.trajectories.closed_figure import ClosedFigure, TimeScaling
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import Trajectory
@@ -30,12 +31,12 @@ class LissajousConfig(StrictModel):
     """
 
     kind: Literal["lissajous"]
-    start: Point | None
-    amplitudes: Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]
+    start: Metres[Point | None]
+    amplitudes: Metres[Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]]
     frequencies: Annotated[list[Annotated[int, Field(ge=0, le=100)]], Field(min_length=3, max_length=3)]
-    phases: Point
+    phases: Radians[Point]
     easing: TimeScaling
-    duration: PositiveFloat
+    duration: Seconds[PositiveFloat]
 
     @field_validator("amplitudes")
     @classmethod

@@ -8,6 +8,7 @@ from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import Metres, Seconds
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.nearest import distance_to_segment
 from runner.trajectories.trajectory import Trajectory
@@ -25,9 +26,9 @@ class QuinticConfig(StrictModel):
     """
 
     kind: Literal["quintic"]
-    start: Point | None
-    goal: Point
-    duration: PositiveFloat
+    start: Metres[Point | None]
+    goal: Metres[Point]
+    duration: Seconds[PositiveFloat]
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import Metres, Seconds
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.nearest import distance_to_segment
 from runner.trajectories.trajectory import Trajectory
@@ -27,11 +28,11 @@ class SquareConfig(StrictModel):
     """
 
     kind: Literal["square"]
-    start: Point | None
-    half_edge: PositiveFloat
+    start: Metres[Point | None]
+    half_edge: Metres[PositiveFloat]
     normal: Direction
     edge_direction: InPlane
-    duration: PositiveFloat
+    duration: Seconds[PositiveFloat]
 
 
 @dataclass(frozen=True)

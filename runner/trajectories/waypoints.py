@@ -11,6 +11,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.schema.model import StrictModel
+from runner.schema.units import Metres, Seconds
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point
@@ -48,12 +49,12 @@ class WaypointsConfig(StrictModel):
     """
 
     kind: Literal["waypoints"]
-    start: Point | None
-    origin: Point | None
-    scale: PositiveFloat
+    start: Metres[Point | None]
+    origin: Metres[Point | None]
+    scale: Metres[PositiveFloat]
     points: list[Point]
     time_shares: list[PositiveFloat] | None
-    duration: PositiveFloat
+    duration: Seconds[PositiveFloat]
 
     @field_validator("points")
     @classmethod

@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from runner.config.compose.in_si import Place, leaves, set_value
-from runner.config.compose.key_units import units_at
+from runner.config.compose.units import Place, leaves, set_value, unit_at
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
 from runner.robots.armature import with_armature
@@ -83,7 +82,7 @@ class Key:
         followers = [name for name in names if name != self.name]
         for place, number in self.numbers.items():
             name = self.name + "".join(f"[{word}]" for word in place if isinstance(word, int))
-            unit = next(iter(units_at(self.config.resolved, place).at(place)), "1")
+            unit = next(iter(unit_at(self.config.resolved, place).at(place)), "1")
             yield Parameter(name, self.group, number, unit, partial(self._with_number, place), followers)
 
     def _with_number(self, place: Place, number: float) -> RunConfig:

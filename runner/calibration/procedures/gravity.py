@@ -17,6 +17,7 @@ from runner.calibration.procedures.procedure import Outcome
 from runner.calibration.tool import REST
 from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel
+from runner.schema.units import Metres, Radians
 from runner.sensing.force_torque import ForceTorqueSensor
 from runner.sensing.wrench import wrench_transform
 
@@ -42,9 +43,9 @@ class WeighingConfig(StrictModel):
     orientations: Annotated[int, Field(ge=1, le=1000)]
     choice: Literal["best", "first"]
     candidates: Annotated[int, Field(ge=1, le=100_000)]
-    spread: Annotated[float, Field(gt=0.0, le=np.pi)] | None
+    spread: Radians[Annotated[float, Field(gt=0.0, le=np.pi)] | None]
     samples: Annotated[int, Field(ge=1, le=100_000)]
-    repeatability: NonNegativeFloat
+    repeatability: Metres[NonNegativeFloat]
 
 
 class Weighing:

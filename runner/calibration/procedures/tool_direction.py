@@ -11,6 +11,7 @@ from runner.calibration.procedures.procedure import Outcome
 from runner.calibration.procedures.touching import TouchingConfig, touching_postures
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.calibration.tool_direction import alignment_angles, identify_tool_direction
+from runner.schema.units import Metres
 
 
 class TwoToolsConfig(TouchingConfig):
@@ -24,7 +25,7 @@ class TwoToolsConfig(TouchingConfig):
 
     kind: Literal["tool_direction"]
     direction: Annotated[list[float], Field(min_length=3, max_length=3)]
-    shorter: PositiveFloat
+    shorter: Metres[PositiveFloat]
 
     @field_validator("direction")
     @classmethod

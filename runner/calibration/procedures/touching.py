@@ -12,6 +12,7 @@ from runner.base.sanitize import quoted
 from runner.calibration.procedures.bench import Bench
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.schema.model import StrictModel
+from runner.schema.units import JointPosition, Metres, Radians
 
 
 class TouchingConfig(StrictModel):
@@ -26,9 +27,9 @@ class TouchingConfig(StrictModel):
     """
 
     poses: Annotated[int, Field(ge=1, le=1000)]
-    spread: Annotated[float, Field(gt=0.0, lt=np.pi)]
-    posture: list[float] | None
-    repeatability: NonNegativeFloat
+    spread: Radians[Annotated[float, Field(gt=0.0, lt=np.pi)]]
+    posture: JointPosition[list[float] | None]
+    repeatability: Metres[NonNegativeFloat]
 
 
 def touching_postures(bench: Bench, tip: FloatArray, config: TouchingConfig) -> FloatArray:

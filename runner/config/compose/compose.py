@@ -12,9 +12,9 @@ from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.data_files import take_data_file
 from runner.config.compose.hydra_config import hydra_config
-from runner.config.compose.in_si import put_in_si
 from runner.config.compose.overrides import force
 from runner.config.compose.stage_defaults import complete_stage_arms, complete_stages
+from runner.config.compose.units import to_si
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ def from_hydra(
         problems += mixed_arms(resolved, choices.get("robot", ""), config_dirs)
     if problems:
         raise ConfigError(problems)
-    put_in_si(resolved, config_dirs)
+    to_si(resolved, config_dirs)
     take_data_file(resolved, config_dirs)
     return Composed(resolved, tuple(overrides), choices, tuple(config_dirs), root)
 

@@ -9,8 +9,7 @@ from pydantic import ValidationError
 from runner.base.errors import nearest
 from runner.base.former_names import KEYS, explain_key
 from runner.base.sanitize import quoted
-from runner.config.compose.documentation import find_units, nested_model
-from runner.schema.model import StrictModel
+from runner.schema.model import StrictModel, nested_model
 from runner.schema.units import explain_quantity, quantities_in
 
 _NUMBERS = {
@@ -66,9 +65,9 @@ def _is_renamed(model: type[StrictModel], key: str, location: list[str], item: d
 def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]) -> str:
     kind, found, context = item["type"], item["input"], item.get("ctx", {})
     quantity = next(quantities_in(found), None) if kind in _OF_NUMBERS and location else None
-    units = find_units(model, location) if quantity is not None else None
-    if quantity is not None and units is not None:
-        return explain_quantity(quantity, units.at([int(part) if part.isdecimal() else part for part in location]))
+    unit = model.find_unit(location) if quantity is not None else None
+    if quantity is not None and unit is not None:
+        return explain_quantity(quantity, unit.at([int(part) if part.isdecimal() else part for part in location]))
     if kind == "extra_forbidden":
         keys = [field.alias or name for name, field in _innermost(model, location).model_fields.items()]
         return f"unknown key{nearest(location[-1], keys)}; keys: {', '.join(keys)}"

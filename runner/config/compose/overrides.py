@@ -7,9 +7,9 @@ from runner.base.bounded_yaml import CONFIG
 from runner.base.errors import ConfigError
 from runner.base.interpolation import calls_function
 from runner.base.sanitize import quoted
-from runner.config.compose.in_si import with_numbers
 from runner.config.compose.options import groups
 from runner.config.compose.syntax_errors import find_syntax_error
+from runner.config.compose.units import with_numbers
 from runner.config.compose.user_settings import SAYS_HOW
 
 _CHARACTERS = 20_000  # Hydra takes some seconds for a list of that length

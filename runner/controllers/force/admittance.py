@@ -14,6 +14,7 @@ from runner.controllers.kinematic.limited_motion import Approach, LimitedMotion
 from runner.controllers.operational_space.tip_task import task_start
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import AxisDamping, AxisInertia, AxisStiffness, MetresPerSecond, PerSecond, Seconds
 from runner.sensing.force_torque import ForceTorqueConfig
 
 COMMANDS = "position"
@@ -39,14 +40,14 @@ class AdmittanceConfig(StrictModel):
     """
 
     kind: Literal["admittance"]
-    period: PositiveFloat
-    mass: Six
-    damping: Six
-    stiffness: Six
+    period: Seconds[PositiveFloat]
+    mass: AxisInertia[Six]
+    damping: AxisDamping[Six]
+    stiffness: AxisStiffness[Six]
     wrench_frame: Literal["tip", "flange"]
     compensation: Compensation
-    tip_speed: PositiveFloat
-    limit_approach: PositiveFloat
+    tip_speed: MetresPerSecond[PositiveFloat]
+    limit_approach: PerSecond[PositiveFloat]
     sensor: ForceTorqueConfig
     check_stability: bool
 

@@ -12,6 +12,7 @@ from runner.controllers.force.force_reading import ForceReading, JointTorqueRead
 from runner.controllers.force.tip_force import ForceTask, TipForceConfig, find_force_task
 from runner.controllers.sampled_stability import VelocityGain
 from runner.robots.robot import Robot
+from runner.schema.units import Newtons, PerSecond, Stiffness
 from runner.sensing.force_torque import ForceTorqueConfig
 
 
@@ -32,10 +33,10 @@ class HybridForceConfig(TipForceConfig):
 
     kind: Literal["hybrid_force"]
     normal: Annotated[list[float], Field(min_length=3, max_length=3)]
-    wall_stiffness: PositiveFloat
-    force: PositiveFloat
+    wall_stiffness: Stiffness[PositiveFloat]
+    force: Newtons[PositiveFloat]
     force_gain: NonNegativeFloat
-    integral_gain: NonNegativeFloat
+    integral_gain: PerSecond[NonNegativeFloat]
     force_damping: NonNegativeFloat
     force_source: ReadingName
     sensor: ForceTorqueConfig

@@ -9,6 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.controller import Loop
 from runner.controllers.force.tip_force import TipForce, TipForceConfig, find_force_task
 from runner.robots.robot import Robot
+from runner.schema.units import Damping, Stiffness
 
 Three = Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]
 
@@ -25,8 +26,8 @@ class ImpedanceConfig(TipForceConfig):
     """
 
     kind: Literal["impedance"]
-    tip_stiffness: Three
-    tip_damping: Three
+    tip_stiffness: Stiffness[Three]
+    tip_damping: Damping[Three]
 
 
 class Impedance:

@@ -17,6 +17,7 @@ from runner.controllers.torque_law import PinocchioArm
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import PositivePerStage, by_stage
+from runner.schema.units import RadiansPerSecond, Seconds
 from runner.symbolic.maths import NUMPY
 
 
@@ -37,13 +38,13 @@ class TipForceConfig(StrictModel):
     """
 
     actuated_stages: Literal["whole", "last_stage"]
-    natural_frequency: PositivePerStage
+    natural_frequency: RadiansPerSecond[PositivePerStage]
     damping_ratio: PositivePerStage
-    period: PositivePerStage
+    period: Seconds[PositivePerStage]
     gravity_compensation: bool
     feedforward: bool
     singularity_damping: NonNegativeFloat
-    null_space_frequency: NonNegativeFloat
+    null_space_frequency: RadiansPerSecond[NonNegativeFloat]
 
 
 class TaskState(NamedTuple):

@@ -15,6 +15,7 @@ from runner.controllers.joint_space.joint_motion import JointMotion
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.model import RobotModel
+from runner.schema.units import Seconds
 
 _NOTHING = np.zeros(0)
 _MOST_TICKS = 1_000_000  # of a period: its torques are kept
@@ -31,7 +32,7 @@ class IterativeLearningConfig(JointLawConfig):
     """
 
     kind: Literal["iterative_learning"]
-    repeats_every: PositiveFloat | None
+    repeats_every: Seconds[PositiveFloat | None]
     learning_gain: Annotated[float, Field(gt=0.0, lt=2.0)]
     cutoff: PositiveFloat | None
 

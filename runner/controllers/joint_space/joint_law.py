@@ -15,6 +15,7 @@ from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import RadiansPerSecond, Seconds
 from runner.symbolic.maths import Array, Scalar
 
 
@@ -36,13 +37,13 @@ class JointLawConfig(StrictModel):
     """
 
     task: TaskName
-    natural_frequency: PositiveFloat
+    natural_frequency: RadiansPerSecond[PositiveFloat]
     damping_ratio: PositiveFloat
-    period: PositiveFloat
+    period: Seconds[PositiveFloat]
     gravity_compensation: bool
     feedforward: bool
     singularity_damping: NonNegativeFloat
-    null_space_frequency: NonNegativeFloat
+    null_space_frequency: RadiansPerSecond[NonNegativeFloat]
 
 
 N = TypeVar("N", bound=Any)  # a NamedTuple with the numbers of the motion, `motion`

@@ -12,6 +12,7 @@ from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
 from runner.schema.per_joint import PositivePerJoint, expand
+from runner.schema.units import RotaryStiffness
 from runner.symbolic.maths import Array, Scalar
 
 
@@ -26,7 +27,7 @@ class MotorPdConfig(JointLawConfig):
     """
 
     kind: Literal["motor_pd"]
-    joint_stiffness: PositivePerJoint
+    joint_stiffness: RotaryStiffness[PositivePerJoint]
 
 
 class MotorPdNumbers(NamedTuple):

@@ -13,6 +13,7 @@ from runner.controllers.joint_space.passivity import passive_dynamics
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
+from runner.schema.units import RadiansPerSecond
 from runner.symbolic.maths import Array, Scalar
 
 
@@ -28,7 +29,7 @@ class SlidingModeConfig(JointLawConfig):
     """
 
     kind: Literal["sliding_mode"]
-    boundary_layer: PositiveFloat
+    boundary_layer: RadiansPerSecond[PositiveFloat]
     switching_gain: PositiveFloat
 
 

@@ -17,6 +17,7 @@ from runner.robots.robot import Robot
 from runner.robots.task_space import task_basis
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import PositivePerJoint, expand
+from runner.schema.units import PerSecond, Seconds
 
 COMMANDS = "position"
 FOLLOWS_PATHS = True
@@ -46,9 +47,9 @@ class DifferentialInverseKinematicsConfig(StrictModel):
     """
 
     kind: Literal["differential_inverse_kinematics"]
-    period: PositiveFloat
+    period: Seconds[PositiveFloat]
     task: TaskName
-    gain: NonNegativeFloat
+    gain: PerSecond[NonNegativeFloat]
     feedforward: bool
     feedback: Literal["measured", "commanded"]
     integration: Literal["euler", "midpoint", "rk4"]

@@ -16,6 +16,7 @@ from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.robots.robot import Robot, end_points
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import PositivePerStage, by_stage
+from runner.schema.units import Metres, PerSecond, RadiansPerSecond, Seconds
 
 
 class MacroMiniConfig(StrictModel):
@@ -45,18 +46,18 @@ class MacroMiniConfig(StrictModel):
     """
 
     kind: Literal["macro_mini"]
-    natural_frequency: PositivePerStage
+    natural_frequency: RadiansPerSecond[PositivePerStage]
     damping_ratio: PositivePerStage
-    period: PositivePerStage
+    period: Seconds[PositivePerStage]
     coupling: Literal["one_way", "two_way", "independent", "independent_base", "mini_held", "inertial_damping"]
-    damping_gain: NonNegativeFloat
+    damping_gain: PerSecond[NonNegativeFloat]
     macro_target: Literal["minus_home", "tip_goal"]
     mini_reference_velocity: Literal["zero", "full"]
     wrist_rotation: Literal["real", "parallel"]
     gravity_compensation: bool
     feedforward: bool
     schedule: Literal["both", "turns"]
-    reach: PositiveFloat
+    reach: Metres[PositiveFloat]
     beyond_reach: Literal["hold", "stretch"]
     payload: Literal["unknown", "known"]
     singularity_damping: NonNegativeFloat

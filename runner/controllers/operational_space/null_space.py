@@ -7,6 +7,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
+from runner.schema.units import JointPosition, JointSpeed, PerSecond
 
 
 class NullSpaceConfig(StrictModel):
@@ -21,9 +22,9 @@ class NullSpaceConfig(StrictModel):
     """
 
     task: Literal["none", "posture", "joint_limits", "manipulability"]
-    gain: NonNegativeFloat
-    posture: list[float] | None
-    max_speed: PositiveFloat | None
+    gain: PerSecond[NonNegativeFloat]
+    posture: JointPosition[list[float] | None]
+    max_speed: JointSpeed[PositiveFloat | None]
 
 
 class NullSpaceTask:

@@ -18,6 +18,7 @@ from runner.robots.robot import Robot
 from runner.robots.task_space import task_basis
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, by_stage
+from runner.schema.units import RadiansPerSecond, Seconds
 from runner.symbolic.maths import Array, Scalar
 
 
@@ -40,13 +41,13 @@ class OperationalSpaceConfig(StrictModel):
 
     kind: Literal["operational_space"]
     task: TaskName
-    natural_frequency: PositivePerStage
+    natural_frequency: RadiansPerSecond[PositivePerStage]
     damping_ratio: PositivePerStage
-    period: PositivePerStage
+    period: Seconds[PositivePerStage]
     gravity_compensation: bool
     feedforward: bool
     singularity_damping: NonNegativeFloat
-    null_space_frequency: NonNegativePerStage
+    null_space_frequency: RadiansPerSecond[NonNegativePerStage]
 
 
 class OperationalSpaceNumbers(NamedTuple):

@@ -14,6 +14,7 @@ from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import MetresPerSecond, RadiansPerSecond, Seconds
 from runner.symbolic.maths import Array, Scalar
 
 
@@ -32,12 +33,12 @@ class WholeBodyLaw(StrictModel):
             posture; 0 is the law as printed.
     """
 
-    natural_frequency: PositiveFloat
+    natural_frequency: RadiansPerSecond[PositiveFloat]
     damping_ratio: PositiveFloat
     gravity_compensation: bool
     feedforward: bool
-    null_space_frequency: NonNegativeFloat
-    max_tip_speed: PositiveFloat | None
+    null_space_frequency: RadiansPerSecond[NonNegativeFloat]
+    max_tip_speed: MetresPerSecond[PositiveFloat | None]
     singularity_damping: NonNegativeFloat
 
 
@@ -50,7 +51,7 @@ class WholeBodyConfig(WholeBodyLaw):
     """
 
     kind: Literal["whole_body"]
-    period: PositiveFloat
+    period: Seconds[PositiveFloat]
 
 
 class WholeBodyNumbers(NamedTuple):

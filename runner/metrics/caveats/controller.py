@@ -29,7 +29,7 @@ def _tell_gains(value: float, setting: Setting) -> str:
     )
 
 
-UNSTABLE_GAINS = SettingRule("unstable_gains", "share", _gain_share, _tell_gains)
+UNSTABLE_GAINS = SettingRule("unstable_gains", _gain_share, _tell_gains)
 
 
 _ENOUGH = 3.0  # time constants, in which an exponential does 95 % of its way
@@ -56,7 +56,7 @@ def _rounded_up(value: float) -> float:
     return math.ceil(value / unit) * unit
 
 
-SHORT_HORIZON = SettingRule("short_horizon", "share", _time_share, _tell_horizon)
+SHORT_HORIZON = SettingRule("short_horizon", _time_share, _tell_horizon)
 
 
 _DIGITS_OF_RADIUS = 6  # of the radius; an axis without a spring has an eigenvalue of 1 but for rounding
@@ -92,4 +92,4 @@ def _tell_radius(value: float, setting: Setting) -> str:
     )
 
 
-UNSTABLE_CONTACT = SettingRule("unstable_contact", "radius", _radius, _tell_radius)
+UNSTABLE_CONTACT = SettingRule("unstable_contact", _radius, _tell_radius)

@@ -40,5 +40,5 @@ def _tell_fixed(value: float, setting: Setting) -> str:
     )
 
 
-EXACT_VELOCITY = SettingRule("exact_velocity", "noise", _noise_beside_exact, _tell_noise)
-FIXED_MISMATCH = SettingRule("fixed_mismatch", "error", _fixed_error, _tell_fixed)
+EXACT_VELOCITY = SettingRule("exact_velocity", _noise_beside_exact, _tell_noise)
+FIXED_MISMATCH = SettingRule("fixed_mismatch", _fixed_error, _tell_fixed)

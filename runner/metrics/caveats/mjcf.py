@@ -57,4 +57,4 @@ def _tell_left_out(value: float, setting: Setting) -> str:
     return "; ".join(f"not taken from {file}: {'; '.join(parts)}" for file, parts in setting.left_out.items())
 
 
-ROBOT_FILE = SettingRule("robot_file", "left_out", _left_out, _tell_left_out)
+ROBOT_FILE = SettingRule("robot_file", _left_out, _tell_left_out)

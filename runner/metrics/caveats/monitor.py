@@ -10,16 +10,16 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.cache import Memory
-from runner.config.caveats import CaveatsConfig
+from runner.config.caveats import THRESHOLDS, CaveatsConfig
 from runner.metrics.caveats import plant_error
 from runner.metrics.caveats.plant_error import PlantStep, caveat_of
-from runner.metrics.caveats.registry import KEYS, SETTING_RULES, TRACE_RULES, rules_digest
+from runner.metrics.caveats.registry import SETTING_RULES, TRACE_RULES, rules_digest
 from runner.metrics.caveats.rule import Caveat, Found, TraceRule
 from runner.metrics.caveats.setting import Setting, Signals
 from runner.metrics.plant_error import PlantError
 
-_KEYS = {name: KEYS[name] for name in CaveatsConfig.model_fields}
-_values = attrgetter(*(f"{name}.{key}" for name, key in _KEYS.items()))
+_KEYS = {rule: key for rule, (key, *_) in THRESHOLDS.items()}
+_values = attrgetter(*(f"{rule}.{key}" for rule, key in _KEYS.items()))
 
 _MEMORY = Memory(64)  # runs of a sweep share their setting
 _BLOCK = 64  # runs at a time: what caches hold
@@ -75,7 +75,7 @@ class Watch:
         ]
         caveats += _MEMORY.recall(_of_setting, self._setting, self._thresholds)
         if error is not None and step is not None:
-            threshold = self._thresholds[plant_error.NAME][plant_error.KEY]
+            threshold = self._thresholds[plant_error.NAME][_KEYS[plant_error.NAME]]
             caveats += filter(None, [caveat_of(error, step, threshold)])
         return Found(caveats, rules_digest(), self._thresholds)
 
@@ -98,7 +98,7 @@ def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]])
     caveats = []
     for rule in SETTING_RULES:
         value = rule.measure(setting)
-        if value is not None and value > thresholds[rule.name][rule.key]:
+        if value is not None and value > thresholds[rule.name][_KEYS[rule.name]]:
             caveats.append(Caveat(rule.name, rule.tell(value, setting), value))
     return caveats
 
@@ -137,4 +137,4 @@ def look_together(watches: Sequence[Watch], signals: Signals) -> None:
 def _by_rule(values: tuple[float, ...]) -> tuple[Mapping[str, Mapping[str, float]], Sequence[float]]:
     """Return thresholds by rule and key, as they are stored, and those of the rules on signals in their order."""
     thresholds = {name: {key: value} for (name, key), value in zip(_KEYS.items(), values, strict=True)}
-    return thresholds, [thresholds[rule.name][rule.key] for rule in TRACE_RULES]
+    return thresholds, [thresholds[rule.name][_KEYS[rule.name]] for rule in TRACE_RULES]

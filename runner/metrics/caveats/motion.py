@@ -60,5 +60,5 @@ def _tell_beyond(value: float, joint: int, setting: Setting) -> str:
     )
 
 
-DID_NOT_FOLLOW = TraceRule("did_not_follow", "share", _unfollowed, _tell_unfollowed)
-JOINT_LIMITS = TraceRule("joint_limits", "excess", _beyond, _tell_beyond)
+DID_NOT_FOLLOW = TraceRule("did_not_follow", _unfollowed, _tell_unfollowed)
+JOINT_LIMITS = TraceRule("joint_limits", _beyond, _tell_beyond)

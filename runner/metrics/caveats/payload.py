@@ -32,5 +32,5 @@ def _tell_lifted(value: float, setting: Setting) -> str:
     return f"{setting.robot.name} lifts {value:.4g} kg, and would lift anything: {which} has a torque limit"
 
 
-OVERLOAD = SettingRule("overload", "share", _overload, _tell_overload)
-NO_EFFORT_LIMIT = SettingRule("no_effort_limit", "payload", _lifted, _tell_lifted)
+OVERLOAD = SettingRule("overload", _overload, _tell_overload)
+NO_EFFORT_LIMIT = SettingRule("no_effort_limit", _lifted, _tell_lifted)

@@ -7,7 +7,7 @@ from runner.metrics.caveats.setting import Setting
 from runner.metrics.plant_error import PARTED, PLANT, PlantError, sufficient_step
 from runner.plugins.metric_units import unit_of
 
-NAME, KEY = "plant_error", "share"
+NAME = "plant_error"
 _OF_BAND = 0.01  # of the settling band: smaller differences do not matter
 
 
@@ -83,4 +83,4 @@ def _tell_replaced(_: float, setting: Setting) -> str:
     )
 
 
-DEFAULT_PLANT = SettingRule("default_plant", "replaced", _replaced, _tell_replaced)
+DEFAULT_PLANT = SettingRule("default_plant", _replaced, _tell_replaced)

@@ -1,7 +1,6 @@
 """List of all caveat rules in the order of output, and a digest of their source."""
 
 import hashlib
-from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
@@ -10,7 +9,7 @@ from runner.metrics.caveats.measurement import EXACT_VELOCITY, FIXED_MISMATCH
 from runner.metrics.caveats.mjcf import ROBOT_FILE
 from runner.metrics.caveats.motion import DID_NOT_FOLLOW, JOINT_LIMITS
 from runner.metrics.caveats.payload import NO_EFFORT_LIMIT, OVERLOAD
-from runner.metrics.caveats.plant_error import DEFAULT_PLANT, KEY, NAME
+from runner.metrics.caveats.plant_error import DEFAULT_PLANT
 from runner.metrics.caveats.rule import SettingRule, TraceRule
 from runner.metrics.caveats.torques import CHATTER, SATURATION
 
@@ -19,13 +18,6 @@ SETTING_RULES: tuple[SettingRule, ...] = (
     OVERLOAD, NO_EFFORT_LIMIT, EXACT_VELOCITY, FIXED_MISMATCH, UNSTABLE_GAINS, UNSTABLE_CONTACT, SHORT_HORIZON,
     DEFAULT_PLANT, ROBOT_FILE,
 )  # fmt: skip
-KEYS: Mapping[str, str] = {
-    **{rule.name: rule.key for rule in TRACE_RULES},
-    **{rule.name: rule.key for rule in SETTING_RULES},
-    NAME: KEY,
-}
-"""The key of every rule's threshold, by the rule's name: `caveats.NAME.KEY`."""
-
 _HEX = 24
 
 

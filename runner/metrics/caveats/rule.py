@@ -13,14 +13,12 @@ class TraceRule:
     """A rule on the signals of every repetition; what it measures springs it above its threshold.
 
     Attributes:
-        name: Its name; its threshold stands at `caveats.NAME.KEY`.
-        key: Key of its threshold.
+        name: Its name; its threshold is in runner/config/caveats.py.
         measure: Gives what it measures of runs, shape (..., n): a value for each joint, or one (n = 1).
         tell: Says in words what a value means, of a joint by its index.
     """
 
     name: str
-    key: str
     measure: Callable[[Signals, Setting], FloatArray]
     tell: Callable[[float, int, Setting], str]
 
@@ -31,13 +29,11 @@ class SettingRule:
 
     Attributes:
         name: Its name, as of a TraceRule.
-        key: Key of its threshold.
         measure: Gives what it measures; None where there is nothing to measure.
         tell: Says in words what a value means.
     """
 
     name: str
-    key: str
     measure: Callable[[Setting], float | None]
     tell: Callable[[float, Setting], str]
 

@@ -55,5 +55,5 @@ def _unit(joint: int, setting: Setting) -> str:
     return "N m" if setting.joint_units[joint] == "rad" else "N"
 
 
-SATURATION = TraceRule("saturation", "share", _saturated, _tell_saturated)
-CHATTER = TraceRule("chatter", "share", _chatter, _tell_chatter)
+SATURATION = TraceRule("saturation", _saturated, _tell_saturated)
+CHATTER = TraceRule("chatter", _chatter, _tell_chatter)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import label_with_unit, quantity
-from runner.config.compose.key_units import key_unit
+from runner.config.compose.units import key_unit
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.differing import UNITS
 from runner.sweeps.measurements import Axis, Measurements, is_part

@@ -9,7 +9,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
-from runner.config.compose.key_units import key_unit
+from runner.config.compose.units import key_unit
 from runner.reporting.answers import CHOSEN
 from runner.reporting.document import Document, Notice, Origin, Provenance, RunList, Section, Table, Text
 from runner.reporting.figures import cover

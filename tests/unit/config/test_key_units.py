@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.config.compose.key_units import key_unit
+from runner.config.compose.units import key_unit
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,8 @@ import pytest
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
 from bench.allowed_values import describe
-from bench.make_reference_docs import PAGE, reference_text
+from bench.make_reference_docs import PAGE, meanings, reference_text
+from runner.config.noise import NoiseConfig
 from runner.schema.per_stage import TorquePerStage
 
 
@@ -33,3 +34,8 @@ def test_the_reference_is_what_the_models_say():
 )
 def test_a_type_is_told_in_words(annotation, words):
     assert describe(annotation) == words
+
+
+def test_meanings_are_those_of_the_docstring():
+    assert set(meanings(NoiseConfig)) == set(NoiseConfig.model_fields)
+    assert meanings(NoiseConfig)["distribution"] == "Its shape; with none, `position` has no effect."

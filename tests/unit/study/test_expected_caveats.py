@@ -8,7 +8,7 @@ import pytest
 from support.made_up_runs import made_up_run
 
 from runner.base.errors import RunnerError
-from runner.metrics.caveats.registry import KEYS
+from runner.config.caveats import THRESHOLDS
 from runner.reporting.document import Notice, Table
 from runner.study.expected_caveats import (
     ExpectedCaveat,
@@ -74,7 +74,7 @@ def test_programs_get_every_caveat_with_why_it_is_expected():
 def test_what_a_study_expects_is_of_known_rules_and_of_runs_that_it_has(study):
     made = load_study(study)
     names = made.jobs()
-    rules = set(KEYS)
+    rules = set(THRESHOLDS)
     for expected in made.expected:
         assert expected.rule in rules
         assert any(expected.covers(name, {"rule": expected.rule}) for name in names), expected

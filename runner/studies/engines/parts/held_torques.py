@@ -10,6 +10,7 @@ from runner.controllers.controller import Loop
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import expand
+from runner.schema.units import JointTorque, Seconds
 
 
 class HeldTorquesConfig(StrictModel):
@@ -22,8 +23,8 @@ class HeldTorquesConfig(StrictModel):
     """
 
     kind: Literal["held_torques"]
-    period: PositiveFloat
-    torques: float | list[float]
+    period: Seconds[PositiveFloat]
+    torques: JointTorque[float | list[float]]
 
 
 class HeldTorques:

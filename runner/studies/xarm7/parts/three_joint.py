@@ -8,6 +8,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.controller import Loop
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import Radians, Seconds
 from runner.studies.xarm7.parts.three_joint_kinematics import Branch, ThreeJointArm
 
 COMMANDS = "position"
@@ -28,8 +29,8 @@ class ThreeJointConfig(StrictModel):
     """
 
     kind: Literal["three_joint"]
-    period: PositiveFloat
-    wrist: float
+    period: Seconds[PositiveFloat]
+    wrist: Radians[float]
     shoulder: Literal["front", "back"]
     elbow: Literal["plus", "minus"]
     feedforward: bool

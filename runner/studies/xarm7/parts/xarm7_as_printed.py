@@ -13,6 +13,7 @@ from runner.controllers.operational_space.tip_task import TaskName, task_start
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import PerSecond, Seconds
 
 COMMANDS = "position"
 
@@ -32,12 +33,12 @@ class AsPrintedConfig(StrictModel):
     """
 
     kind: Literal["xarm7_as_printed"]
-    period: PositiveFloat
+    period: Seconds[PositiveFloat]
     task: TaskName
     columns: Literal["printed", "right"]
     angles: Literal["printed", "right"]
     inverse: Literal["printed", "right"]
-    gain: NonNegativeFloat
+    gain: PerSecond[NonNegativeFloat]
     feedforward: bool
 
 

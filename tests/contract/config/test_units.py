@@ -8,7 +8,7 @@ from support import strangers
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.compose.in_si import as_numbers, put_in_si, with_numbers
+from runner.config.compose.units import as_numbers, to_si, with_numbers
 from runner.config.validation import validate
 from runner.store import run_hash
 
@@ -78,23 +78,17 @@ def test_of_a_calibration():
 
 
 def test_of_a_plug_in_that_declares_its_units(own_part):
-    module = '''
+    module = """
         from typing import Literal
         from runner.plugins.registry import StrictModel
+        from runner.schema.units import Seconds
         class CONFIG(StrictModel):
-            """Config.
-
-            Attributes:
-                kind: Its name.
-                settle: How long it waits, in s.
-                share: How much.
-            """
             kind: Literal["waiting"]
-            settle: float
+            settle: Seconds[float]
             share: float
         def build(config, start):
             return None
-    '''
+    """
     folder = own_part("trajectory", "waiting", module, "settle: 1.0\nshare: 0.5\n")
     told = compose(["robot=macro", "trajectory=waiting", "trajectory.settle=20ms"], [folder]).resolved
     assert told["trajectory"]["settle"] == 0.02
@@ -146,7 +140,7 @@ def test_a_joint_that_slides_takes_lengths_and_one_that_turns_angles():
 def test_a_config_of_numbers_is_left_as_it_is():
     resolved = compose(MACRO).resolved
     before = copy.deepcopy(resolved)
-    put_in_si(resolved)
+    to_si(resolved)
     assert resolved == before
 
 

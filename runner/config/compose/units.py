@@ -1,0 +1,183 @@
+"""Units of config keys, and quantities such as 20ms as plain numbers in SI units."""
+
+import contextlib
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from runner.base.errors import ConfigError
+from runner.schema.model import StrictModel
+from runner.schema.units import Unit, explain_quantity, read_quantity
+
+Place = tuple[str | int, ...]
+
+_RANGE = re.compile(r"\b(interval|range)\(([^()]*)\)")
+
+
+def to_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> None:
+    """Replace each quantity whose unit fits its key by its number in SI units.
+
+    Quantities that do not fit their key remain: validation reports them with all other problems.
+
+    Args:
+        resolved: The config as plain data, interpolations resolved; it is changed.
+        config_dirs: The user's config folders, which may hold the robot's file: a joint that slides takes lengths.
+    """
+    of_joints: list[tuple[Place, str, bool]] = []
+    for place, text in leaves(resolved):
+        quantity = read_quantity(text)
+        if quantity is None:
+            continue
+        unit = unit_at(resolved, place)
+        for each in unit.at(place):
+            value = quantity.in_unit(each)
+            if value is not None:
+                set_value(resolved, place, value)
+                if unit.sliding:
+                    of_joints.append((place, str(text), each == unit.sliding))
+    joints = _sliding_joints(resolved, config_dirs) if of_joints else {}
+    for place, text, slides in of_joints:
+        if _of_place(place, joints) - {slides}:
+            set_value(resolved, place, text)
+
+
+def leaves(value: object, place: Place = ()) -> Iterator[tuple[Place, object]]:
+    """Yield the place and value of all that a config holds, in its groups and lists."""
+    inner = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else None
+    if inner is None:
+        yield place, value
+    else:
+        for key, item in inner:
+            yield from leaves(item, (*place, key))
+
+
+def set_value(config: Any, place: Place, value: object) -> None:
+    """Put a value at a place of a config."""
+    for key in place[:-1]:
+        config = config[key]
+    config[place[-1]] = value
+
+
+def _sliding_joints(resolved: Mapping[str, object], config_dirs: Sequence[Path]) -> Mapping[str, Mapping[str, bool]]:
+    """Return by stage and joint whether it slides; empty for a robot whose files cannot be read."""
+    from runner.config.arms import sliding_joints
+    from runner.config.parsing import group_of, parse_robot
+
+    try:
+        return sliding_joints(parse_robot(group_of("robot", resolved)), config_dirs)
+    except ConfigError:
+        return {}  # validation reports it
+
+
+def _of_place(place: Place, joints: Mapping[str, Mapping[str, bool]]) -> set[bool]:
+    """Return whether the joints that a place in a config stands for slide; empty if the joints are not known."""
+    stages = [joints[key] for key in map(str, place) if key in joints] or joints.values()
+    named = [joint for stage in stages for joint in stage.items()]
+    last = place[-1]
+    own = (
+        named[last : last + 1] if isinstance(last, int) else [joint for joint in named if joint[0] == last][:1] or named
+    )
+    return {slides for _, slides in own}
+
+
+def key_unit(key: str) -> str:
+    """Return the unit of a dotted key, such as "rad/s" of "controller.natural_frequency".
+
+    It is "1" for a key without unit, an unknown key, and a key whose unit differs between the kinds of its group.
+    """
+    return _unit_of_key(key).first or "1"
+
+
+def unit_at(resolved: Mapping[str, Any], place: Sequence[str | int]) -> Unit:
+    """Return the unit of a place in a config, for the kinds that the config chooses: keys, and numbers in lists."""
+    group, *rest = [str(part) for part in place]
+    options = resolved.get(group)
+    kind = options.get("kind") if rest and isinstance(options, Mapping) else None
+    for model in _models(group if rest else "", rest, kind):
+        return model.find_unit(rest or [group]) or Unit()
+    return Unit()
+
+
+def _units_of_key(key: str) -> Sequence[str]:
+    return _unit_of_key(key).at(key.split("."))
+
+
+def _unit_of_key(key: str) -> Unit:
+    """Return the unit of a dotted key; none if it differs between the kinds of its group."""
+    group, *rest = key.split(".")
+    found = {model.find_unit(rest or [group]) for model in _models(group if rest else "", rest)} - {None}
+    return found.pop() or Unit() if len(found) == 1 else Unit()
+
+
+def as_numbers(values: Sequence[object], key: str) -> list[float] | None:
+    """Return the values of a swept key, some of them quantities and the others numbers, in SI units.
+
+    Args:
+        values: The values.
+        key: The dotted key.
+
+    Returns:
+        The numbers; None if there is no quantity, or a value is no number in a unit of the key. All quantities have the
+        same unit, because a joint either turns or slides.
+    """
+    read = [(value, read_quantity(value)) for value in values]
+    if not any(quantity for _, quantity in read):
+        return None
+    if not all(quantity or isinstance(value, int | float) for value, quantity in read):
+        return None
+    for unit in _units_of_key(key):
+        found: list[Any] = [value if quantity is None else quantity.in_unit(unit) for value, quantity in read]
+        if None not in found:
+            return found
+    return None
+
+
+def with_numbers(override: str) -> str:
+    """Return an override in which the quantities of ranges, as in interval(5ms,50ms), are numbers in SI units.
+
+    Raises:
+        ConfigError: for a quantity whose unit does not fit the key.
+    """
+    key, _, value = override.partition("=")
+
+    def number(text: str) -> str:
+        name, equals, given = text.rpartition("=")
+        quantity = read_quantity(given)
+        if quantity is None:
+            return text
+        units = _units_of_key(key.lstrip("+~"))
+        found = next((found for unit in units if (found := quantity.in_unit(unit)) is not None), None)
+        if found is None:
+            raise ConfigError([f"{key.lstrip('+~')}: {explain_quantity(given, units)}"])
+        return f"{name}{equals}{found!r}"
+
+    def numbers(match: re.Match[str]) -> str:
+        return f"{match[1]}({','.join(map(number, match[2].split(',')))})"
+
+    return f"{key}={_RANGE.sub(numbers, value)}" if "(" in value else override
+
+
+def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Iterator[type[StrictModel]]:
+    """Yield the models of a group, or of the one kind of it that is chosen."""
+    from runner.calibration.procedures import CALIBRATIONS
+    from runner.config.groups import GROUPS
+    from runner.config.plugin_groups import PLUGGED
+    from runner.config.robot import OneArmConfig, StageConfig
+    from runner.config.settings import RunSettings
+    from runner.plugins.registry import Kinds
+
+    known = CALIBRATIONS if group == CALIBRATIONS.group else GROUPS.get(group)
+    if not group:
+        yield RunSettings
+    elif rest[0] == "stages":
+        yield from (StageConfig, OneArmConfig)
+    elif isinstance(known, Kinds):
+        for kind in known.names() if chosen is None else [chosen]:
+            with contextlib.suppress(ConfigError):  # a part of the user's that cannot be imported
+                yield known.config_model(kind)
+    elif group in PLUGGED and chosen is not None:
+        with contextlib.suppress(ConfigError):
+            yield PLUGGED[group].config_model(chosen)
+    elif known is not None:
+        yield known
