@@ -43,12 +43,6 @@ def layers() -> list[str]:
     return list(contracts["contracts"][0]["layers"])
 
 
-def ignored() -> list[str]:
-    """Return the imports that still point up."""
-    contracts = tomllib.loads((_ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
-    return list(contracts["contracts"][0]["ignore_imports"])
-
-
 def summary(path: Path) -> str:
     """Return the first line of the docstring of a module, or of a package."""
     path = path / "__init__.py" if path.is_dir() else path
@@ -115,13 +109,7 @@ def picture() -> str:
 
 def page() -> str:
     """Return the page as Markdown."""
-    return "\n".join([_HEAD, *_still_up(), *(line for layer in reversed(layers()) for line in _section(layer))])
-
-
-def _still_up() -> Iterator[str]:
-    yield "These imports still point up. `ignore_imports` of the contract lists them; the list may only shrink.\n"
-    yield from (f"- `{line}`" for line in ignored())
-    yield ""
+    return "\n".join([_HEAD, *(line for layer in reversed(layers()) for line in _section(layer))])
 
 
 def _section(layer: str) -> Iterator[str]:

@@ -6,6 +6,7 @@ Every command imports this module. It therefore imports code for messages only w
 """
 
 import errno
+import math
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -60,13 +61,13 @@ class SimulationError(Exception):
 
     Attributes:
         reason: What happened.
-        time: When, in s.
+        time: When, in s; NaN if unknown.
         joint: Name of the joint that left first, or None.
     """
 
-    def __init__(self, reason: str, time: float, joint: str | None = None) -> None:
+    def __init__(self, reason: str, time: float = math.nan, joint: str | None = None) -> None:
         self.reason, self.time, self.joint = reason, time, joint
-        at = f" at t = {time:.4g} s" + (f", {joint}" if joint else "")
+        at = "" if math.isnan(time) else f" at t = {time:.4g} s" + (f", {joint}" if joint else "")
         super().__init__(f"{reason}{at}")
 
 

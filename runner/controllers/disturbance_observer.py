@@ -11,7 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
-from runner.plugins.guard import WatchedController
+from runner.plugins.guard import guarded_like, unguarded
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import RadiansPerSecond
@@ -231,7 +231,7 @@ class MeasuringController(ObservedController):
 
 
 def observe(controller: Controller, observer: MomentumObserver, measures: bool) -> Controller:
-    """Return a controller with an observer, one of the user's watched as before.
+    """Return a controller with an observer; a guarded law stays guarded.
 
     Args:
         controller: The controller.
@@ -240,11 +240,11 @@ def observe(controller: Controller, observer: MomentumObserver, measures: bool) 
     """
     if measures:
         return MeasuringController(controller, observer)
-    if isinstance(controller, TorqueLaw):
-        return ObservedLaw(controller, observer)
-    if isinstance(controller, WatchedController) and isinstance(controller.watched, TorqueLaw):
-        return WatchedController(ObservedLaw(controller.watched, observer), len(observer.numbers.limits))
-    return ObservedController(controller, observer)
+    law = unguarded(controller)
+    if not isinstance(law, TorqueLaw):
+        return ObservedController(controller, observer)
+    observed: Controller = guarded_like(controller, ObservedLaw(law, observer))
+    return observed
 
 
 class Ticks(Protocol):

@@ -2,14 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Controller, Loop, PositionController
+from runner.controllers.controller import Controller, Loop
 from runner.controllers.force.admittance_filter import Admittance
-from runner.plugins.guard import WatchedController, watch_loops
-from runner.plugins.guard.faults import find_fault
+from runner.plugins.guard import Attribute, Guard, Method, array, checked, find_fault, refuse
 from runner.plugins.registry import KindConfig, Registry
 from runner.robots.robot import Robot
 
@@ -109,11 +108,68 @@ class CommandsForce(ChecksStability, Protocol):
     compensation: str
 
 
+def guard_law(law: Any, joints: int) -> Any:
+    """Return a user-supplied control law behind its checks.
+
+    Args:
+        law: The law.
+        joints: Number of joints that it commands.
+    """
+    return Guard(
+        "controller",
+        reset=Method(),
+        torque=Method(array(joints)),
+        joint_positions=Method(array(joints)),
+        external_wrench=Attribute(lambda answer, asked: checked(answer, (6,), asked._replace(name="update_wrench"))),
+        update_wrench=Method(),
+        messages=Method(lambda answer, _: list(map(str, answer)), fail=lambda _, fault: [fault]),
+        with_limits=Method(lambda answer, asked, _: asked.guard(answer), optional=True, fail=refuse),
+    )(law)
+
+
+def _guard_loops(loops: Any, _: object, robot: Robot) -> tuple[Loop, ...]:
+    """Return the loops of a user-supplied module with guarded laws.
+
+    Raises:
+        ConfigError: if they are no loops, or do not command every joint once.
+    """
+    if not (isinstance(loops, Sequence) and loops and all(isinstance(loop, Loop) for loop in loops)):
+        raise ConfigError([f"controller.kind: build gave {loops!r:.200}; it must give a tuple of Loop"])
+    commanded = [range(robot.model.nq)[loop.joints] for loop in loops]
+    if sorted(joints := [index for own in commanded for index in own]) != list(range(robot.model.nq)):
+        raise ConfigError(
+            [
+                f"controller.kind: its loops command the joints {sorted(joints)}; together they must command each of "
+                f"the {robot.model.nq} once"
+            ]
+        )
+    pairs = zip(loops, commanded, strict=True)
+    return tuple(replace(loop, controller=guard_law(loop.controller, len(own))) for loop, own in pairs)
+
+
+def tell_limits(loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
+    """Return loops with controllers that know their torque limits; see SupportsTorqueLimits.
+
+    Args:
+        loops: The loops.
+        limits: Torque limits of all joints, shape (nq,), in N m; infinite if there is none.
+
+    Raises:
+        ConfigError: if a user-supplied controller fails.
+    """
+    return tuple(
+        replace(loop, controller=loop.controller.with_limits(limits[loop.joints]))
+        if isinstance(loop.controller, SupportsTorqueLimits)
+        else loop
+        for loop in loops
+    )
+
+
 class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
     """The kinds of controllers."""
 
     def __init__(self, modules: Mapping[str, str]) -> None:
-        super().__init__("controller", modules, watch_loops)
+        super().__init__("controller", modules, _guard_loops)
 
     def build_for(self, config: ControllerConfig, robot: Robot, joints: bool) -> tuple[Loop, ...]:
         """Make the loops of a config, of a law of ours that follows joints where the desired motion is one of joints.
@@ -151,28 +207,3 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
         if fault:
             raise ConfigError([f"controller.kind: start_posture of '{config.kind}' gave {fault}"])
         return wanted
-
-    def tell_limits(self, config: ControllerConfig, loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
-        """Return a config's loops with controllers that know their torque limits; see SupportsTorqueLimits.
-
-        Args:
-            config: The config.
-            loops: Its loops.
-            limits: Of all joints, shape (nq,), in N m; infinite where there is none.
-
-        Raises:
-            ConfigError: where a controller of the user's fails.
-        """
-        return tuple(replace(loop, controller=self._told(config, loop, limits[loop.joints])) for loop in loops)
-
-    def _told(self, config: ControllerConfig, loop: Loop, limits: FloatArray) -> Controller | PositionController:
-        if not isinstance(loop.controller, WatchedController):
-            return (
-                loop.controller.with_limits(limits)
-                if isinstance(loop.controller, SupportsTorqueLimits)
-                else loop.controller
-            )
-        own = loop.controller.watched
-        if not isinstance(own, SupportsTorqueLimits):
-            return loop.controller
-        return WatchedController(self.ask(config, lambda _, handed: own.with_limits(handed), limits), len(limits))

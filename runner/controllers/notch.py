@@ -12,7 +12,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
-from runner.plugins.guard import WatchedController
+from runner.plugins.guard import guarded_like, unguarded
 from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import NotchPerStage
@@ -201,9 +201,9 @@ def add_notch(loops: tuple[Loop, ...], frequency: FloatArray, width: float) -> t
 
 
 def _with_notch(controller: Controller, notch: Notch) -> Controller:
-    """Return a controller with a notch, one of the user's watched as before."""
-    if isinstance(controller, TorqueLaw):
-        return NotchedLaw(controller, notch)
-    if isinstance(controller, WatchedController) and isinstance(controller.watched, TorqueLaw):
-        return WatchedController(NotchedLaw(controller.watched, notch), len(notch.numbers.b[0]))
-    return NotchedController(controller, notch)
+    """Return a controller with a notch; a guarded law stays guarded."""
+    law = unguarded(controller)
+    if not isinstance(law, TorqueLaw):
+        return NotchedController(controller, notch)
+    notched: Controller = guarded_like(controller, NotchedLaw(law, notch))
+    return notched

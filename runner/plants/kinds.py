@@ -2,17 +2,19 @@
 
 from collections.abc import Mapping
 from types import ModuleType
-from typing import Literal, Protocol, runtime_checkable
+from typing import Any, Literal, Protocol, runtime_checkable
+
+import numpy as np
 
 from runner.base import engines
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError
+from runner.base.errors import ConfigError, SimulationError
 from runner.plants.computation import ComputationConfig
 from runner.plants.decoupled import Motion
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.plant import Plant
+from runner.plants.plant import Plant, unwrapped
 from runner.plants.servo import ServoConfig
-from runner.plugins.guard import watch_plant
+from runner.plugins.guard import Asked, Attribute, Guard, Method, array, checked, refuse
 from runner.plugins.registry import KindConfig, Registry
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
@@ -104,6 +106,35 @@ class ChoosesStep(Protocol):
         ...
 
 
+def _check_state(_: Any, asked: Asked, q: FloatArray, dq: FloatArray) -> None:
+    """Check the shapes of a plant's state after a reset."""
+    for name in ("q", "dq"):
+        found = np.shape(getattr(asked.part, name))
+        if found != q.shape:
+            raise SimulationError(f"{type(asked.part).__name__}.{name} has the shape {found}; it must be {q.shape}")
+
+
+def _check_reaction(answer: Any, asked: Asked) -> FloatArray | None:
+    """Return the reaction in the mount of a tool, if there is one."""
+    return None if answer is None else checked(answer, (6,), asked)
+
+
+_GUARD = Guard(
+    "plant",
+    q=Attribute(),
+    dq=Attribute(),
+    tau=Attribute(optional=True),
+    load=Attribute(optional=True),
+    reset=Method(_check_state),
+    set_gravity=Method(),
+    advance=Method(),
+    close=Attribute(),
+    add_wall=Method(optional=True, owner=unwrapped, fail=refuse),
+    contact_wrench=Method(array(6), optional=True, owner=unwrapped),
+    tool_reaction=Method(_check_reaction, optional=True, owner=unwrapped),
+)
+
+
 class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
     """The kinds of plants.
 
@@ -112,7 +143,7 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
     """
 
     def __init__(self, modules: Mapping[str, str]) -> None:
-        super().__init__("plant", modules, watch_plant)
+        super().__init__("plant", modules, _GUARD)
 
     def names(self) -> list[str]:
         """Return the known kinds; see Kinds. Without PyBullet bullet is none of them."""

@@ -90,7 +90,7 @@ class Kinds:
         return model
 
     def is_ours(self, kind: str) -> bool:
-        """Tell whether a kind comes with this package, where no watching is needed."""
+        """Tell whether a kind comes with this package, so that no guard is needed."""
         return self.module(kind).__name__.startswith("runner.")
 
     def commands(self, kind: str) -> Commands:
@@ -121,34 +121,34 @@ class Registry(Kinds, Generic[C, P, T]):
     Args:
         group: Name of the config group, such as "controller".
         modules: Module name of each kind.
-        watch: Makes what is watched of what a module of the user's built, given this and what `build` was given.
+        guard: Returns a user-supplied part behind its checks, from the part and what `build` was given.
     """
 
     def __init__(
-        self, group: str, modules: Mapping[str, str], watch: Callable[Concatenate[T, C, P], T] | None = None
+        self, group: str, modules: Mapping[str, str], guard: Callable[Concatenate[T, C, P], T] | None = None
     ) -> None:
         super().__init__(group, modules)
-        self._watch = watch
+        self.guard = guard
 
     def build(self, config: C, *args: P.args, **kwargs: P.kwargs) -> T:
         """Make the part that a validated config describes; what follows is what every kind of this group gets.
 
-        A module of the user's gets copies of them, and what it builds is watched.
+        A user-supplied module gets copies of them, and the part that it makes is guarded.
 
         Raises:
-            ConfigError: where a part of the user's raises anything; names the place.
+            ConfigError: if a user-supplied part raises anything; names the place.
         """
         make: Callable[Concatenate[C, P], T] = self.module(config.kind).build
         if self.is_ours(config.kind):
             return make(config, *args, **kwargs)
         built = self.ask(config, make, *args, **kwargs)
-        return built if self._watch is None else self._watch(built, config, *args, **kwargs)
+        return built if self.guard is None else self.guard(built, config, *args, **kwargs)
 
     def ask(self, config: C, function: Callable[Concatenate[C, P2], A], *args: P2.args, **kwargs: P2.kwargs) -> A:
-        """Return what a function of a user's module gives, which is handed copies alone.
+        """Return the result of a function of a user-supplied module, which gets copies of its arguments.
 
         Raises:
-            ConfigError: where it raises anything; names the place.
+            ConfigError: if it raises anything; names the place.
         """
         own, handed, named = copy.deepcopy((config, args, kwargs))
         try:

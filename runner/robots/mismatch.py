@@ -1,14 +1,14 @@
 """Model mismatch between the controllers' nominal model and the simulated robot."""
 
 import copy
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 import pinocchio as pin
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.plugins.guard import watch_belief
+from runner.base.errors import ConfigError
 from runner.plugins.registry import KindConfig, Registry
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
@@ -40,7 +40,31 @@ class MismatchConfig(StrictModel):
 
 NONE = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.0, gravity=1.0, payload=0.0, spread=0.0)
 
-MISMATCHES = Registry[KindConfig, [Robot, np.random.Generator], Robot]("mismatch", {}, watch=watch_belief)
+
+def _check_nominal(nominal: Any, _: object, robot: Robot, *__: object) -> Robot:
+    """Return the nominal robot of a mismatch plug-in.
+
+    Raises:
+        ConfigError: if it is no robot with the stages and joints of the true one, or its masses and lengths are not
+            finite.
+    """
+    if not isinstance(nominal, Robot):
+        raise ConfigError([f"mismatch.kind: build gave {nominal!r:.200}; it must give a Robot"])
+    if nominal.stage_names != robot.stage_names or nominal.model.joint_names != robot.model.joint_names:
+        raise ConfigError(
+            [
+                "mismatch.kind: build gave a robot with other stages or joints: "
+                f"{', '.join(nominal.model.joint_names)}; they must be {', '.join(robot.model.joint_names)}"
+            ]
+        )
+    for model in (nominal.model, *(stage.model for stage in nominal.stages)):
+        lengths = [placement.translation for placement in model.pin_model.jointPlacements]
+        if not all(np.isfinite(part).all() for part in (model.inertial_parameters, model.gravity, np.array(lengths))):
+            raise ConfigError(["mismatch.kind: build gave a robot with masses or lengths that are not finite"])
+    return nominal
+
+
+MISMATCHES = Registry[KindConfig, [Robot, np.random.Generator], Robot]("mismatch", {}, _check_nominal)
 """Mismatches of plug-ins: `build` gets the true robot and a generator, and returns the nominal robot."""
 
 

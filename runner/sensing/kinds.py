@@ -1,11 +1,12 @@
 """Sensor protocols and the registries of sensor plug-ins."""
 
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.plugins.guard import WatchedEncoders, WatchedTorqueSensors, WatchedWristSensor
+from runner.base.errors import SimulationError
+from runner.plugins.guard import Asked, Guard, Method, checked, like, place
 from runner.plugins.registry import KindConfig, Registry
 
 
@@ -30,10 +31,6 @@ class WristSensor(Protocol):
         """Return the reading of a load on the flange; see ForceTorqueSensor.read."""
         ...
 
-    def overloads(self) -> list[str]:
-        """Return what is to be told of a run that loaded it beyond its range."""
-        ...
-
 
 class TorqueSensors(Protocol):
     """Torque sensors in the joints."""
@@ -43,17 +40,27 @@ class TorqueSensors(Protocol):
         ...
 
 
+def _check_measurement(
+    answer: Any, asked: Asked, _: int, q: FloatArray, dq: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return measured positions and velocities."""
+    if not isinstance(answer, tuple | list) or len(answer) != 2:
+        at = place(asked.part.measure)
+        raise SimulationError(f"{at} gave {answer!r:.200}; it must be positions and velocities")
+    return checked(answer[0], q.shape, asked), checked(answer[1], dq.shape, asked)
+
+
 NOISES = Registry[KindConfig, [tuple[str, ...], int, float, np.random.Generator], Encoders](
-    "noise", {}, watch=WatchedEncoders
+    "noise", {}, Guard("noise", measure=Method(_check_measurement))
 )
 """`build` gets the names of the joints, the number of measurements, the time between two in s, and a generator."""
 
 WRIST_SENSORS = Registry[KindConfig, [int, float, np.random.Generator], WristSensor](
-    "wrist_sensor", {}, watch=WatchedWristSensor
+    "wrist_sensor", {}, Guard("wrist_sensor", read=Method(like(1)))
 )
 """`build` gets the number of readings, the time between two in s, and a generator."""
 
 JOINT_TORQUE_SENSORS = Registry[KindConfig, [tuple[str, ...], int, np.random.Generator], TorqueSensors](
-    "joint_torque_sensor", {}, watch=WatchedTorqueSensors
+    "joint_torque_sensor", {}, Guard("joint_torque_sensor", read=Method(like(1)))
 )
 """`build` gets the names of the joints, the number of readings, and a generator."""

@@ -12,7 +12,7 @@ from runner.config.flexibility import find_motor_side, is_flexible, with_nominal
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.controllers.disturbance_observer import add_observers
-from runner.controllers.kinds import FollowsWithinReach
+from runner.controllers.kinds import FollowsWithinReach, tell_limits
 from runner.controllers.notch import add_notch
 from runner.environments import ENVIRONMENTS
 from runner.environments.external_wrench import Interaction
@@ -139,7 +139,7 @@ def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loo
     loops = config.loops
     if nominal is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, nominal, isinstance(config.path, TipOfJoints))
-    loops = CONTROLLERS.tell_limits(config.controller, loops, config.torque_limits)
+    loops = tell_limits(loops, config.torque_limits)
     if config.notch is not None:
         loops = add_notch(loops, config.notch.by_joint(config.arm), config.notch.width)
     return nominal, add_observers(config.disturbance_observer, nominal, loops, config.torque_limits, config.timing)

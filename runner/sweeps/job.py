@@ -21,6 +21,7 @@ from runner.config.validation import validate
 from runner.metrics import Columns, MetricContext, evaluate
 from runner.metrics.caveats import PlantStep, Watch, setting_of, signals_of
 from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
+from runner.sensing import ForceTorqueSensor
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch_blocks import simulate_blocks, threads_allowed
 from runner.simulation.batch_jobs import NO_DEADLINE, seconds_together, warm_time
@@ -159,7 +160,7 @@ def _simulate(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[T
     trace, wrist = simulate(closed, *made), made[1]
     users = [loop.wrench_feedback for loop in closed.loops if loop.wrench_feedback is not None]
     told = [message for controller in users for message in controller.messages()]
-    return trace, told + ([] if wrist is None else wrist.overloads())
+    return trace, told + (wrist.overloads() if isinstance(wrist, ForceTorqueSensor) else [])
 
 
 _SURELY_ALLOWED = 200_000  # ticks, which take minutes at most

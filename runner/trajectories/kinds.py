@@ -1,10 +1,13 @@
 """Optional features of trajectory configs and modules, and the registry of trajectories."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.plugins.guard import WatchedTrajectory
+from runner.base.errors import ConfigError, RunnerError
+from runner.plugins.guard import Asked, Guard, Method, checked, describe_fault, find_fault, read_only
 from runner.plugins.registry import KindConfig, Registry
 from runner.trajectories.trajectory import Trajectory
 
@@ -38,11 +41,65 @@ class MovesJoints(Protocol):
         ...
 
 
+class _ByRun(Method):
+    """A method that is asked run by run if it gets the points of several runs."""
+
+    def bind(self, asked: Asked) -> Any:
+        """Return the member of the proxy."""
+        ask = super().bind(asked)
+
+        def by_run(points: FloatArray) -> Any:
+            return ask(points) if points.ndim < 3 else np.stack([by_run(np.ascontiguousarray(own)) for own in points])
+
+        return by_run
+
+
+_GUARD = Guard(
+    "trajectory",
+    sample=Method(lambda motion, asked, times: checked(motion, (len(times), 3, 3), asked)),
+    distance_to_path=_ByRun(lambda distances, asked, points: checked(distances, (len(points),), asked)),
+)
+
+
+def _guard_trajectory(trajectory: Any, *_: object) -> Any:
+    """Return a user-supplied trajectory behind its checks, with copies of its points and times.
+
+    Raises:
+        ConfigError: if these or the motion are wrong; names the place.
+    """
+    guarded, problems = _GUARD(trajectory), list[str]()
+    try:
+        for name in ("duration", "run_duration"):
+            value = getattr(trajectory, name)
+            if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value < np.inf:
+                problems.append(f"its {name} is {value!r}; it must be a time in s, 0 or more")
+            else:
+                setattr(guarded, name, float(value))
+        has_times = not problems
+        for name in ("start", "goal"):
+            point = getattr(trajectory, name)
+            fault = None if point is None and name == "goal" else find_fault(point, (3,))
+            if fault:
+                problems.append(f"its {name} is {fault}")
+            else:
+                setattr(guarded, name, None if point is None else read_only(np.array(point, dtype=float)))
+        guarded.tracked = bool(trajectory.tracked)
+        if has_times:
+            guarded.distance_to_path(guarded.sample(np.linspace(0.0, trajectory.duration, 1001))[:, 0])
+    except RunnerError:
+        raise
+    except Exception as error:
+        problems.append(describe_fault(error))
+    if problems:
+        raise ConfigError(f"trajectory: {type(trajectory).__name__}: {problem}" for problem in problems)
+    return guarded
+
+
 class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):
     """The kinds of trajectories; `build` gives each the tip position at t = 0, shape (3,), in m."""
 
     def __init__(self, modules: Mapping[str, str]) -> None:
-        super().__init__("trajectory", modules, WatchedTrajectory)
+        super().__init__("trajectory", modules, _guard_trajectory)
 
     def joint_motion(self, config: KindConfig, robot: "Robot") -> "JointMotion | None":
         """Return the motion of a robot's joints, where a kind of ours has one; see MovesJoints.

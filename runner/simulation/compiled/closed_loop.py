@@ -90,7 +90,7 @@ class CommandsRun:
         self.q, self.dq, self.torque = (rows[:, part * nq : (part + 1) * nq] for part in range(3))
         self._fault, self.end_points = rows[:, 3 * nq], rows[:, 3 * nq + 1 :].reshape(len(times), -1, 3).swapaxes(0, 1)
         self._true_q, self._true_dq = frame.state[:nq, 0], frame.state[nq : 2 * nq, 0]
-        self._span, self._call, self._errors, self._watched = frame.span, frame.call, errors, commands.watched
+        self._span, self._call, self._errors, self._guarded = frame.span, frame.call, errors, commands.guarded
 
     def tick(self, k: int, q: FloatArray, dq: FloatArray) -> None:
         """Compute tick k, after the one before, from the true state, shapes (nq,).
@@ -105,7 +105,7 @@ class CommandsRun:
         self._call()
         if self._fault[k]:
             raise np.linalg.LinAlgError(self._errors[int(self._fault[k]) - 1])
-        if self._watched:
+        if self._guarded:
             fault = self._commands.fault(self.torque[k], self._times[k])
             if fault is not None:
                 raise fault
@@ -210,7 +210,7 @@ class Signals:
     def first_fault(self, run: int, times: FloatArray) -> tuple[int, Exception] | None:
         """Return the first of some ticks in which a run's law had no answer, and the reason; None where all had one."""
         failed = np.flatnonzero(self.fault[run, : len(times)])
-        watched = self.torque[run, : len(times) if self.commands.watched else 0]
+        watched = self.torque[run, : len(times) if self.commands.guarded else 0]
         wild = np.flatnonzero(~np.isfinite(watched).all(axis=1))
         first = min([*failed[:1], *wild[:1]], default=None)
         if first is None:

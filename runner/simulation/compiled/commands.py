@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.controllers.torque_law import TorqueLaw
-from runner.plugins.guard.faults import find_fault, place
+from runner.plugins.guard import find_fault, place
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
@@ -56,7 +56,7 @@ class Commands:
         loops: The loops.
         noise: Noise, bias and steps of the joints.
         limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
-        watched: Whether torques that are no finite numbers end the run as a fault of the law.
+        guarded: Whether torques that are no finite numbers end the run as a fault of the law.
     """
 
     robot: Robot
@@ -64,7 +64,7 @@ class Commands:
     loops: tuple[LoopCode, ...]
     noise: EncoderNoise
     limits: FloatArray
-    watched: bool = False
+    guarded: bool = False
 
     @cached_property
     def pattern(self) -> str:
@@ -104,7 +104,7 @@ class Commands:
 
     def fault(self, torque: FloatArray, time: float) -> SimulationError | None:
         """Return what is wrong with torques that a user's law gave, shape (nq,); None where nothing is."""
-        if not self.watched or np.isfinite(torque).all():
+        if not self.guarded or np.isfinite(torque).all():
             return None
         for loop in self.loops:
             text = find_fault(torque[loop.joints], torque[loop.joints].shape)

@@ -3,14 +3,13 @@
 import sys
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import Any
 
 from runner.base.arrays import FloatArray
 from runner.config.timing import Timing
 from runner.controllers.controller import Loop
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants.decoupled import Motion
-from runner.plugins.guard.controller import WatchedController
+from runner.plugins.guard import Guarded, unguarded
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
@@ -37,7 +36,7 @@ def find_commands(
         noise: Noise, bias and steps of the joints.
         limits: Torque limits, shape (nq,), in N m; infinite where there is none.
     """
-    laws = [_law(loop.controller) for loop in loops]
+    laws = [unguarded(loop.controller) for loop in loops]
     if not evaluator() or not all(isinstance(law, TorqueLaw) for law in laws):
         return None
     if len(limits) > MOST_JOINTS:
@@ -50,8 +49,8 @@ def find_commands(
         )
         for law, loop in zip(laws, loops, strict=True)
     ]
-    watched = any(isinstance(loop.controller, WatchedController) for loop in loops)
-    return Commands(robot, ignore_base_rotation, tuple(codes), noise, limits, watched)
+    guarded = any(isinstance(loop.controller, Guarded) for loop in loops)
+    return Commands(robot, ignore_base_rotation, tuple(codes), noise, limits, guarded)
 
 
 def compile_commands(commands: Commands | None) -> CompiledCommands | None:
@@ -80,10 +79,6 @@ def compile_program(commands: Commands | None, motion: Motion, timing: Timing) -
 def describe_program(commands: Commands, motion: Motion, timing: Timing) -> LoopProgram:
     """Return a closed loop, of which code can be made as a whole."""
     return LoopProgram(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.late[0])
-
-
-def _law(controller: Any) -> Any:
-    return controller.watched if isinstance(controller, WatchedController) else controller
 
 
 @lru_cache(maxsize=64)

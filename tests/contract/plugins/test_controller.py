@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from runner.base.errors import ConfigError, SimulationError
-from runner.controllers import Loop
-from runner.plugins.guard import WatchedController, watch_loops
+from runner.controllers import CONTROLLERS, Loop
+from runner.controllers.kinds import guard_law
+from runner.plugins.guard import Guarded
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
@@ -46,7 +47,7 @@ class Law:
 )
 def test_a_law_that_goes_wrong_is_a_failure_that_names_the_place(checked_config, closed_loop, answer, reason):
     loop = closed_loop("robot=macro", "duration=0.2")
-    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(Law(answer), 3)),), compiled=None)
+    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, guard_law(Law(answer), 3)),), compiled=None)
     trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert trace.failure is not None
     assert trace.failure.time == pytest.approx(0.05)
@@ -60,7 +61,7 @@ def test_a_law_that_changes_what_it_is_handed_is_a_failure(checked_config, close
             reference[0] -= 1.0
 
     loop = closed_loop("robot=macro", "duration=0.2")
-    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(Writes(None), 3)),), compiled=None)
+    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, guard_law(Writes(None), 3)),), compiled=None)
     trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert re.fullmatch(
         r"ValueError: .*read-only \(test_controller.py, line \d+, in torque\); a plug-in cannot change what "
@@ -73,7 +74,7 @@ def test_a_reset_that_raises_is_a_failure_at_the_start(checked_config, closed_lo
     law = Law(None)
     law.reset = lambda: {}["memory"]
     loop = closed_loop("robot=macro", "duration=0.2")
-    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, WatchedController(law, 3)),), compiled=None)
+    loop = replace(loop, loops=(Loop("macro", slice(0, 3), 0.01, guard_law(law, 3)),), compiled=None)
     trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert re.fullmatch(r"KeyError: 'memory' \(test_controller.py, line \d+, in <lambda>\)", trace.failure.reason)
     assert trace.failure.time == 0.0
@@ -82,7 +83,7 @@ def test_a_reset_that_raises_is_a_failure_at_the_start(checked_config, closed_lo
 
 def test_limits_do_not_reach_into_the_users_own_array():
     own = np.array([1.0, 2.0, 3.0])
-    answer = WatchedController(Law(lambda: own), 3).torque(1.0, own, own, own)
+    answer = guard_law(Law(lambda: own), 3).torque(1.0, own, own, own)
     answer[:] = 0.0
     assert own.tolist() == [1.0, 2.0, 3.0]
 
@@ -97,20 +98,20 @@ class UsesWrench(Law):
         return 1 / 0
 
 
-def test_a_law_that_uses_the_wrench_is_watched():
-    law = WatchedController(UsesWrench(None), 3)
+def test_a_law_that_uses_the_wrench_is_guarded():
+    law = guard_law(UsesWrench(None), 3)
     with pytest.raises(SimulationError, match=r"read-only \(test_controller.py, line \d+, in update_wrench\)"):
         law.update_wrench(np.ones(6))
     (message,) = law.messages()
     assert re.fullmatch(r"ZeroDivisionError: division by zero \(test_controller.py, line \d+, in messages\)", message)
-    law._controller.external_wrench = np.zeros(3)
+    law.part.external_wrench = np.zeros(3)
     with pytest.raises(SimulationError, match=r"UsesWrench.update_wrench .* gave an array of shape \(3,\)"):
         _ = law.external_wrench
 
 
-def test_our_own_laws_are_not_watched(checked_config):
+def test_our_own_laws_are_not_guarded(checked_config):
     controller = assemble(checked_config("robot=macro", "plant=rk4")).loops[0].controller
-    assert not isinstance(controller, WatchedController)
+    assert not isinstance(controller, Guarded)
 
 
 @pytest.mark.parametrize(
@@ -125,4 +126,4 @@ def test_our_own_laws_are_not_watched(checked_config):
 )
 def test_loops_that_are_none_are_refused(checked_config, loops, problem):
     with pytest.raises(ConfigError, match=problem):
-        watch_loops(loops, None, checked_config("robot=macro").arm)
+        CONTROLLERS.guard(loops, None, checked_config("robot=macro").arm)

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runner.environments import ENVIRONMENTS
 from runner.environments.external_wrench import Interaction
-from runner.plugins.guard import WatchedEnvironment
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
@@ -38,7 +38,7 @@ class Wind:
 )
 def test_an_environment_that_goes_wrong_is_a_failure_that_names_the_place(checked_config, closed_loop, answer, reason):
     config, loop = checked_config("robot=macro", "duration=0.2"), closed_loop("robot=macro", "duration=0.2")
-    loop = replace(loop, interaction=Interaction(loop.robot, WatchedEnvironment(Wind(answer)), loop.tick))
+    loop = replace(loop, interaction=Interaction(loop.robot, ENVIRONMENTS.guard(Wind(answer)), loop.tick))
     trace = simulate(
         loop,
         make_encoders(loop, config.noise, config.settings.seed, 0),
@@ -57,7 +57,7 @@ def test_an_environment_that_changes_what_it_is_handed_is_a_failure(checked_conf
 
     setattr(wind, method, write)
     config, loop = checked_config("robot=macro", "duration=0.2"), closed_loop("robot=macro", "duration=0.2")
-    loop = replace(loop, interaction=Interaction(loop.robot, WatchedEnvironment(wind), loop.tick))
+    loop = replace(loop, interaction=Interaction(loop.robot, ENVIRONMENTS.guard(wind), loop.tick))
     trace = simulate(
         loop,
         make_encoders(loop, config.noise, config.settings.seed, 0),

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from runner.base.errors import ConfigError, SimulationError
-from runner.plugins.guard import WatchedEncoders, WatchedTorqueSensors, WatchedWristSensor, watch_belief
+from runner.robots.mismatch import MISMATCHES
+from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
@@ -48,7 +49,7 @@ def end_of(trace):
 )
 def test_encoders_that_go_wrong_end_the_run_with_the_place(closed_loop, answer, reason):
     loop = replace(closed_loop("robot=macro", "duration=0.2"), compiled=None)
-    found = end_of(simulate(loop, [WatchedEncoders(Sensor(answer))]))
+    found = end_of(simulate(loop, [NOISES.guard(Sensor(answer))]))
     assert re.search(reason, found), found
 
 
@@ -67,36 +68,35 @@ def test_a_wrist_sensor_that_goes_wrong_ends_the_run_with_the_place(closed_loop,
     asked = ("robot=macro", "duration=0.2", "environment=push")
     loop, config = closed_loop(*asked), checked_config(*asked)
     loop = replace(loop, compiled=None)
-    found = end_of(simulate(loop, make_encoders(loop, config.noise, 0, 0), WatchedWristSensor(Sensor(answer))))
+    found = end_of(simulate(loop, make_encoders(loop, config.noise, 0, 0), WRIST_SENSORS.guard(Sensor(answer))))
     assert re.search(reason, found), found
-    assert WatchedWristSensor(Sensor(answer)).overloads() == []
     assert make_wrist_sensor(loop, config.wrist_sensor, 0, 0) is not None
 
 
-def test_readings_of_torque_sensors_are_watched():
-    watched = WatchedTorqueSensors(Sensor(lambda load: load[:1]))
+def test_readings_of_torque_sensors_are_guarded():
+    guarded = JOINT_TORQUE_SENSORS.guard(Sensor(lambda load: load[:1]))
     own = np.ones(3)
-    answer = watched.read(0, own)
+    answer = guarded.read(0, own)
     answer[:] = 0.0
     assert own.tolist() == [1.0] * 3
     with pytest.raises(SimulationError, match=r"Sensor.read .* gave an array of shape \(1,\)"):
-        watched.read(5, own)
+        guarded.read(5, own)
 
 
-def test_a_belief_that_is_no_robot_of_the_same_joints_is_refused(checked_config):
+def test_a_nominal_robot_that_is_no_robot_of_the_same_joints_is_refused(checked_config):
     macro, mini = (checked_config(f"robot={name}").arm for name in ("macro", "mini"))
     other = checked_config("robot=planar").arm
-    assert watch_belief(macro, None, macro, None) is macro
+    assert MISMATCHES.guard(macro, None, macro, None) is macro
     with pytest.raises(ConfigError, match=r"mismatch.kind: build gave None; it must give a Robot"):
-        watch_belief(None, None, macro, None)
+        MISMATCHES.guard(None, None, macro, None)
     with pytest.raises(ConfigError, match=r"a robot with other stages or joints: .*; they must be q1, q2, q3"):
-        watch_belief(other, None, macro, None)
+        MISMATCHES.guard(other, None, macro, None)
     with pytest.raises(ConfigError, match=r"a robot with other stages or joints"):
-        watch_belief(mini, None, macro, None)
+        MISMATCHES.guard(mini, None, macro, None)
     wrong = macro.model.copy()
     wrong.pin_model.gravity.linear = np.array([0.0, 0.0, np.nan])
     with pytest.raises(ConfigError, match=r"masses or lengths that are not finite"):
-        watch_belief(replace(macro, model=wrong), None, macro, None)
+        MISMATCHES.guard(replace(macro, model=wrong), None, macro, None)
 
 
 @pytest.mark.parametrize("group", ["noise", "wrist_sensor", "joint_torque_sensor", "mismatch"])

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.plugins.guard import WatchedTrajectory
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
+from runner.trajectories import TRAJECTORIES
 
 
 @dataclass
@@ -51,13 +51,13 @@ class Path:
 )
 def test_a_trajectory_that_goes_wrong_is_refused_before_the_run(wrong, message):
     with pytest.raises(ConfigError, match=message):
-        WatchedTrajectory(Path(**wrong))
+        TRAJECTORIES.guard(Path(**wrong))
 
 
 def test_a_trajectory_that_is_right_passes():
-    watched = WatchedTrajectory(Path())
-    assert watched.start.tolist() == [0.0, 1.0, 1.0]
-    assert watched.sample(np.zeros(2)).shape == (2, 3, 3)
+    guarded = TRAJECTORIES.guard(Path())
+    assert guarded.start.tolist() == [0.0, 1.0, 1.0]
+    assert guarded.sample(np.zeros(2)).shape == (2, 3, 3)
 
 
 def test_a_trajectory_that_changes_what_it_is_handed_is_refused():
@@ -66,7 +66,7 @@ def test_a_trajectory_that_changes_what_it_is_handed_is_refused():
             times *= 2.0
 
     with pytest.raises(ConfigError, match=r"Writes: ValueError: .*read-only \(test_trajectory.py, line \d+, in sample"):
-        WatchedTrajectory(Writes())
+        TRAJECTORIES.guard(Writes())
 
 
 def test_a_trajectory_that_goes_wrong_later_is_a_failure(checked_config, closed_loop):
@@ -74,7 +74,7 @@ def test_a_trajectory_that_goes_wrong_later_is_a_failure(checked_config, closed_
         def sample(self, times):
             return super().sample(times) if len(times) == 1001 else times / {}
 
-    loop = replace(closed_loop("robot=macro", "duration=0.2"), trajectory=WatchedTrajectory(Tires()))
+    loop = replace(closed_loop("robot=macro", "duration=0.2"), trajectory=TRAJECTORIES.guard(Tires()))
     trace = simulate(loop, make_encoders(loop, checked_config("robot=macro", "duration=0.2").noise, 0, 0))
     assert re.search(r"TypeError: .* \(test_trajectory.py, line \d+, in sample\)", trace.failure.reason)
     assert (trace.failure.time, len(trace.t)) == (0.0, 1)
@@ -82,9 +82,9 @@ def test_a_trajectory_that_goes_wrong_later_is_a_failure(checked_config, closed_
 
 def test_what_it_gave_cannot_be_changed_afterwards():
     path = Path(start=np.array([0.0, 1.0, 1.0]), motion=np.zeros((1001, 3, 3)))
-    watched = WatchedTrajectory(path)
-    motion = watched.sample(np.zeros(1001))
+    guarded = TRAJECTORIES.guard(path)
+    motion = guarded.sample(np.zeros(1001))
     path.start[:], path.motion[:], path.duration = 7.0, 7.0, 7.0
-    assert watched.start.tolist() == [0.0, 1.0, 1.0]
-    assert watched.duration == 1.0
+    assert guarded.start.tolist() == [0.0, 1.0, 1.0]
+    assert guarded.duration == 1.0
     assert not motion.any()

@@ -9,8 +9,8 @@ import pytest
 from support.engines import ASKED
 
 from runner.base.errors import ConfigError
+from runner.environments import ENVIRONMENTS, LoadsJoints, PushesLinks
 from runner.environments.external_wrench import Interaction
-from runner.plugins.guard import watch_environment
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
@@ -158,7 +158,7 @@ def test_a_link_that_is_not_there(checked_config):
     ids=["shape of forces", "nan", "shape of torques", "raises"],
 )
 def test_what_goes_wrong_ends_the_run_with_the_place(run_in, environment, reason):
-    trace = run_in(watch_environment(environment))
+    trace = run_in(ENVIRONMENTS.guard(environment))
     assert trace.failure.time == 0.0
     assert re.search(reason, trace.failure.reason), trace.failure.reason
 
@@ -168,25 +168,23 @@ def test_what_it_is_handed_cannot_be_changed(run_in, argument):
     def write(*handed):
         handed[argument][:] = 1.0
 
-    trace = run_in(watch_environment(Loads(write)))
+    trace = run_in(ENVIRONMENTS.guard(Loads(write)))
     assert re.search(r"read-only \(test_link_forces.py, line \d+, in write\)", trace.failure.reason)
-    trace = run_in(watch_environment(Pushes([], None, lambda *handed: write(None, *handed))))
+    trace = run_in(ENVIRONMENTS.guard(Pushes([], None, lambda *handed: write(None, *handed))))
     assert re.search(r"read-only \(test_link_forces.py, line \d+, in write\)", trace.failure.reason)
 
 
 @pytest.mark.parametrize("points", [{"link2": [0.0, 1.0]}, {"link2": [np.inf, 0.0, 0.0]}, 5])
 def test_points_that_are_none(checked_config, points):
     with pytest.raises(ConfigError, match=r"environment.kind: its points?"):
-        Interaction(checked_config("robot=macro").arm, watch_environment(Pushes([], points)), 1e-3)
+        Interaction(checked_config("robot=macro").arm, ENVIRONMENTS.guard(Pushes([], points)), 1e-3)
 
 
-def test_the_watched_offer_what_is_within():
-    from runner.environments import LoadsJoints, PushesLinks
-
+def test_the_guarded_offer_what_is_within():
     for environment in (Free(), Pushes([]), Loads(None), Both()):
-        watched = watch_environment(environment)
-        assert isinstance(watched, PushesLinks) == isinstance(environment, PushesLinks)
-        assert isinstance(watched, LoadsJoints) == isinstance(environment, LoadsJoints)
+        guarded = ENVIRONMENTS.guard(environment)
+        assert isinstance(guarded, PushesLinks) == isinstance(environment, PushesLinks)
+        assert isinstance(guarded, LoadsJoints) == isinstance(environment, LoadsJoints)
 
 
 def test_pinocchio_agrees_on_the_point(checked_config):

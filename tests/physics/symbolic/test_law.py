@@ -10,9 +10,10 @@ from support.arms import checked
 
 from runner.base.errors import SimulationError
 from runner.controllers import Loop
+from runner.controllers.kinds import guard_law
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants import compiled_motion
-from runner.plugins.guard.controller import WatchedController
+from runner.plugins.guard import unguarded
 from runner.sensing import EncoderNoise
 from runner.simulation.compiled import compile
 from runner.simulation.compiled.closed_loop import CompiledCommands
@@ -203,17 +204,17 @@ def test_a_law_of_a_user_s_is_compiled():
 
 def found(controller, joints=3):
     """Return what is compiled of a loop with a controller."""
-    law = controller.watched if isinstance(controller, WatchedController) else controller
+    law = unguarded(controller)
     robot = SimpleNamespace(model=law.models[0], stages=(None,))
     exact = EncoderNoise(*np.zeros((3, joints)), "none", "exact")
     loop = Loop("whole", slice(0, joints), 0.01, controller)
     return compile.find_commands(robot, False, [loop], 0.01, exact, np.full(joints, np.inf))
 
 
-def test_a_watched_law_of_a_user_s_is_compiled_and_watched_and_its_code_is_not_kept(code_cache):
+def test_a_guarded_law_of_a_user_s_is_compiled_and_guarded_and_its_code_is_not_kept(code_cache):
     program._program.cache_clear()
     law, _ = users_law(Transposed)
-    run = compile.compile_commands(found(WatchedController(law, 3))).begin(
+    run = compile.compile_commands(found(guard_law(law, 3))).begin(
         np.zeros(1), np.zeros((1, 3, 3)), [np.zeros((1, 3))], np.zeros(3)
     )
     assert list(code_cache.iterdir()) == []

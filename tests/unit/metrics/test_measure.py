@@ -8,7 +8,7 @@ import pytest
 from runner.base.errors import SimulationError
 from runner.base.trace import Traces
 from runner.metrics import MetricContext, evaluate, measure, of_run
-from runner.plugins.guard.trajectory import WatchedTrajectory
+from runner.trajectories import TRAJECTORIES
 from runner.trajectories.circle import Circle
 from runner.trajectories.closed_figure import ClosedFigure
 from runner.trajectories.goal import Goal
@@ -147,12 +147,12 @@ def test_a_trajectory_of_a_plug_in_is_asked_run_by_run():
         start=path.start, goal=path.goal, duration=1.3, run_duration=2.3, tracked=True, sample=path.sample,
         distance_to_path=distance,
     )  # fmt: skip
-    watched = MetricContext(WatchedTrajectory(mine), 2e-3, 0.01)
+    guarded = MetricContext(TRAJECTORIES.guard(mine), 2e-3, 0.01)
     shapes.clear()
     traces = make_traces(runs=4)
-    found = measure(traces, watched)["cross_track_error"]
+    found = measure(traces, guarded)["cross_track_error"]
     assert shapes == [(201, 3)] * 4
     np.testing.assert_array_equal(found, measure(traces, context())["cross_track_error"])
     mine.distance_to_path = lambda points: np.full(len(points), np.nan)
     with pytest.raises(SimulationError, match="nan"):
-        measure(traces, watched)
+        measure(traces, guarded)

@@ -60,8 +60,8 @@ def test_a_module_without_a_config_model_is_refused(parts):
         parts.config_model("foreign")
 
 
-def test_a_kind_of_the_users_gets_copies_and_is_watched(parts):
-    parts = Registry("part", {"own": "some_own"}, watch=lambda built, config, *args: ("watched", built, *args))
+def test_a_kind_of_the_users_gets_copies_and_is_guarded(parts):
+    parts = Registry("part", {"own": "some_own"}, guard=lambda built, config, *args: ("guarded", built, *args))
     arm = np.zeros(3)
 
     def build(config, arm):
@@ -69,7 +69,7 @@ def test_a_kind_of_the_users_gets_copies_and_is_watched(parts):
         return "part"
 
     sys.modules["some_foreign"].build = build
-    assert parts.build(Config(kind="foreign", size=2.0), arm) == ("watched", "part", arm)
+    assert parts.build(Config(kind="foreign", size=2.0), arm) == ("guarded", "part", arm)
     assert not arm.any()
     assert parts.build(Config(kind="own", size=2.0), arm)[2] is arm
 
