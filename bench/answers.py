@@ -77,8 +77,7 @@ def _said(metrics: dict[str, FloatArray]) -> tuple[bool, bool]:
         provenance={},
     )
     question = find_question(Subject(measured, tuple(metrics)))
-    answers = [answer for _, some in (*question.overall, *question.at) for answer in some] if question else []
-    said = {answer.metric for answer in answers if answer.sign}
+    said = {answer.metric for answer in (question.answers if question else ()) if answer.sign}
     return PRIMARY in said, OTHER in said
 
 

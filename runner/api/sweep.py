@@ -14,7 +14,7 @@ from runner.api.run import Run
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line, quoted
-from runner.sweeps.measurements import Axis, Measurements, axes_of, measure_sweep
+from runner.sweeps.measurements import Axis, Measurements, axes_of, find_axis, measure_sweep
 from runner.sweeps.status import Status, find_status
 
 if TYPE_CHECKING:
@@ -82,12 +82,12 @@ class Sweep:
         """
         chosen = np.ones(len(self), dtype=bool)
         for name, value in values.items():
-            axis = self._axis(name.replace("__", "."))
-            chosen &= axis.level == _level(axis, value)
+            axis = find_axis(self._axes, name.replace("__", "."))
+            chosen &= axis.level == axis.find_level(value)
         cells = np.flatnonzero(chosen)
         if len({self.stored.hashes[cell] for cell in cells.tolist()}) > 1:
             others = [axis for axis in self._axes if len(np.unique(axis.level[cells])) > 1]
-            left = "; ".join(f"{axis.name}: {few([axis.text(k) for k in range(len(axis.values))])}" for axis in others)
+            left = "; ".join(f"{axis.name}: {few(axis.texts)}" for axis in others)
             raise RunnerError(f"{len(cells)} runs have these values; name one value of {left}")
         if not len(cells):
             raise RunnerError("no run of the sweep has these values together")
@@ -171,18 +171,10 @@ class Sweep:
         Raises:
             RunnerError: if there is no such axis or metric, or no two runs share their seeds.
         """
-        from runner.api.compare import comparison_frame
-        from runner.reporting.comparison.pairs import levels
-        from runner.reporting.sweep.subject import first_screen, whole_metrics
+        from runner.reporting.comparison.sweeps import answer_frame, compare_levels
 
         inside = [within] if isinstance(within, str) else within
-        compared = levels(self._measurements, by, inside, metrics=self._names(metrics))
-        first = first_screen(self._names(metrics) if metrics else whole_metrics(self._measurements.values))
-        known = dict.fromkeys((name for found in compared for name in found.pair.at), "all")
-        labels = [
-            {**known, **found.pair.at, "first": found.pair.first, "second": found.pair.second} for found in compared
-        ]
-        return comparison_frame(labels, compared, first)
+        return answer_frame(compare_levels(self._measurements, by, inside, self._names(metrics) if metrics else ()))
 
     def __repr__(self) -> str:
         told = _told(find_status(self.stored))
@@ -217,17 +209,10 @@ class Sweep:
         return page.table([*heads, "status", "caveats"], rows) + page.line(rest)
 
     def _over(self) -> list[str]:
-        return [f"{axis.name}: {few([axis.text(level) for level in range(len(axis.values))])}" for axis in self._axes]
+        return [f"{axis.name}: {few(axis.texts)}" for axis in self._axes]
 
     def _names(self, metrics: str | Sequence[str] | None) -> Sequence[str]:
         return self._measurements.named([metrics] if isinstance(metrics, str) else metrics)
-
-    def _axis(self, name: str) -> Axis:
-        names = [axis.name for axis in self._axes]
-        if name not in names:
-            known = ", ".join(names) or "nothing"
-            raise RunnerError(f"'{name}' was not swept{nearest(name, names)}; the sweep is over {known}")
-        return self._axes[names.index(name)]
 
     @cached_property
     def _axes(self) -> Sequence[Axis]:
@@ -251,16 +236,3 @@ def _told(status: Status) -> str:
     texts += [f"{status.failed} failed"] if status.failed else []
     doubted = sum(map(bool, status.caveats))
     return ", ".join(texts + ([f"{doubted} with caveats"] if doubted else []))
-
-
-def _level(axis: Axis, value: object) -> int:
-    """Return the place of a value on an axis.
-
-    Raises:
-        RunnerError: if it has no such value.
-    """
-    texts = [axis.text(level) for level in range(len(axis.values))]
-    for level, own in enumerate(axis.values):
-        if own == value or texts[level] == str(value):
-            return level
-    raise RunnerError(f"{axis.name} has no value {quoted(value)}{nearest(str(value), texts)}; it has: {few(texts)}")

@@ -5,19 +5,31 @@ of an axis of one sweep. `runner compare RUN recording.csv --columns map.yaml` c
 with a run, and writes a report; its folder is the last line.
 """
 
+import json
+import math
+import sys
 from argparse import ArgumentTypeError, Namespace
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored, name_list
+from runner.cli.columns import COMPARED, align_columns, answer_cells, number
 from runner.recordings import is_bag
 from runner.schema.units import read_quantity
 
 if TYPE_CHECKING:
+    from runner.reporting.answers import Answer, Asked
+    from runner.reporting.comparison.differences import Value
+    from runner.reporting.comparison.sweeps import SweepComparison
     from runner.store import Run
+    from runner.sweeps.measurements import Measurements
+
+# What a result may follow from besides its config; date, machine and command tell nothing about the physics.
+_PROVENANCE = ("commit", "versions", "plant_step")
 
 
 class StoredOrRecording(Stored):
@@ -46,48 +58,271 @@ def main(arguments: Sequence[str]) -> int:
         metavar="AXIS,AXIS",
         help="within each level of these; default: over all others and within each",
     )
+    parser.add_argument("--json", action="store_true", help="print the rows of runner.compare as JSON")
     parser.add_argument("--columns", type=Path, metavar="FILE", help="of a recording: which signal each column holds")
     parser.add_argument(
         "--fill-gaps", type=_seconds, metavar="TIME", help="of a recording: fill gaps of up to this, such as 20ms"
     )
     options = parser.parse_args(arguments)
-    metrics, within = options.metrics or (), options.within or None
     quiet_environment()
-    from runner import store
-
     recordings = [path for path in options.folders if _is_recording(path)]
     if recordings or options.columns or options.fill_gaps:
         _compare_recording(options.folders, recordings, options)
-        return 0
-    sweeps = [store.is_sweep(folder) for folder in options.folders]
-    if within and not options.by:
-        raise RunnerError("--within goes with --by AXIS, which says what is compared")
-    if options.by:
-        if len(options.folders) > 1 or not sweeps[0]:
-            raise RunnerError("--by is for one sweep: `runner compare SWEEP --by AXIS`")
-        from runner.cli.compare_levels import print_levels
-
-        print_levels(options.folders[0], options.by, within, metrics)
-    elif len(options.folders) == 1:
-        raise RunnerError(_alone(options.folders[0], sweeps[0]))
-    elif all(sweeps):
-        from runner.cli.compare_sweeps import print_sweeps
-
-        print_sweeps(options.folders, metrics)
     else:
-        from runner.cli.compare_runs import print_runs
-
-        runs = [None if is_sweep else store.open_run(folder)
-                for folder, is_sweep in zip(options.folders, sweeps, strict=True)]  # fmt: skip
-        alone = [run for run in runs if run is not None]
-        if any(sweeps):
-            raise RunnerError(_mixed(alone[0], options.folders[sweeps.index(True)]))
-        print_runs(alone, metrics)
+        _compare(options)
     return 0
+
+
+def _compare(options: Namespace) -> None:
+    """Print a comparison of levels, runs or sweeps."""
+    from runner import store
+    from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, open_compared
+    from runner.sweeps.measurements import check_metrics
+
+    metrics, folders = options.metrics or (), options.folders
+    sweeps = [store.is_sweep(folder) for folder in folders]
+    if options.within and not options.by:
+        raise RunnerError("--within goes with --by AXIS, which says what is compared")
+    if options.by and (len(folders) > 1 or not sweeps[0]):
+        raise RunnerError("--by is for one sweep: `runner compare SWEEP --by AXIS`")
+    if len(folders) == 1 and not options.by:
+        raise RunnerError(_explain_alone(folders[0], sweeps[0]))
+    if any(sweeps) != all(sweeps):
+        raise RunnerError(_explain_mixture(folders[sweeps.index(False)], folders[sweeps.index(True)]))
+    first, *others = sides = open_compared(folders)
+    for side in sides:
+        for damage in side.damage:
+            print(f"runner: {damage}", file=sys.stderr)
+    if options.by:
+        answers = compare_levels(first, options.by, options.within or None, metrics)
+        texts = ["\n".join(_level_lines(first, options.by, answers))]
+    elif all(sweeps) or options.json:
+        found = [compare_sweeps(first, other, metrics) for other in others]
+        answers = [answer for one in found for answer in one.answers]
+        texts = ["\n".join(_sweep_lines(one)) for one in found]
+    else:
+        runs = [store.open_run(folder) for folder in folders]
+        check_metrics(metrics, [name for side in sides for name in side.values])
+        texts = ["\n".join(_run_lines((runs[0], run), (first, other), metrics))
+                 for run, other in zip(runs[1:], others, strict=True)]  # fmt: skip
+    print(_json_text(answer_rows(answers)) if options.json else "\n\n".join(texts))
+
+
+def _json_text(rows: Sequence[Mapping[str, Any]]) -> str:
+    """Return rows as JSON, which has no number for what is beyond every number: null."""
+    finite = [{key: value if isinstance(value, str) or abs(value or 0.0) < math.inf else None for key, value in row.items()}
+              for row in rows]  # fmt: skip
+    return json.dumps(finite, indent=2)
+
+
+def _level_lines(side: "Measurements", axis: str, answers: "Sequence[Answer]") -> Iterator[str]:
+    from runner.reporting.answers import EXPLAINED
+    from runner.reporting.comparison.pairs import label_text
+    from runner.reporting.comparison.sweeps import NOISE_ALONE, format_count, noise_alone
+
+    yield one_line(f"{side.folder}  {len(side.hashes)} cells, by {axis}; repetitions in each: {side.repetitions}")
+    if side.missing:
+        left = format_count(side.missing, "cell is", "cells are")
+        yield one_line(f"{left} not stored; continue with: {side.command}")
+    if side.failed:
+        yield f"{format_count(side.failed, 'cell', 'cells')} failed; a failed repetition counts as beyond every number"
+    along = [one for one in side.differences if axis in one.axes or not one.axes]
+    if along:
+        yield f"the levels of {axis} differ in more than {axis}; what follows may be due to any of these:"
+        yield align_columns([[one.key, "; ".join(f"{at}: {text}" for at, text in one.values)] for one in along])
+    else:
+        yield f"the levels of {axis} differ in {axis} alone"
+    yield _caveat_table([row[1:] for row in _caveats(side)])
+    yield ""
+    yield from (one_line(answer.sentence()) for answer in answers if answer.rank < 2 and not answer.at)
+    rows = [["at", axis, "metric", "unit", "difference", *COMPARED, "the second is"]]
+    for answer in answers:
+        at = label_text(answer.at) if answer.at else "all"
+        rows.append([at, ", ".join(answer.names), answer.metric, answer.unit, *answer_cells(answer)])
+    yield align_columns(rows, indent="")
+    yield ""
+    yield EXPLAINED
+    if side.repetitions > 1 and noise_alone(config for config, _ in side.configs):
+        yield NOISE_ALONE
+
+
+def _sweep_lines(found: "SweepComparison") -> Iterator[str]:
+    from runner.reporting.answers import EXPLAINED
+    from runner.reporting.comparison.pairs import label_text
+    from runner.reporting.comparison.sweeps import NOISE_ALONE, POOLED, counts_by_sign, size_told
+
+    pairs, differences = found.pairs, found.differences
+    a, b = pairs.first, pairs.second
+    for side in (pairs.a, pairs.b):
+        yield one_line(f"{side.name}  {side.folder}  {size_told(side)}")
+    yield ""
+    yield one_line(differences.in_words(a, b))
+    if values := [*differences.options, *differences.values]:
+        yield align_columns([["key", a, b, "at"], *map(_value, values)])
+    made_by = [["made by", a, b, ""], *map(_value, differences.provenance)]
+    yield f"provenance differs:\n{align_columns(made_by)}" if differences.provenance else "same provenance"
+    yield from map(one_line, found.cells_told())
+    yield _caveat_table([*_caveats(pairs.a), *_caveats(pairs.b)])
+    yield ""
+    yield from (answer.sentence() for answer in found.answers if answer.rank < 2)
+    yield f"every metric {'in the one cell' if len(pairs) == 1 else f'over all {len(pairs)} cells'}, on the same seeds"
+    header = ["metric", "unit", a, b, f"{b} - {a}"]
+    rows = [[*header, *COMPARED, f"{b} is", "cells below, above 0"]]
+    for answer in found.answers:
+        rows.append([*_head(answer), *answer_cells(answer), "{}, {}".format(*counts_by_sign(answer))])
+    yield align_columns(rows, indent="")
+    if found.cells:
+        yield ""
+        yield f"largest differences in one cell, relative to the metric (chosen from {found.candidates}, not tested):"
+        rows = [[label_text(one.at), *_head(one), number(one.comparison.difference)] for one in found.cells]
+        yield align_columns([["cell", *header], *rows])
+    yield ""
+    yield f"{POOLED} {EXPLAINED}"
+    if found.noise_alone:
+        yield NOISE_ALONE
+
+
+def _run_lines(
+    runs: "tuple[Run, Run]", sides: "tuple[Measurements, Measurements]", metrics: Sequence[str]
+) -> Iterator[str]:
+    from runner.reporting.comparison.differences import find_differences
+    from runner.reporting.comparison.pairs import match
+    from runner.store import simulated_part
+
+    a, b = (side.name for side in sides)
+    for side, run in zip(sides, runs, strict=True):
+        yield one_line(f"{side.name}  {run.folder}  {run.failure_text or run.status}")
+    yield ""
+    yield one_line(find_differences(match(*sides)).in_words(a, b))
+    yield _changed_keys("config", [simulated_part(run.config) for run in runs], [a, b])
+    if runs[0].urdf != runs[1].urdf:
+        yield "  the text of robot.urdf differs"
+    made_by = [{key: run.provenance[key] for key in _PROVENANCE if key in run.provenance} for run in runs]
+    yield _changed_keys("provenance", made_by, [a, b])
+    yield _caveat_table([[side.name, str(one["rule"]), str(one["text"])] for side in sides for one in side.caveats[0]])
+    yield ""
+    header = ["metric", "unit", a, b, f"{b} - {a}", f"{b} / {a}"]
+    yield align_columns([header, *_metric_rows(sides, metrics)], indent="")
+    yield ""
+    yield from _paired_lines(sides, metrics)
+
+
+def _changed_keys(what: str, both: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
+    """Return a table of the dotted keys in which two mappings differ, or that they are the same."""
+    a, b = (dict(_flatten(one)) for one in both)
+    rows = [[key, a.get(key, "(absent)"), b.get(key, "(absent)")] for key in {**a, **b} if a.get(key) != b.get(key)]
+    return f"{what} differs:\n{align_columns([['key', *names], *rows])}" if rows else f"same {what}"
+
+
+def _flatten(value: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
+    for key, item in value.items():
+        if isinstance(item, Mapping):
+            yield from _flatten(item, f"{prefix}{key}.")
+        else:
+            yield f"{prefix}{key}", item if isinstance(item, str) else json.dumps(item)
+
+
+def _metric_rows(sides: "Sequence[Measurements]", metrics: Sequence[str]) -> Iterator[list[str]]:
+    """Yield the medians of two runs in each metric, their difference and their ratio."""
+    import numpy as np
+
+    for name in dict.fromkeys(metrics or [name for side in sides for name in side.values]):
+        unit = next(side.units[name] for side in sides if name in side.units)
+        a, b = (float(side.medians(name)[0]) if name in side.values else np.nan for side in sides)
+        shown = (a, b, b - a, b / a if a and np.isfinite(a) else np.nan)
+        yield [name, unit, *(number(value if np.isfinite(value) else None) for value in shown)]
+
+
+def _paired_lines(sides: "tuple[Measurements, Measurements]", metrics: Sequence[str]) -> Iterator[str]:
+    """Yield the comparison of two runs on the same seeds, repetition by repetition, or why there is none."""
+    from runner.reporting.answers import EXPLAINED
+    from runner.reporting.comparison.pairs import match
+    from runner.reporting.comparison.sweeps import NOISE_ALONE, answer, noise_alone
+    from runner.statistics import SMALLEST_SAMPLE
+
+    a, b = sides
+    pairs = match(a, b)
+    count = min(a.repetitions, b.repetitions)
+    both = [name for name in metrics or a.values if name in a.values and name in b.values]
+    if not pairs.share_seeds.all():
+        yield f"not compared in pairs: seed {a.seeds[0]} and seed {b.seeds[0]} share no noise"
+    elif count < SMALLEST_SAMPLE:
+        yield f"not compared in pairs: {count} repetitions in common, and {SMALLEST_SAMPLE} are needed"
+    elif not both:
+        yield "not compared in pairs: no metric is in both"
+    else:
+        answers = answer([pairs], both, metrics)
+        yield from (one.sentence() for one in answers if one.rank < 2)
+        header = ["metric", "unit", f"{b.name} - {a.name}", *COMPARED, f"{b.name} is"]
+        yield align_columns([header, *([one.metric, one.unit, *answer_cells(one)] for one in answers)])
+        yield EXPLAINED
+        if noise_alone(config for side in sides for config, _ in side.configs):
+            yield NOISE_ALONE
+
+
+def _caveats(side: "Measurements") -> list[list[str]]:
+    return [[side.name, rule, f"{count} of {len(side.hashes)} cells", text]
+            for rule, count, _, text in side.caveats_by_rule()]  # fmt: skip
+
+
+def _caveat_table(rows: Sequence[Sequence[str]]) -> str:
+    return f"caveats:\n{align_columns(rows)}" if rows else "no caveats"
+
+
+def _value(value: "Value") -> list[str]:
+    return [value.key, value.a, value.b, value.cells]
+
+
+def _head(one: "Asked") -> list[str]:
+    return [one.metric, one.unit, *map(number, one.comparison.medians)]
+
+
+def _explain_alone(folder: Path, is_sweep: bool) -> str:
+    """Return what is missing beside one folder."""
+    from runner import store
+    from runner.sweeps.measurements import axes_of
+
+    if not is_sweep:
+        store.open_run(folder)  # an error if it is not a run either
+        return f"{folder} is one run alone; give a second one to compare it with: `runner compare {folder} OTHER`"
+    axes, _ = axes_of(store.open_sweep(folder).overrides)
+    known = ", ".join(axis.name for axis in axes) or "nothing"
+    return (
+        f"{folder} is one sweep alone; compare the levels of one of its axes (it was swept over: {known}) by "
+        f"`runner compare {folder} --by AXIS`, or give a second sweep"
+    )
+
+
+def _explain_mixture(one: Path, folder: Path) -> str:
+    """Return what would work instead of a run against a sweep."""
+    from runner import store
+
+    run, sweep = store.open_run(one), store.open_sweep(folder)
+    what = f"{run.folder} is a run and {folder} a sweep; compare runs with runs, and sweeps with sweeps"
+    names = list(sweep.hashes)
+    if run.hash in names:
+        cell = " ".join(sweep.overrides[names.index(run.hash)])
+        return (
+            f"{what}: this run is the sweep's cell {cell}; `runner compare {folder} --by AXIS` holds the cells against "
+            "each other"
+        )
+    first = " ".join(sweep.overrides[0])
+    return (
+        f"{what}: a cell of the sweep is a run as well; `runner {first}` prints the folder of the first one, to "
+        f"compare {run.folder} with"
+    )
 
 
 def _is_recording(path: str | Path) -> bool:
     return Path(path).suffix.lower() == ".csv" or is_bag(Path(path))
+
+
+def _seconds(text: str) -> float:
+    found = read_quantity(text)
+    seconds = None if found is None else found.in_unit("s")
+    if seconds is None or seconds <= 0.0:
+        raise ArgumentTypeError(f"must be a time above 0, such as 20ms; found {text!r}")
+    return seconds
 
 
 def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], options: Namespace) -> None:
@@ -107,48 +342,3 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
     from runner.cli.compare_recording import print_recording
 
     print_recording(folders[0], recordings[0], options.columns, options.fill_gaps or 0.0)
-
-
-def _seconds(text: str) -> float:
-    found = read_quantity(text)
-    seconds = None if found is None else found.in_unit("s")
-    if seconds is None or seconds <= 0.0:
-        raise ArgumentTypeError(f"must be a time above 0, such as 20ms; found {text!r}")
-    return seconds
-
-
-def _alone(folder: Path, is_sweep: bool) -> str:
-    """Return what is missing beside one folder."""
-    from runner import store
-
-    if not is_sweep:
-        store.open_run(folder)  # what is no run either is told first
-        return f"{folder} is one run alone; give a second one to compare it with: `runner compare {folder} OTHER`"
-    from runner.sweeps.measurements import axes_of
-
-    axes, _ = axes_of(store.open_sweep(folder).overrides)
-    known = ", ".join(axis.name for axis in axes) or "nothing"
-    return (
-        f"{folder} is one sweep alone; compare the levels of one of its axes (it was swept over: {known}) by "
-        f"`runner compare {folder} --by AXIS`, or give a second sweep"
-    )
-
-
-def _mixed(run: "Run", folder: Path) -> str:
-    """Return what would work in place of a run against a sweep."""
-    from runner import store
-
-    sweep = store.open_sweep(folder)
-    what = f"{run.folder} is a run and {folder} a sweep; compare runs with runs, and sweeps with sweeps"
-    names = list(sweep.hashes)
-    if run.hash in names:
-        cell = " ".join(sweep.overrides[names.index(run.hash)])
-        return (
-            f"{what}: this run is the sweep's cell {cell}; `runner compare {folder} --by AXIS` holds the cells against "
-            "each other"
-        )
-    first = " ".join(sweep.overrides[0])
-    return (
-        f"{what}: a cell of the sweep is a run as well; `runner {first}` prints the folder of the first one, to "
-        f"compare {run.folder} with"
-    )

@@ -6,12 +6,13 @@ Verdict, interval and p follow from one test. The interval has the level at whic
 excludes zero exactly if the corrected p is below 5 %.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from runner.base.quantities import ROUNDING, number, quantity, with_ends
+from runner.reporting.comparison.pairs import Pairs, compare
 from runner.reporting.metric_titles import capital, title
 from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
 
@@ -51,14 +52,26 @@ class Asked:
         metric: Name of the metric.
         unit: Its unit.
         comparison: The second against the first, draw by draw.
+        pairs: The compared cells.
     """
 
     metric: str
     unit: str
     comparison: Comparison
+    pairs: Pairs | None = None
+
+    @property
+    def at(self) -> Mapping[str, str]:
+        """The levels that two levels are compared within, or the label of the only pair of cells."""
+        return self.pairs.at if self.pairs else {}
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Names of what is compared: levels of an axis, or sweeps."""
+        return (self.pairs.first, self.pairs.second) if self.pairs else ("A", "B")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Answer(Asked):
     """A comparison, judged with the others of its family.
 
@@ -66,11 +79,13 @@ class Answer(Asked):
         p_value: Its p, corrected for the family; None with too few pairs for any p.
         level: The level at which it was decided.
         family: Number of comparisons in the family.
+        rank: Place of the family: 0 for the primary metric, 1 for others of the first screen, 2 for all others.
     """
 
     p_value: float | None
     level: float
     family: int
+    rank: int
 
     @property
     def interval(self) -> tuple[float, float] | None:
@@ -124,14 +139,13 @@ class Answer(Asked):
             self.word,
         ]
 
-    def sentence(self, first: str, second: str, beside: str = "") -> str:
+    def sentence(self, beside: str = "") -> str:
         """Return in some sentences how the second compares with the first in this metric, and how many pairs would do.
 
         Args:
-            first: What the first is called.
-            second: What the second is called.
             beside: A sentence between the two, with a space before it.
         """
+        first, second = self.names
         head, told = f"{capital(title(self.metric))}:", self._evidence()
         if self.sign:
             unknown = "" if self.comparison.error is not None else "; the plant's own error in it is not known"
@@ -172,6 +186,16 @@ class Answer(Asked):
         return f" The pairs correlate by {found.correlation:.2f}: {enough} show a difference of {size}."
 
 
+def ask(pairs: Sequence[Pairs], metrics: Sequence[str]) -> list[Asked]:
+    """Return the comparisons of some pairs of cells in some metrics, without those that have no value."""
+    return [
+        Asked(metric, some.a.units[metric], found, some)
+        for metric in metrics
+        for some in pairs
+        if (found := compare(some, metric)) is not None
+    ]
+
+
 def judge(asked: Sequence[Asked], first: Sequence[str]) -> list[Answer]:
     """Return the answers to a question, in the order of its comparisons.
 
@@ -183,14 +207,15 @@ def judge(asked: Sequence[Asked], first: Sequence[str]) -> list[Answer]:
     places: list[list[int]] = [[], [], []]
     for place, one in enumerate(asked):
         places[0 if one.metric in first[:1] else 1 if one.metric in first else 2].append(place)
-    for family in places:
+    for rank, family in enumerate(places):
         tested = [place for place in family if asked[place].comparison.p_value is not None]
         p_values = [asked[place].comparison.p_value or 0.0 for place in tested]
         corrected = dict(zip(tested, holm(p_values).tolist(), strict=True))
         levels = dict(zip(tested, holm_levels(p_values, ALPHA).tolist(), strict=True))
         for place in family:
             one, level = asked[place], levels.get(place, ALPHA / max(len(family), 1))
-            answers[place] = Answer(one.metric, one.unit, one.comparison, corrected.get(place), level, len(family))
+            judged = {"p_value": corrected.get(place), "level": level, "family": len(family), "rank": rank}
+            answers[place] = Answer(one.metric, one.unit, one.comparison, one.pairs, **judged)
     return [answers[place] for place in range(len(asked))]
 
 

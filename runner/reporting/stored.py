@@ -10,13 +10,14 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.config.compose.user_settings import outputs_dir
 from runner.reporting import render
-from runner.reporting.comparison.operand import letter, open_side
 from runner.reporting.comparison.report import comparison_document
+from runner.reporting.comparison.sweeps import letter
 from runner.reporting.document import Document
 from runner.reporting.run_report import run_document
 from runner.reporting.sweep.report import sweep_document
 from runner.reporting.tuning.report import tuning_document
 from runner.store.latest import note
+from runner.sweeps.measurements import measure_stored
 from runner.sweeps.tuning.study import is_tuning, open_tuning
 
 
@@ -68,7 +69,7 @@ def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> tupl
         address = os.path.relpath(sweep.outputs / "runs", reports / "any") + "/"
         document, name = sweep_document(sweep, metrics, address), " ".join([sweep.folder.name, *metrics])
     else:
-        sides = [open_side(letter(place), folder) for place, folder in enumerate(folders)]
+        sides = [measure_stored(folder, letter(place)) for place, folder in enumerate(folders)]
         document, name = comparison_document(sides, metrics), " ".join(["compared", *names, *metrics])
     return document, reports / hashlib.sha256(name.encode()).hexdigest()[:24]
 

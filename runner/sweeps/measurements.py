@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from runner.base import progress
 from runner.base.arrays import FloatArray
-from runner.base.errors import RunnerError, nearest
-from runner.store import Run, Sweep
+from runner.base.errors import RunnerError, StoreError, nearest
+from runner.base.sanitize import few, quoted
+from runner.store import Finished, Run, Sweep, open_sweep
 from runner.store.axes import GridOverrides
 from runner.store.finer import finer_names, read_finer
 from runner.store.sweep import InShard
@@ -42,15 +43,56 @@ class Axis:
         texts = len(self.values) > 0 and isinstance(self.values[0], str)
         return None if texts else np.array(self.values, dtype=float)
 
+    @property
+    def texts(self) -> list[str]:
+        """Its values as texts."""
+        return [value if isinstance(value, str) else f"{value:g}" for value in self.values]
+
     def text(self, level: int) -> str:
         """Return one of its values as text."""
         value = self.values[level]
         return value if isinstance(value, str) else f"{value:g}"
 
+    def find_level(self, value: object, option: str = "") -> int:
+        """Return the place of a value, given as a number or as text, among its values.
+
+        Args:
+            value: The value.
+            option: Where the value was given, such as "--where "; a message begins with it.
+
+        Raises:
+            RunnerError: If the axis has no such value; the message lists those that it has.
+        """
+        wanted = str(value).strip("'\"")
+        number = _number(wanted)
+        for level, (own, text) in enumerate(zip(self.values, self.texts, strict=True)):
+            if wanted == text or (number is not None and number in (own, _number(text))):
+                return level
+        hint = nearest(wanted, self.texts)
+        raise RunnerError(f"{option}{self.name} has no value {quoted(wanted)}{hint}; allowed: {few(self.texts)}")
+
+
+def find_axis(axes: Sequence[Axis], name: str, option: str = "") -> Axis:
+    """Return the axis of a name.
+
+    Args:
+        axes: The axes of a sweep.
+        name: The name, such as "controller".
+        option: Where the name was given, such as "--by: "; a message begins with it.
+
+    Raises:
+        RunnerError: If there is no such axis; the message lists the axes.
+    """
+    names = [axis.name for axis in axes]
+    if name not in names:
+        known = ", ".join(names) or "nothing"
+        raise RunnerError(f"{option}{quoted(name)} was not swept{nearest(name, names)}; the sweep is over: {known}")
+    return axes[names.index(name)]
+
 
 @dataclass(frozen=True)
 class Measurements:
-    """The cells of a sweep, in the order of its jobs.
+    """The cells of a sweep, in the order of its jobs; a run counts as a sweep of one cell.
 
     Attributes:
         axes: What was swept.
@@ -68,6 +110,11 @@ class Measurements:
         differences: Resolved config values that differ between cells beyond the axes.
         configs: Each resolved config with the cells that have it; these may differ in their seed.
         finer: Each metric in the first repetitions on a finer step of the plant, as `values`; NaN where not known.
+        name: Name in a comparison, such as "A".
+        folder: Folder of the sweep or run.
+        command: The command that makes it.
+        missing: Number of cells that are not stored.
+        damage: What is damaged of what is stored, a text for each file.
     """
 
     axes: Sequence[Axis]
@@ -84,6 +131,49 @@ class Measurements:
     differences: Sequence[Difference] = ()
     configs: Sequence[tuple[Mapping[str, Any], NDArray[np.intp]]] = ()
     finer: Mapping[str, FloatArray] = field(default_factory=dict)
+    name: str = ""
+    folder: Path = Path()
+    command: str = ""
+    missing: int = 0
+    damage: Sequence[str] = ()
+
+    @property
+    def failed(self) -> int:
+        """Number of cells that failed."""
+        return sum(status != "ok" for status in self.statuses)
+
+    @cached_property
+    def config_of_cells(self) -> NDArray[np.intp]:
+        """Place of each cell's config in `configs`, shape (cells,)."""
+        places = np.zeros(len(self.hashes), dtype=np.intp)
+        for place, (_, cells) in enumerate(self.configs):
+            places[cells] = place
+        return places
+
+    def caveats_by_rule(self) -> list[tuple[str, int, int, str]]:
+        """Return each rule with its number of cells, and its largest finding: the cell and the text.
+
+        The rule of most cells comes first.
+        """
+        found: dict[str, list[tuple[int, Mapping[str, Any]]]] = {}
+        for cell, caveats in enumerate(self.caveats):
+            for caveat in caveats:
+                found.setdefault(str(caveat["rule"]), []).append((cell, caveat))
+        rows = []
+        for rule, some in sorted(found.items(), key=lambda item: -len(item[1])):
+            cell, worst = max(some, key=lambda entry: float(entry[1]["value"]))
+            rows.append((rule, len(some), cell, str(worst["text"])))
+        return rows
+
+    def resolved(self, key: str) -> list[Any]:
+        """Return the resolved value of a dotted key in each config; a mapping of a group, None where there is none."""
+        values = []
+        for config, _ in self.configs:
+            value: Any = config
+            for part in key.split("."):
+                value = value.get(part) if isinstance(value, dict) else None
+            values.append(value)
+        return values
 
     @cached_property
     def copies(self) -> NDArray[np.bool_]:
@@ -154,6 +244,12 @@ def measure(overrides: Sequence[Sequence[str]], runs: Iterable[Run]) -> Measurem
     return _measured(overrides, gathered)
 
 
+def measure_run(run: Run, name: str = "") -> Measurements:
+    """Return a run as a sweep of one cell."""
+    measured = _with_finer(measure([()], [run]), run.folder.parent.parent)
+    return replace(measured, name=name, folder=run.folder, command=str(run.provenance["command"]))
+
+
 def measure_sweep(sweep: Sweep) -> Measurements:
     """Read the runs of a sweep, those in shards a shard at once.
 
@@ -169,20 +265,46 @@ def measure_sweep(sweep: Sweep) -> Measurements:
         else:
             gathered.add_run(*found)
             progress.step()
-    return with_finer(_measured(sweep.overrides, gathered), sweep.outputs)
+    measured = _with_finer(_measured(sweep.overrides, gathered), sweep.outputs)
+    return replace(measured, folder=sweep.folder, command=sweep.command)
 
 
-def with_finer(measurements: Measurements, outputs: Path) -> Measurements:
-    """Return measurements with what a finer step of the plant gave, of those cells of which that is stored.
+def measure_stored(folder: Path, name: str = "") -> Measurements:
+    """Read what is stored of a sweep, ended or not.
 
     Raises:
-        DamagedError: if a file is not as it was written.
+        StoreError: If the folder is no sweep, or none of its cells is stored.
+        DamagedError: If it is damaged.
+    """
+    sweep = open_sweep(folder)
+    part, damage = stored_part(sweep)
+    if not len(part.hashes):
+        raise StoreError(f"{folder}: none of its {len(sweep.hashes)} cells is stored; continue with: {sweep.command}")
+    missing = len(sweep.hashes) - len(part.hashes)
+    return replace(measure_sweep(part), name=name, folder=folder, missing=missing, damage=damage)
+
+
+def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:
+    """Return a sweep with those of its cells that are stored, and what is damaged."""
+    finished = Finished(sweep.outputs)
+    stored = {name: finished.outcome(name) is not None for name in set(sweep.hashes)}
+    if all(stored.values()):
+        return sweep, finished.damage
+    kept = [cell for cell, name in enumerate(sweep.hashes) if stored[name]]
+    hashes = [sweep.hashes[cell] for cell in kept]
+    return replace(sweep, overrides=[sweep.overrides[cell] for cell in kept], hashes=hashes), finished.damage
+
+
+def _with_finer(measurements: Measurements, outputs: Path) -> Measurements:
+    """Return measurements with the metrics of a finer step of the plant, of those cells that have them stored.
+
+    Raises:
+        DamagedError: If a file is damaged.
     """
     known = finer_names(outputs)
-    cells = [cell for cell, name in enumerate(measurements.hashes) if name in known] if known else []
-    if not cells:
+    rows = [(cell, read_finer(outputs, name)) for cell, name in enumerate(measurements.hashes) if name in known]
+    if not rows:
         return measurements
-    rows = [(cell, read_finer(outputs, measurements.hashes[cell])) for cell in cells]
     width = max((len(row) for _, metrics in rows for row in metrics.values()), default=0)
     finer = {name: np.full((len(measurements.hashes), width), np.nan) for name in measurements.values}
     for cell, metrics in rows:
@@ -294,7 +416,7 @@ def check_metrics(wanted: Sequence[str], known: Iterable[str]) -> None:
     Raises:
         RunnerError: For the first that there is none of.
     """
-    names = list(known)
+    names = list(dict.fromkeys(known))
     for name in wanted:
         if name not in names:
             listed = ", ".join(names) or "none, as all runs failed"

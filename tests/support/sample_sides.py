@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.reporting.comparison.operand import Side
 from runner.sweeps.measurements import Axis, Measurements
 
 LAWS = {"robot": ["macro", "xarm7"], "gravity": [9.6, 9.81]}
@@ -33,7 +32,7 @@ def side(name, axes, value, seed=0, repetitions=8, order=None, **config):
         for key, level in zip(axes, cell, strict=True):
             resolved[key] = {"name": level} if isinstance(level, str) else level
         configs.append((resolved, np.array([number])))
-    measured = Measurements(
+    return Measurements(
         axes=[
             Axis(key, values, np.array([list(values).index(cell[place]) for cell in cells]))
             for place, (key, values) in enumerate(axes.items())
@@ -48,8 +47,10 @@ def side(name, axes, value, seed=0, repetitions=8, order=None, **config):
         provenance={"made on": ["2026-11-22"], "commit": ["abc"], "plant": ["bullet, step 0.001 s"]},
         seeds=np.full(len(cells), seed),
         configs=configs,
+        name=name,
+        folder=Path(f"outputs/sweeps/{name}"),
+        command=f"runner -m {name}",
     )
-    return Side(name, Path(f"outputs/sweeps/{name}"), f"runner -m {name}", measured)
 
 
 def hash_of(value):

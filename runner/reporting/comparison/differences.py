@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from runner.reporting.comparison.cells import Matched, label_text
-from runner.reporting.comparison.operand import Side
+from runner.reporting.comparison.pairs import Pairs, label_text
 from runner.store import simulated_part
 from runner.sweeps.differing import DISTANCE, entries, is_of_option
 from runner.sweeps.measurements import Measurements
@@ -39,7 +38,7 @@ class Value:
 
 
 @dataclass(frozen=True)
-class Beyond:
+class ConfigDifferences:
     """What two sweeps differ in where their cells are matched.
 
     Attributes:
@@ -76,60 +75,60 @@ class Beyond:
         return f"{a} and {b} differ in {told}{beside}. What follows may be due to any of these."
 
 
-def find_differences(a: Side, b: Side, matched: Matched) -> Beyond:
+def find_differences(pairs: Pairs) -> ConfigDifferences:
     """Return all resolved values that differ between the matched cells of two sweeps.
 
     Of a group of which they take other options only those values count that both options have, such as their gains; of
     a robot not what it is made of.
     """
-    found = _differing(a, b, matched)
+    found = _differing(pairs)
     groups = {key.partition(".")[0] for key in found if key.partition(".")[2] in _OPTION}
     options, values = [], []
     for key, texts in found.items():
         group, _, rest = key.partition(".")
         if group not in groups:
-            values += _values(key, texts, matched)
+            values += _values(key, texts, pairs)
         elif rest in _OPTION:
             if rest == ("name" if f"{group}.name" in found else "kind"):
-                options += _values(key, texts, matched, group)
+                options += _values(key, texts, pairs, group)
         elif not is_of_option(key):
-            values += _values(key, {both: pairs for both, pairs in texts.items() if None not in both}, matched)
+            values += _values(key, {both: some for both, some in texts.items() if None not in both}, pairs)
     values.sort(key=lambda value: value.key in _FOLLOWING)
-    return Beyond(options, values, list(_provenance(a.measurements, b.measurements)))
+    return ConfigDifferences(options, values, list(_provenance(pairs.a, pairs.b)))
 
 
 Texts = dict[tuple[str | None, str | None], list[int]]
 
 
-def _differing(a: Side, b: Side, matched: Matched) -> dict[str, Texts]:
+def _differing(pairs: Pairs) -> dict[str, Texts]:
     """Return the keys that differ, with the values of both sides and the pairs that have these."""
-    places = np.stack([a.config_of_cells()[matched.pairs.a], b.config_of_cells()[matched.pairs.b]], axis=1)
+    a, b = pairs.a, pairs.b
+    places = np.stack([a.config_of_cells[pairs.of_a], b.config_of_cells[pairs.of_b]], axis=1)
     distinct, which = np.unique(places, axis=0, return_inverse=True)
     order = np.argsort(which.ravel(), kind="stable")
     members = np.split(order, np.flatnonzero(np.diff(which.ravel()[order])) + 1)
     found: dict[str, Texts] = {}
-    for (of_a, of_b), pairs in zip(distinct.tolist(), members, strict=True):
+    for (of_a, of_b), some in zip(distinct.tolist(), members, strict=True):
         one, other = _part(a, of_a), _part(b, of_b)
         changed = [name for name in {**one, **other} if one.get(name) != other.get(name)]
         flat = [dict(entries({name: config[name] for name in changed if name in config})) for config in (one, other)]
         for key in {**flat[0], **flat[1]}:
             both = (flat[0].get(key), flat[1].get(key))
             if both[0] != both[1]:
-                found.setdefault(key, {}).setdefault(both, []).extend(pairs.tolist())
+                found.setdefault(key, {}).setdefault(both, []).extend(some.tolist())
     return found
 
 
-def _part(side: Side, place: int) -> Mapping[str, Any]:
-    config = simulated_part(side.measurements.configs[place][0])
+def _part(side: Measurements, place: int) -> Mapping[str, Any]:
+    config = simulated_part(side.configs[place][0])
     return {key: value for key, value in config.items() if key not in _OF_REPETITIONS}
 
 
-def _values(key: str, texts: Texts, matched: Matched, name: str = "") -> list[Value]:
+def _values(key: str, texts: Texts, pairs: Pairs, name: str = "") -> list[Value]:
     values = []
-    for (of_a, of_b), pairs in texts.items():
-        everywhere = len(pairs) == len(matched.labels)
-        more = f" and {len(pairs) - 1} more" if len(pairs) > 1 else ""
-        where = "" if everywhere else label_text(matched.labels[min(pairs)]) + more
+    for (of_a, of_b), some in texts.items():
+        more = f" and {len(some) - 1} more" if len(some) > 1 else ""
+        where = "" if len(some) == len(pairs) else label_text(pairs.labels[min(some)]) + more
         values.append(Value(name or key, ABSENT if of_a is None else of_a, ABSENT if of_b is None else of_b, where))
     return values
 

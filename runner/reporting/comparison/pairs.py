@@ -1,60 +1,98 @@
-"""Paired comparison of cells on common seeds, and of the levels of one sweep axis."""
+"""Paired comparison of cells on common seeds: cells of two sweeps or runs, or two levels of a sweep axis."""
 
-from collections.abc import Mapping, Sequence
+import contextlib
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+import yaml
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import RunnerError, nearest
-from runner.reporting.answers import Asked
+from runner.base.errors import RunnerError
 from runner.statistics import Comparison, subtract
-from runner.sweeps.measurements import Axis, Measurements, check_metrics
+from runner.sweeps.differing import value_text
+from runner.sweeps.measurements import Axis, Measurements, find_axis
 
 SEED = "seed"
 """The axis whose levels are draws of one thing, as repetitions are."""
 MOST_PAIRS = 1_000
-"""Of more draws so many are taken at random: a million means of two are sorted in a tenth of a second."""
+"""Most draws in a comparison. A random selection replaces more: a million means of two are sorted in 0.1 s."""
 Cells = NDArray[np.intp]
+Label = Mapping[str, str]
+
+_NAMED = 6  # values of a key that a message names
 
 
-@dataclass(frozen=True)
-class CellPairs:
-    """Cells that are compared pair by pair: the same place in both arrays.
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Cells of two sweeps, or of one sweep, that are compared pair by pair.
 
     Attributes:
-        a: Numbers of the first cells, shape (n,).
-        b: Numbers of the second ones, likewise; of the same sweep or of another one.
+        a: The first sweep.
+        b: The second sweep, or the first one again.
+        of_a: Cells of the first sweep, shape (n,).
+        of_b: Their partners in the second sweep, shape (n,).
+        first: Name of the first sweep or level.
+        second: Name of the second sweep or level.
+        at: Values that all pairs share: the levels that two levels are compared within, or the label of one cell.
+        keys: Keys by which the cells of two sweeps are matched.
+        labels: Value of each key in each pair, such as {"robot": "macro"}.
+        other_seeds: Number of matched cells that are left out because their seeds differ.
+        alone: Labels of the cells without a partner, of the first and of the second sweep.
     """
 
-    a: Cells
-    b: Cells
+    a: Measurements
+    b: Measurements
+    of_a: Cells
+    of_b: Cells
+    first: str
+    second: str
+    at: Label
+    keys: Sequence[str] = ()
+    labels: Sequence[Label] = ()
+    other_seeds: int = 0
+    alone: tuple[Sequence[Label], Sequence[Label]] = ((), ())
+
+    def __len__(self) -> int:
+        """Return the number of pairs."""
+        return len(self.of_a)
+
+    @property
+    def share_seeds(self) -> NDArray[np.bool_]:
+        """Whether both cells of each pair have the same random draws in each repetition, shape (n,)."""
+        if self.a is self.b and not len(self.a.seeds):
+            return np.ones(len(self), dtype=bool)
+        same: NDArray[np.bool_] = np.asarray(self.a.seeds)[self.of_a] == np.asarray(self.b.seeds)[self.of_b]
+        return same
+
+    def each(self) -> "Iterator[Pairs]":
+        """Yield each pair by itself."""
+        for place, label in enumerate(self.labels):
+            one = slice(place, place + 1)
+            yield replace(self, of_a=self.of_a[one], of_b=self.of_b[one], at=label, labels=[label])
 
 
-def share_seeds(a: Measurements, b: Measurements, pairs: CellPairs) -> NDArray[np.bool_]:
-    """Return for each pair whether both cells have the same random draws in each repetition, shape (n,)."""
-    if a is b and not len(a.seeds):
-        return np.ones(len(pairs.a), dtype=bool)
-    same: NDArray[np.bool_] = np.asarray(a.seeds)[pairs.a] == np.asarray(b.seeds)[pairs.b]
-    return same
+def label_text(label: Label) -> str:
+    """Return the name of a cell, such as "robot=macro, controller.period=0.01"."""
+    return ", ".join(f"{key}={value}" for key, value in label.items()) or "the only cell"
 
 
-def compare(a: Measurements, b: Measurements, metric: str, pairs: CellPairs) -> Comparison | None:
-    """Return how the second cells differ from the first in a metric; None where no repetition is in both.
+def compare(pairs: Pairs, metric: str) -> Comparison | None:
+    """Return how the second cells differ from the first in a metric; None if no repetition is in both.
 
     Each draw, that is a repetition of a seed, counts once, with the mean over the pairs of cells: cells of one seed
-    share its draws, so that they are no further evidence. Where repetitions are copies of each other, as nothing is
-    drawn, the first one counts alone. Of more than MOST_PAIRS draws so many are taken, always the same.
+    share its draws, so they are not further evidence. If repetitions are copies of each other because nothing is
+    drawn, only the first one counts. Of more than MOST_PAIRS draws the same random selection is always taken.
 
     Args:
-        a: The first sweep.
-        b: The second sweep, or the same again.
-        metric: Name of a metric of both.
         pairs: The cells.
+        metric: Name of a metric of both sweeps.
     """
-    copies = bool(a.copies[pairs.a].all() and b.copies[pairs.b].all())
-    first, second, draws = _entries(a, b, a.values, b.values, metric, pairs, 1 if copies else None)
+    a, b = pairs.a, pairs.b
+    copies = bool(a.copies[pairs.of_a].all() and b.copies[pairs.of_b].all())
+    first, second, draws = _entries(pairs, a.values[metric], b.values[metric], 1 if copies else None)
     both = ~np.isnan(first) & ~np.isnan(second)
     if not both.any():
         return None
@@ -65,18 +103,18 @@ def compare(a: Measurements, b: Measurements, metric: str, pairs: CellPairs) -> 
     else:
         chosen = np.arange(len(kept))
     one, other, by_draw = (_mean_by(draw, values)[chosen] for values in (first[both], second[both], differences))
-    found = Comparison(one, other, by_draw)
-    return replace(found, error=_error(a, b, metric, pairs)) if metric in a.finer and metric in b.finer else found
+    return Comparison(one, other, by_draw, _error(pairs, metric) if metric in a.finer and metric in b.finer else None)
 
 
-def _error(a: Measurements, b: Measurements, metric: str, pairs: CellPairs) -> float | None:
+def _error(pairs: Pairs, metric: str) -> float | None:
     """Return by how much a finer step of the plant changes a difference in the median draw; None if not known."""
+    a, b = pairs.a, pairs.b
     width = min(a.finer[metric].shape[1], b.finer[metric].shape[1])
-    first, second, draws = _entries(a, b, a.values, b.values, metric, pairs, width)
-    finer_first, finer_second, _ = _entries(a, b, a.finer, b.finer, metric, pairs, width)
+    first, second, draws = _entries(pairs, a.values[metric], b.values[metric], width)
+    finer_first, finer_second, _ = _entries(pairs, a.finer[metric], b.finer[metric], width)
     here = ~np.isnan(first) & ~np.isnan(second)
     known = ~np.isnan(finer_first) & ~np.isnan(finer_second)
-    whole = here & ~np.isin(draws, draws[here & ~known])  # draws of which every pair is known
+    whole = here & ~np.isin(draws, draws[here & ~known])  # draws whose pairs are all known
     if not whole.any():
         return None
     draw = np.unique(draws[whole], return_inverse=True)[1]
@@ -86,23 +124,15 @@ def _error(a: Measurements, b: Measurements, metric: str, pairs: CellPairs) -> f
 
 
 def _entries(
-    a: Measurements,
-    b: Measurements,
-    of_a: Mapping[str, FloatArray],
-    of_b: Mapping[str, FloatArray],
-    metric: str,
-    pairs: CellPairs,
-    most: int | None,
+    pairs: Pairs, of_a: FloatArray, of_b: FloatArray, most: int | None
 ) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
     """Return a metric in the first and the second cell of each pair, and the draw behind both, by repetition."""
-    width = min(of_a[metric].shape[1], of_b[metric].shape[1])
-    shown = slice(width if most is None else min(width, most))
-    first, second = of_a[metric][pairs.a, shown], of_b[metric][pairs.b, shown]
-    return first.ravel(), second.ravel(), a.draws[pairs.a, shown].ravel()
+    shown = slice(min(of_a.shape[1], of_b.shape[1])) if most is None else slice(min(of_a.shape[1], of_b.shape[1], most))
+    return of_a[pairs.of_a, shown].ravel(), of_b[pairs.of_b, shown].ravel(), pairs.a.draws[pairs.of_a, shown].ravel()
 
 
 def _mean_by(group: NDArray[np.intp], values: FloatArray) -> FloatArray:
-    """Return the mean of the values of each group; infinite where more of them are so on one side than on the other."""
+    """Return the mean of the values of each group; infinite if more of them are +inf than -inf, or the reverse."""
     finite = np.isfinite(values)
     beyond = np.bincount(group, np.where(finite, 0.0, np.sign(values)))
     sums = np.bincount(group, np.where(finite, values, 0.0))
@@ -111,127 +141,163 @@ def _mean_by(group: NDArray[np.intp], values: FloatArray) -> FloatArray:
     return means
 
 
-@dataclass(frozen=True)
-class LevelPair:
-    """Two levels of an axis where all else that was swept is the same.
+def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | None = None) -> list[Pairs]:
+    """Return the pairs of cells of each level of an axis and its first level; none if no two cells share seeds.
 
-    Attributes:
-        at: Level of each axis that the two are compared within, as text.
-        first: The first level, as text.
-        second: The second one.
-        cells: The cells of both, pair by pair.
-    """
-
-    at: Mapping[str, str]
-    first: str
-    second: str
-    cells: CellPairs
-
-
-@dataclass(frozen=True, eq=False)
-class LevelComparison(Asked):
-    """How one level of an axis differs from another one in one metric.
-
-    Attributes:
-        axis: Name of the axis.
-        pair: The two levels, what they are compared within, and their cells.
-    """
-
-    axis: str
-    pair: LevelPair
-
-
-def levels(
-    measurements: Measurements, axis: str, within: Sequence[str] | None = None, metrics: Sequence[str] = ()
-) -> list[LevelComparison]:
-    """Compare the levels of one axis of a sweep: each with the first one, in every metric.
-
-    The first level is the smallest number, or the text that the sweep names first.
-
-    Args:
-        measurements: The sweep.
-        axis: The axis, such as "controller".
-        within: Axes within each combination of whose levels the comparison is made; None for over all others, and then
-            within all of them but the seed. Cells of the remaining axes are pooled: the two cells of a pair have the
-            same levels of all other axes and the same seed, and the pairs of one draw count once.
-        metrics: Names of metrics; empty for all.
-
-    Raises:
-        RunnerError: If the sweep has no such axis or metric, or no two cells share their seeds.
-    """
-    check_metrics(metrics, measurements.values)
-    pairs = level_pairs(measurements, axis, within)
-    if within is None and any(pair.at for pair in pairs):
-        pairs = [*level_pairs(measurements, axis, ()), *pairs]
-    if not pairs:
-        raise RunnerError(
-            f"{axis}: no two cells differ in it alone and share their seed, so none are compared in pairs; sweep it "
-            "with one seed, or over the same seeds for each value"
-        )
-    found = []
-    for name in dict.fromkeys(metrics or measurements.values):
-        compared = [(pair, compare(measurements, measurements, name, pair.cells)) for pair in pairs]
-        unit = measurements.units[name]
-        found += [LevelComparison(name, unit, result, axis, pair) for pair, result in compared if result is not None]
-    return found
-
-
-def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | None = None) -> list[LevelPair]:
-    """Return pairs of levels of an axis without comparing them; none where no two share seeds.
+    The first level is the smallest number, or the text that the sweep names first. The two cells of a pair have the
+    same levels of all other axes and the same seed.
 
     Args:
         measurements: The sweep.
         axis: The axis.
-        within: Axes within each combination of whose levels they stand; None for all others but the seed.
+        within: Axes that are held: levels are compared within each combination of their levels. None holds all
+            others but the seed.
 
     Raises:
         RunnerError: If the sweep has no such axis.
     """
-    chosen = _named(measurements, axis)
+    chosen = find_axis(measurements.axes, axis)
     others = [other for other in measurements.axes if other is not chosen]
     inner = [other.name for other in others if other.name != SEED] if within is None else within
-    shown = [_named(measurements, name) for name in inner]
+    shown = [find_axis(measurements.axes, name) for name in inner]
     if chosen in shown:
         raise RunnerError(f"{axis}: is compared, so it cannot be compared within, too")
-    groups: dict[tuple[int, ...], list[int]] = {}
-    for cell, at in enumerate(_levels_of(shown, np.arange(len(measurements.hashes)))):
-        groups.setdefault(at, []).append(cell)
-    pooled = [other for other in others if other not in shown]
-    seeds = np.asarray(measurements.seeds).tolist()
-    texts = [chosen.text(level) for level in range(len(chosen.values))]
+    pooled = _rows([other for other in others if other not in shown], measurements)
+    cells: dict[tuple[int, ...], dict[int, dict[tuple[int, ...], int]]] = {}
+    for cell, (at, level, rest) in enumerate(
+        zip(_rows(shown, measurements), chosen.level.tolist(), pooled, strict=True)
+    ):
+        cells.setdefault(at, {}).setdefault(level, {})[rest] = cell
     found = []
-    for at, cells in sorted(groups.items()):
+    for at, levels in sorted(cells.items()):
         names = {other.name: other.text(level) for other, level in zip(shown, at, strict=True)}
-        for first, second, pairs in _against_first(chosen, pooled, np.array(cells)):
-            kept = [pair for pair in pairs if not seeds or seeds[pair[0]] == seeds[pair[1]]]
-            if kept:
-                a, b = np.array(kept).T
-                found.append(LevelPair(names, texts[first], texts[second], CellPairs(a, b)))
+        first, *rests = sorted(levels)
+        for level in rests:
+            both = [(levels[first][rest], cell) for rest, cell in levels[level].items() if rest in levels[first]]
+            a, b = np.array(both, dtype=np.intp).reshape(-1, 2).T
+            pairs = Pairs(measurements, measurements, a, b, chosen.text(first), chosen.text(level), names)
+            kept = pairs.share_seeds
+            if kept.any():
+                found.append(replace(pairs, of_a=a[kept], of_b=b[kept]))
     return found
 
 
-def _against_first(axis: Axis, pooled: Sequence[Axis], cells: Cells) -> list[tuple[int, int, list[tuple[int, int]]]]:
-    """Return the levels of an axis among some cells, each with the first, and their cells that have equal others."""
-    at_level: dict[int, dict[tuple[int, ...], int]] = {}
-    for cell, level, place in zip(cells.tolist(), axis.level[cells].tolist(), _levels_of(pooled, cells), strict=True):
-        at_level.setdefault(level, {})[place] = cell
-    first, *rest = sorted(at_level)
-    of_first = at_level[first]
-    found = []
-    for level in rest:
-        pairs = [(of_first[place], cell) for place, cell in at_level[level].items() if place in of_first]
-        found.append((first, level, pairs))
+def _rows(axes: Sequence[Axis], measurements: Measurements) -> list[tuple[int, ...]]:
+    """Return the levels of each cell on some axes."""
+    levels = np.stack([axis.level for axis in axes] or [np.zeros(len(measurements.hashes), dtype=np.intp)], axis=1)
+    return list(map(tuple, levels[:, : len(axes)].tolist()))
+
+
+def match(a: Measurements, b: Measurements) -> Pairs:
+    """Match the cells of two sweeps by the values of all keys that either of them sweeps, whatever their order.
+
+    A dotted key is matched by its resolved value, so one sweep may fix it or leave it at its default. A group, such as
+    `robot`, is matched by its option if both sweeps name one, and else by the name or kind in its config. Two runs are
+    the two cells of a pair.
+
+    Raises:
+        RunnerError: If no cell is in both.
+    """
+    keys = list(dict.fromkeys(axis.name for side in (a, b) for axis in side.axes))
+    texts = {key: _values(key, a, b) for key in keys}
+    places = [_places([texts[key][side] for key in keys], len(one.hashes)) for side, one in enumerate((a, b))]
+    both = [place for place in places[0] if place in places[1]]
+    if not both:
+        raise RunnerError(_explain_no_match(a, b, texts))
+
+    def label(place: Sequence[object]) -> Label:
+        return dict(zip(keys, map(str, place), strict=False))  # the last entry counts equal cells
+
+    alone = [[label(place) for place in some if place not in other] for some, other in (places, places[::-1])]
+    of_a, of_b = (np.array([some[place] for place in both]) for some in places)
+    return Pairs(a, b, of_a, of_b, a.name, b.name, {}, keys, list(map(label, both)), 0, (alone[0], alone[1]))
+
+
+def keep_common_seeds(pairs: Pairs) -> Pairs:
+    """Return the matched cells that have the same seed in both sweeps.
+
+    Raises:
+        RunnerError: If there are none.
+    """
+    shared = pairs.share_seeds
+    if not shared.any():
+        raise RunnerError(
+            f"{pairs.first} and {pairs.second} have {len(pairs)} cells in common, but no seed: they share no noise, so "
+            "they are not compared in pairs; make one of them again with the other's seed, as in seed=0"
+        )
+    labels = [label for label, same in zip(pairs.labels, shared.tolist(), strict=True) if same]
+    others = int((~shared).sum())
+    return replace(pairs, of_a=pairs.of_a[shared], of_b=pairs.of_b[shared], labels=labels, other_seeds=others)
+
+
+def _places(columns: Sequence[Sequence[str]], cells: int) -> dict[tuple[object, ...], int]:
+    """Return the cell at each combination of values; a count behind the values tells equal cells apart."""
+    found: dict[tuple[object, ...], int] = {}
+    again: dict[tuple[object, ...], int] = {}
+    for cell, row in enumerate(zip(*columns, strict=True) if columns else [()] * cells):
+        again[row] = again.get(row, -1) + 1
+        found[(*row, again[row])] = cell
     return found
 
 
-def _levels_of(axes: Sequence[Axis], cells: Cells) -> list[tuple[int, ...]]:
-    """Return the levels of some cells on some axes, a tuple for each cell."""
-    return list(zip(*(axis.level[cells].tolist() for axis in axes), strict=True)) if axes else [()] * len(cells)
+def _values(key: str, a: Measurements, b: Measurements) -> tuple[Sequence[str], Sequence[str]]:
+    """Return the values of a key in the cells of two sweeps, written alike."""
+    if key == SEED:
+        return [str(seed) for seed in np.asarray(a.seeds).tolist()], [
+            str(seed) for seed in np.asarray(b.seeds).tolist()
+        ]
+    resolved = [side.resolved(key) for side in (a, b)]
+    first, second = _typed(key, a), _typed(key, b)
+    known = all(value is not None and not isinstance(value, dict) for some in resolved for value in some)
+    if first is not None and second is not None and not known:
+        return first, second
+    of_a, of_b = ([_written(value) for value in some] for some in resolved)
+    return [of_a[place] for place in a.config_of_cells], [of_b[place] for place in b.config_of_cells]
 
 
-def _named(measurements: Measurements, name: str) -> Axis:
-    names = [axis.name for axis in measurements.axes]
-    if name not in names:
-        known = ", ".join(names) or "nothing"
-        raise RunnerError(f"the sweep has no axis '{name}'{nearest(name, names)}; it was swept over: {known}")
-    return measurements.axes[names.index(name)]
+def _typed(key: str, side: Measurements) -> Sequence[str] | None:
+    """Return the values of a key as overrides give them, cell by cell; None if they do not."""
+    for axis in side.axes:
+        if axis.name == key:
+            levels = [_canonical(str(value)) for value in axis.values]
+            return [levels[level] for level in axis.level.tolist()]
+    for text in side.fixed:
+        name, _, value = text.partition("=")
+        if name == key:
+            return [_canonical(value)] * len(side.hashes)
+    return None
+
+
+def _canonical(text: str) -> str:
+    """Return an override's value as a resolved one would be written."""
+    value: Any = text
+    with contextlib.suppress(yaml.YAMLError):
+        value = yaml.safe_load(text)
+    with contextlib.suppress(ValueError, TypeError):
+        value = float(text)
+    return value_text(value)
+
+
+def _written(value: Any) -> str:
+    """Return a resolved value as text; that of a group is its name or kind."""
+    return str((isinstance(value, dict) and (value.get("name") or value.get("kind"))) or value_text(value))
+
+
+def _explain_no_match(
+    a: Measurements, b: Measurements, texts: Mapping[str, tuple[Sequence[str], Sequence[str]]]
+) -> str:
+    apart = []
+    for key, both in texts.items():
+        of_a, of_b = (list(dict.fromkeys(some)) for some in both)
+        if not set(of_a) & set(of_b):
+            apart.append(f"{key} is {_some(of_a)} in {a.name} and {_some(of_b)} in {b.name}")
+    why = "; ".join(apart) or f"no combination of {', '.join(texts)} is in both"
+    return (
+        f"{a.name} ({a.folder}) and {b.name} ({b.folder}) share no cell: {why}; sweep both over the same values of "
+        "these, or compare the levels of one sweep: `runner compare SWEEP --by KEY`"
+    )
+
+
+def _some(values: Sequence[str]) -> str:
+    more = f" and {len(values) - _NAMED} more" if len(values) > _NAMED else ""
+    return ", ".join(values[:_NAMED]) + more

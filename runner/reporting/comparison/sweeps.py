@@ -1,41 +1,48 @@
-"""Comparison of two sweeps by cell and repetition."""
+"""Comparison of two sweeps or runs by cell and repetition, and of the levels of one sweep axis."""
 
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
-from runner.reporting.answers import Asked
-from runner.reporting.comparison.cells import Matched, match
-from runner.reporting.comparison.differences import Beyond, find_differences
-from runner.reporting.comparison.operand import Side
-from runner.reporting.comparison.pairs import CellPairs, compare
-from runner.sweeps.measurements import check_metrics, is_part
+from runner.reporting.answers import Answer, Asked, ask, judge
+from runner.reporting.comparison.differences import ConfigDifferences, find_differences
+from runner.reporting.comparison.pairs import Label, Pairs, keep_common_seeds, label_text, level_pairs, match
+from runner.reporting.sweep.subject import first_screen, whole_metrics
+from runner.store import is_sweep, open_run, open_sweep
+from runner.sweeps.measurements import (
+    Measurements,
+    check_metrics,
+    is_part,
+    measure_run,
+    measure_stored,
+    stored_part,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 MOST_MOVEMENTS = 12
 """Cells with the largest differences that are named."""
 
-_MOST_OF_ONE = 3  # of them in one metric
+NOISE_ALONE = (
+    "Repetitions differ in their noise draws alone (mismatch.spread is 0): the intervals tell what other draws would "
+    "do, not what another arm or another error of the model would."
+)
 
+POOLED = (
+    "Over all cells each draw counts once, by the mean of its cells. If the difference is above zero in some cells and "
+    "below in others, that number describes none of them."
+)
 
-@dataclass(frozen=True, eq=False)
-class MetricComparison(Asked):
-    """How the second sweep differs from the first in one metric.
-
-    Attributes:
-        below: Number of cells in which the median of the differences is below zero.
-        above: Number of cells in which it is above zero.
-        cell: Label of the cell, where it is of one; empty over all cells.
-    """
-
-    below: int
-    above: int
-    cell: Mapping[str, str] = field(default_factory=dict)
+_MOST_OF_ONE = 3  # cells with the largest differences in the same metric
+_NAMED = 3  # cells without a partner that are named
 
 
 @dataclass(frozen=True)
@@ -43,28 +50,75 @@ class SweepComparison:
     """How the second of two sweeps differs from the first.
 
     Attributes:
-        a: The first.
-        b: The second.
-        matched: Which cells belong together.
-        beyond: What differs between these.
-        pooled: Each metric over all cells.
-        cells: The cells with the largest differences in a metric, in relation to its size; the largest first.
-        candidates: How many cells and metrics these were chosen from.
-        noise_alone: Whether repetitions differ in their noise alone, as mismatch.spread is 0 in both.
+        pairs: Cells that are compared.
+        differences: Config values that differ between these.
+        answers: Each metric over all cells.
+        cells: The cells with the largest differences in a metric, relative to its size; the largest first.
+        candidates: Number of cells and metrics that these were chosen from.
     """
 
-    a: Side
-    b: Side
-    matched: Matched
-    beyond: Beyond
-    pooled: Sequence[MetricComparison]
-    cells: Sequence[MetricComparison]
+    pairs: Pairs
+    differences: ConfigDifferences
+    answers: Sequence[Answer]
+    cells: Sequence[Asked]
     candidates: int
-    noise_alone: bool
+
+    @property
+    def headlines(self) -> list[Answer]:
+        """The answers of the first screen, that in the primary metric first."""
+        return sorted((answer for answer in self.answers if answer.rank < 2), key=lambda answer: answer.rank)
+
+    @property
+    def noise_alone(self) -> bool:
+        """Whether repetitions differ in their noise alone, as mismatch.spread is 0 in both."""
+        a, b = self.pairs.a, self.pairs.b
+        return min(a.repetitions, b.repetitions) > 1 and noise_alone(config for config, _ in (*a.configs, *b.configs))
+
+    def cells_told(self) -> Iterator[str]:
+        """Yield which cells are compared, and which are not and why."""
+        pairs = self.pairs
+        by = f", matched by {', '.join(pairs.keys)}" if pairs.keys else ""
+        repetitions = min(side.repetitions for side in (pairs.a, pairs.b))
+        both = format_count(len(pairs), "cell is", "cells are")
+        yield f"{both} in both{by}; up to {repetitions} repetitions of each are compared"
+        if pairs.other_seeds:
+            more = format_count(pairs.other_seeds, "more cell is", "more cells are")
+            yield f"{more} in both with different seeds, and not compared"
+        for side, alone in zip((pairs.a, pairs.b), pairs.alone, strict=True):
+            if alone:
+                yield f"{format_count(len(alone), 'cell is', 'cells are')} in {side.name} alone: {_some(alone)}"
+            if side.missing:
+                left = format_count(side.missing, "cell", "cells")
+                yield f"{left} of {side.name} not stored; continue with: {side.command}"
+            if side.failed:
+                failed = format_count(side.failed, "cell", "cells")
+                yield f"{failed} of {side.name} failed; a failed repetition counts as beyond every number"
 
 
-def compare_sweeps(a: Side, b: Side, metrics: Sequence[str] = ()) -> SweepComparison:
-    """Compare two sweeps in the cells and repetitions that both have.
+def open_compared(folders: Sequence[Path]) -> list[Measurements]:
+    """Read the runs or sweeps of a comparison, named A, B and so on.
+
+    What a finer step of the plant changes in them is worked out first, if it is not stored.
+
+    Raises:
+        StoreError: If one cannot be read, or no cell of it is stored.
+    """
+    from runner.sweeps.finer_step import work_out, work_out_sweep
+
+    sides = []
+    for place, folder in enumerate(folders):
+        if is_sweep(folder):
+            work_out_sweep(stored_part(open_sweep(folder))[0])
+            sides.append(measure_stored(folder, letter(place)))
+        else:
+            run = open_run(folder)
+            work_out(run.folder.parent.parent, [run])
+            sides.append(measure_run(run, letter(place)))
+    return sides
+
+
+def compare_sweeps(a: Measurements, b: Measurements, metrics: Sequence[str] = ()) -> SweepComparison:
+    """Compare two sweeps, or two runs, in the cells and repetitions that both have.
 
     Args:
         a: The first, which the second is compared with.
@@ -74,82 +128,148 @@ def compare_sweeps(a: Side, b: Side, metrics: Sequence[str] = ()) -> SweepCompar
     Raises:
         RunnerError: If they share no cell, no seed or no metric, or have no such metric.
     """
-    matched = match(a, b)
-    both = [name for name in a.measurements.values if name in b.measurements.values]
+    pairs = keep_common_seeds(match(a, b))
+    both = [name for name in a.values if name in b.values]
     if not both:
         raise RunnerError(f"{a.name} and {b.name} have no metric in common: all runs of one of them failed")
     check_metrics(metrics, both)
     names = list(dict.fromkeys(metrics)) or both
-    pooled = [found for name in names if (found := _compared(a, b, name, matched.pairs, {})) is not None]
-    whole = list(metrics) or [name for name in names if not is_part(name)]
-    cells, candidates = _movements(a, b, whole, matched)
-    configs = [config for side in (a, b) for config, _ in side.measurements.configs]
-    repeated = min(a.measurements.repetitions, b.measurements.repetitions) > 1
-    alone = repeated and noise_alone(configs)
-    return SweepComparison(a, b, matched, find_differences(a, b, matched), pooled, cells, candidates, alone)
+    cells, candidates = _movements(pairs, list(metrics) or [name for name in names if not is_part(name)])
+    return SweepComparison(pairs, find_differences(pairs), answer([pairs], names, metrics), cells, candidates)
 
 
-def by_cell(found: SweepComparison, metric: str) -> list[MetricComparison]:
-    """Return a metric cell by cell, of those cells that have it."""
-    matched = found.matched
-    compared = (
-        _compared(found.a, found.b, metric, CellPairs(a[None], b[None]), label)
-        for a, b, label in zip(matched.pairs.a, matched.pairs.b, matched.labels, strict=True)
-    )
-    return [one for one in compared if one is not None]
+def compare_levels(
+    measurements: Measurements, axis: str, within: Sequence[str] | None = None, metrics: Sequence[str] = ()
+) -> list[Answer]:
+    """Compare the levels of one axis of a sweep: each with the first one, in every metric.
+
+    Args:
+        measurements: The sweep.
+        axis: The axis, such as "controller".
+        within: Axes within each combination of whose levels the comparison is made; None for over all others, and then
+            within all of them but the seed. Cells of the remaining axes are pooled; see `level_pairs`.
+        metrics: Names of metrics; empty for all.
+
+    Raises:
+        RunnerError: If the sweep has no such axis or metric, or no two cells share their seeds.
+    """
+    check_metrics(metrics, measurements.values)
+    pairs = level_pairs(measurements, axis, within)
+    if within is None and any(pair.at for pair in pairs):
+        pairs = [*level_pairs(measurements, axis, ()), *pairs]
+    if not pairs:
+        raise RunnerError(
+            f"{axis}: no two cells differ in it alone and share their seed, so none are compared in pairs; sweep it "
+            "with one seed, or over the same seeds for each value"
+        )
+    return answer(pairs, list(dict.fromkeys(metrics or measurements.values)), metrics)
 
 
-def _compared(a: Side, b: Side, name: str, pairs: CellPairs, cell: Mapping[str, str]) -> MetricComparison | None:
-    comparison = compare(a.measurements, b.measurements, name, pairs)
-    if comparison is None:
-        return None
-    moved = _median_differences(a.measurements.values[name], b.measurements.values[name], pairs)
-    below, above = int(np.sum(moved < -ROUNDING)), int(np.sum(moved > ROUNDING))
-    return MetricComparison(name, a.measurements.units[name], comparison, below, above, cell)
+def answer(pairs: Sequence[Pairs], names: Sequence[str], wanted: Sequence[str] = ()) -> list[Answer]:
+    """Return the answers to one question, metric by metric.
+
+    Args:
+        pairs: What is compared.
+        names: Metrics that are compared.
+        wanted: Metrics that somebody named, in order; empty to choose those of the first screen.
+    """
+    asked = ask(pairs, names)
+    known = {one.metric: None for one in asked}
+    return judge(asked, first_screen([name for name in wanted if name in known] or whole_metrics(known)))
 
 
-def _movements(a: Side, b: Side, names: Sequence[str], matched: Matched) -> tuple[list[MetricComparison], int]:
-    """Return the cells with the largest differences, and of how many in all metrics; none where only one cell is."""
-    count = len(matched.labels)
-    if count < 2:
+def answer_rows(answers: Sequence[Answer]) -> list[dict[str, Any]]:
+    """Return a row for each answer: axes that are held ("all" for none), names, metric, numbers and verdict."""
+    held = {name: "all" for one in answers for name in one.at}
+    rows = []
+    for one in answers:
+        (first, second), (low, high) = one.names, one.interval or (None, None)
+        found = one.comparison
+        rows.append({
+            **held, **one.at, "first": first, "second": second, "metric": one.metric, "unit": one.unit,
+            "difference": found.difference, "low": low, "high": high, "n": found.n, "effect": found.effect,
+            "p": one.p_value, "word": one.word,
+        })  # fmt: skip
+    return rows
+
+
+def answer_frame(answers: Sequence[Answer]) -> "pd.DataFrame":
+    """Return the rows of `answer_rows` as a table."""
+    import pandas as pd
+
+    return pd.DataFrame(answer_rows(answers)).astype({"low": float, "high": float, "p": float})
+
+
+def counts_by_sign(one: Asked) -> tuple[int, int]:
+    """Return the number of cells in which the median of the differences is below zero, and above zero."""
+    if one.pairs is None:
+        return 0, 0
+    moved = _median_differences(one.pairs, one.metric)
+    return int(np.sum(moved < -ROUNDING)), int(np.sum(moved > ROUNDING))
+
+
+def noise_alone(configs: Iterable[Mapping[str, Any]]) -> bool:
+    """Return whether the repetitions of runs draw nothing but noise: nothing of the arm is drawn from the seed."""
+    mismatches = [config.get("mismatch", {}) for config in configs]
+    return all(not mismatch.get("spread") and "kind" not in mismatch for mismatch in mismatches)
+
+
+def letter(place: int) -> str:
+    """Return the name of one of several folders: A, B, ..., Z, then its number."""
+    return chr(ord("A") + place) if place < 26 else str(place + 1)
+
+
+def format_count(count: int, one: str, many: str) -> str:
+    """Return a number with what is counted, such as "1 cell is" or "2 cells are"."""
+    return f"{count} {one if count == 1 else many}"
+
+
+def size_told(side: Measurements) -> str:
+    """Return how many cells a sweep has, and repetitions in each."""
+    failed = f", {side.failed} of them failed" if side.failed else ""
+    return f"{format_count(len(side.hashes), 'cell', 'cells')}{failed}; repetitions in each: {side.repetitions}"
+
+
+def _some(labels: Sequence[Label]) -> str:
+    more = f"; and {len(labels) - _NAMED} more" if len(labels) > _NAMED else ""
+    return "; ".join(map(label_text, labels[:_NAMED])) + more
+
+
+def _movements(pairs: Pairs, names: Sequence[str]) -> tuple[list[Asked], int]:
+    """Return the cells with the largest differences, and of how many in all metrics; none for a single cell."""
+    if len(pairs) < 2:
         return [], 0
-    sizes = [_relative(a.measurements.values[name], b.measurements.values[name], matched.pairs) for name in names]
+    sizes = [_relative(pairs, name) for name in names]
     moved = np.nan_to_num(np.array(sizes), nan=0.0, posinf=np.inf)
-    found: list[MetricComparison] = []
+    cells = list(pairs.each())
+    found: list[Asked] = []
     for place in np.argsort(-moved, axis=None, kind="stable").tolist():
-        metric, pair = divmod(place, count)
-        if len(found) == MOST_MOVEMENTS or not moved[metric, pair]:
+        metric, cell = divmod(place, len(pairs))
+        if len(found) == MOST_MOVEMENTS or not moved[metric, cell]:
             break
-        if sum(one.metric == names[metric] for one in found) == _MOST_OF_ONE:
-            continue
-        pairs = CellPairs(matched.pairs.a[pair : pair + 1], matched.pairs.b[pair : pair + 1])
-        one = _compared(a, b, names[metric], pairs, matched.labels[pair])
-        found += [] if one is None else [one]
+        if sum(one.metric == names[metric] for one in found) < _MOST_OF_ONE:
+            found += ask([cells[cell]], [names[metric]])
     return found, int(np.sum(~np.isnan(sizes)))
 
 
-def _relative(a: FloatArray, b: FloatArray, pairs: CellPairs) -> FloatArray:
+def _relative(pairs: Pairs, metric: str) -> FloatArray:
     """Return how far the median of each pair's differences is from zero, over the larger median; NaN without values."""
-    moved = np.abs(_median_differences(a, b, pairs))
+    a, b = pairs.a.values[metric][pairs.of_a], pairs.b.values[metric][pairs.of_b]
+    moved = np.abs(_median_differences(pairs, metric))
     with np.errstate(invalid="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of cells without values
-        largest = np.fmax(*(np.abs(np.nanmedian(some, axis=1)) for some in (a[pairs.a], b[pairs.b])))
+        largest = np.fmax(*(np.abs(np.nanmedian(some, axis=1)) for some in (a, b)))
     known = np.isfinite(largest) & (largest > ROUNDING)
     sizes = np.where(moved > ROUNDING, np.where(known, moved / np.where(known, largest, 1.0), np.inf), 0.0)
     return np.where(np.isnan(moved), np.nan, sizes)
 
 
-def _median_differences(a: FloatArray, b: FloatArray, pairs: CellPairs) -> FloatArray:
-    """Return the median of the differences of each pair of cells, shape (n,); NaN where no repetition is in both."""
+def _median_differences(pairs: Pairs, metric: str) -> FloatArray:
+    """Return the median of the differences of each pair of cells, shape (n,); NaN if no repetition is in both."""
+    a, b = pairs.a.values[metric], pairs.b.values[metric]
     width = min(a.shape[1], b.shape[1])
-    first, second = a[pairs.a, :width], b[pairs.b, :width]
+    first, second = a[pairs.of_a, :width], b[pairs.of_b, :width]
     with np.errstate(invalid="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         found: FloatArray = np.nanmedian(np.where(first == second, 0.0, second - first), axis=1)
     return found
-
-
-def noise_alone(configs: Iterable[Mapping[str, Any]]) -> bool:
-    """Tell whether the repetitions of runs draw nothing but noise: nothing of the arm is drawn from the seed."""
-    mismatches = [config.get("mismatch", {}) for config in configs]
-    return all(not mismatch.get("spread") and "kind" not in mismatch for mismatch in mismatches)

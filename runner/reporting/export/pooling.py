@@ -7,9 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import RunnerError, nearest
-from runner.reporting.sweep.subject import value_names
-from runner.sweeps.measurements import Axis, Measurements
+from runner.base.errors import RunnerError
+from runner.sweeps.measurements import Axis, Measurements, find_axis
 
 SEED = "seed"
 
@@ -45,7 +44,7 @@ def pool(measurements: Measurements, by: Sequence[str] | None = None, where: Seq
     varying = [axis.name for axis in measurements.axes if len(np.unique(axis.level[kept])) > 1]
     names = [name for name in varying if name != SEED] if by is None else list(dict.fromkeys(by))
     for name in names:
-        _axis(axes, name, "--by")
+        find_axis(measurements.axes, name, "--by: ")
     _refuse_mixtures([name for name in varying if name not in names and name != SEED], names, axes, kept)
     levels = np.column_stack([axes[name].level[kept] for name in names] or [np.zeros((len(kept), 1), dtype=np.intp)])
     rows, row_of = np.unique(levels, axis=0, return_inverse=True)
@@ -78,35 +77,14 @@ def _failed(measurements: Measurements, cells: NDArray[np.intp]) -> int:
 
 def _limited(measurements: Measurements, where: Sequence[str]) -> NDArray[np.intp]:
     """Return the cells that have all these values."""
-    axes = {axis.name: axis for axis in measurements.axes}
     kept = np.ones(len(measurements.hashes), dtype=bool)
     for text in where:
-        name, equals, value = text.partition("=")
-        axis = _axis(axes, name, "--where")
-        names = value_names(axis)
-        level = next((level for level, known in enumerate(names) if _same(known, value)), None)
-        if not equals or level is None:
-            raise RunnerError(
-                f"--where {text}: {name} has no value '{value}'{nearest(value, names)}; allowed: {', '.join(names)}"
-            )
-        kept &= axis.level == level
+        name, _, value = text.partition("=")
+        axis = find_axis(measurements.axes, name, "--where: ")
+        kept &= axis.level == axis.find_level(value, f"--where {text}: ")
     if not kept.any():
         raise RunnerError(f"no cell of the sweep has {' and '.join(where)}")
     return np.flatnonzero(kept)
-
-
-def _same(known: str, value: str) -> bool:
-    try:
-        return float(known) == float(value)
-    except ValueError:
-        return known == value.strip("'\"")
-
-
-def _axis(axes: Mapping[str, Axis], name: str, option: str) -> Axis:
-    if name not in axes:
-        known = ", ".join(axes) or "none"
-        raise RunnerError(f"{option}: '{name}' was not swept{nearest(name, axes)}; swept were: {known}")
-    return axes[name]
 
 
 def _refuse_mixtures(

@@ -4,7 +4,7 @@ import math
 
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal, literals
-from runner.reporting.sweep.subject import Subject, key_label, shorten, value_names
+from runner.reporting.sweep.subject import Subject, key_label, shorten
 from runner.statistics import SMALLEST_SAMPLE
 
 _MOST_VALUES = 12
@@ -22,7 +22,7 @@ def section(subject: Subject, command: str) -> Section:
     measurements = subject.measurements
     rows = []
     for axis in subject.axes:
-        names = value_names(axis)
+        names = axis.texts
         shown = names if len(names) <= _MOST_VALUES else [*names[: _MOST_VALUES - 2], "...", names[-1]]
         rows.append([key_label(axis.name), str(len(names)), ", ".join(shown)])
     blocks: list[Block] = []

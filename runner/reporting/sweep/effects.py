@@ -11,7 +11,7 @@ from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, title
-from runner.reporting.sweep.subject import MOST_GROUPS, QUANTILE_RULE, Subject, key_label, spans_decades, value_names
+from runner.reporting.sweep.subject import MOST_GROUPS, QUANTILE_RULE, Subject, key_label, spans_decades
 from runner.statistics import PERMUTATIONS, EffectAnalysis
 from runner.sweeps.measurements import Axis
 
@@ -182,7 +182,7 @@ def places(axis: Axis) -> FloatArray:
 
 def axis_panel(title: str, axis: Axis, y_label: str, series: list[Series], y: FloatArray) -> Panel:
     """Return a panel over one axis of the sweep, logarithmic where its values, or the ordinates, span decades."""
-    names = value_names(axis) if axis.numbers is None else ()
+    names = axis.texts if axis.numbers is None else ()
     x_log = axis.numbers is not None and spans_decades(axis.numbers)
     edges = [edge for each in series for edge in (each.y, each.low, each.high) if edge is not None]
     drawn = np.concatenate([edge[np.isfinite(edge)] for edge in edges])

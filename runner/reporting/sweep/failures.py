@@ -1,8 +1,5 @@
 """Failed runs of a sweep, with axis values and reasons, and caveats of its cells."""
 
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -52,16 +49,11 @@ def caveats_section(subject: Subject) -> Section:
     measurements = subject.measurements
     cells = len(measurements.hashes)
     blocks: list[Block] = []
-    sprung: dict[str, list[tuple[int, Mapping[str, Any]]]] = {}
-    for cell, caveats in enumerate(measurements.caveats):
-        for caveat in caveats:
-            sprung.setdefault(str(caveat["rule"]), []).append((cell, caveat))
-    if sprung:
-        rows = []
-        for rule, found in sorted(sprung.items(), key=lambda item: -len(item[1])):
-            cell, worst = max(found, key=lambda entry: float(entry[1]["value"]))
-            where = subject.cell_name(cell) or "the only one"
-            rows.append(literals([rule, f"{len(found)} of {cells}", where, str(worst["text"])]))
+    rows = [
+        literals([rule, f"{count} of {cells}", subject.cell_name(cell) or "the only one", text])
+        for rule, count, cell, text in measurements.caveats_by_rule()
+    ]
+    if rows:
         caption = "Why results may not be what they seem: rules, cells with that caveat, and the worst of them."
         blocks.append(Table(caption, ["caveat", "cells", "worst cell", "what was found there"], rows, (1,)))
     if measurements.caveat_changes:

@@ -10,7 +10,7 @@ from runner.reporting import metric_titles
 from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Formula, Map, Maps, Section, Series, Text
 from runner.reporting.markup import literal
-from runner.reporting.sweep.subject import Subject, key_label, spans_decades, value_names
+from runner.reporting.sweep.subject import Subject, key_label, spans_decades
 from runner.sweeps.measurements import Axis
 
 POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
@@ -108,8 +108,8 @@ def _map(subject: Subject, of: Sequence[FloatArray], x: Axis, y: Axis, cells: Se
         title,
         key_label(x.name),
         key_label(y.name),
-        value_names(x),
-        value_names(y),
+        x.texts,
+        y.texts,
         values,
         failed,
         theory_lines(x, y),

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.quantities import quantity
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, judge
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, ask, judge
 from runner.reporting.charts.thinning import spaced_indices
-from runner.reporting.comparison.cells import label_text
-from runner.reporting.comparison.pairs import SEED, LevelPair, compare, level_pairs
+from runner.reporting.comparison.pairs import SEED, Pairs, label_text, level_pairs
 from runner.reporting.document import Block, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, title
@@ -27,15 +26,21 @@ class Question:
 
     Attributes:
         axis: The axis that is asked about.
-        within: The other axis at each of whose values it is asked again; empty where nothing else was swept.
-        overall: Each pair of values with its answers, over all else.
-        at: Each pair of values at one value of the other axis, likewise.
+        within: The other axis at each of whose values it is asked again; empty if nothing else was swept.
+        overall: Each pair of values, over all else.
+        at: Each pair of values at one value of the other axis.
+        answers: The answers for all of these pairs.
     """
 
     axis: str
     within: str
-    overall: Sequence[tuple[LevelPair, Sequence[Answer]]]
-    at: Sequence[tuple[LevelPair, Sequence[Answer]]]
+    overall: Sequence[Pairs]
+    at: Sequence[Pairs]
+    answers: Sequence[Answer]
+
+    def about(self, pairs: Pairs) -> list[Answer]:
+        """Return the answers for one pair of values."""
+        return [answer for answer in self.answers if answer.pairs is pairs]
 
 
 def find_question(subject: Subject) -> Question | None:
@@ -53,25 +58,20 @@ def find_question(subject: Subject) -> Question | None:
     overall = level_pairs(measurements, axis.name, ())
     within = max(others, key=lambda each: _spread(subject, each)).name if others else ""
     at = level_pairs(measurements, axis.name, [within]) if within else []
-    found = _answers(subject, [*overall, *at], metrics)
-
-    def of(pairs: Sequence[LevelPair]) -> list[tuple[LevelPair, Sequence[Answer]]]:
-        return [(pair, [answer for other, answer in found if other is pair]) for pair in pairs]
-
-    return Question(axis.name, within, of(overall), of(at)) if found else None
+    found = judge(ask([*overall, *at], metrics), metrics)
+    return Question(axis.name, within, overall, at, found) if found else None
 
 
 def sentences(question: Question, subject: Subject) -> list[str]:
     """Return the answers in words, with where values of the other axis tell more and what else may be the cause."""
     told = []
-    for pair, answers in question.overall[:_MOST_TOLD]:
-        for answer in answers:
-            told.append(answer.sentence(pair.first, pair.second, _at(question, pair, answer.metric)))
+    for pairs in question.overall[:_MOST_TOLD]:
+        told += [answer.sentence(_at(question, answer)) for answer in question.about(pairs)]
     left = len(question.overall) - _MOST_TOLD
     if left > 0:
         told.append(f"{left} more values of {question.axis} are in the tables of pairs.")
     along = [found.key for found in subject.measurements.differences if question.axis in found.axes]
-    if along and any(answer.sign for _, answers in (*question.overall, *question.at) for answer in answers):
+    if along and any(answer.sign for answer in question.answers):
         more = f" and {len(along) - _MOST_TOLD} more" if len(along) > _MOST_TOLD else ""
         named = f"{', '.join(along[:_MOST_TOLD])}{more}"
         told.append(f"With {question.axis} go {named}, which may be the cause: see Also differs.")
@@ -83,8 +83,8 @@ def in_short(subject: Subject) -> str:
     few = too_few(subject)
     question = None if few else find_question(subject)
     if question is not None and len(question.overall) == 1:
-        ((pair, answers),) = question.overall
-        return answers[0].sentence(pair.first, pair.second, _at(question, pair, answers[0].metric))
+        first, *_ = question.about(question.overall[0])
+        return first.sentence(_at(question, first))
     found = range_told(subject)
     return f"{found[0]}: medians from {found[1]}. {few}".rstrip() if found else ""
 
@@ -110,18 +110,17 @@ def too_few(subject: Subject) -> str:
     )
 
 
-def _at(question: Question, overall: LevelPair, metric: str) -> str:
-    """Return at which values of the other axis the same two values of the axis differ; empty where at none."""
-    same = [
-        (pair, answers) for pair, answers in question.at if (pair.first, pair.second) == (overall.first, overall.second)
-    ]
-    found = [(pair, answer) for pair, answers in same for answer in answers if answer.metric == metric and answer.sign]
+def _at(question: Question, overall: Answer) -> str:
+    """Return at which values of the other axis the same two values of the axis differ; empty if at none."""
+    same = [pairs for pairs in question.at if (pairs.first, pairs.second) == overall.names]
+    found = [answer for answer in question.answers
+             if answer.pairs in same and answer.metric == overall.metric and answer.sign]  # fmt: skip
     if not found:
         return ""
-    told = ", ".join(f"{answer.word} by {answer.amount} at {label_text(pair.at)}" for pair, answer in found)
+    told = ", ".join(f"{answer.word} by {answer.amount} at {label_text(answer.at)}" for answer in found)
     rest = len(same) - len(found)
     others = f"; at {rest} other value{'s' if rest > 1 else ''} no difference is shown" if rest else ""
-    return f" {overall.second} is {told}{others}."
+    return f" {overall.names[1]} is {told}{others}."
 
 
 def _spread(subject: Subject, axis: Axis) -> float:
@@ -146,9 +145,9 @@ def pairs_section(subject: Subject) -> Section | None:
             if len(chosen) < len(within)
             else ""
         )
-        found = _answers(subject, [*overall, *chosen], subject.metrics)
+        found = judge(ask([*overall, *chosen], subject.metrics), first_screen(subject.metrics))
         for metric, blocks in tables.items():
-            rows = [_row(pair, answer) for pair, answer in found if answer.metric == metric]
+            rows = [_row(answer) for answer in found if answer.metric == metric]
             if rows:
                 blocks.append(_table(subject, axis, metric, rows, bool(overall), fewer))
     sections = [Section(capital(title(metric)), blocks) for metric, blocks in tables.items() if blocks]
@@ -159,18 +158,6 @@ def pairs_section(subject: Subject) -> Section | None:
         f"{EXPLAINED} The option --metrics compares by other metrics."
     )
     return Section("Compared in pairs", [Text(text)], sections)
-
-
-def _answers(subject: Subject, pairs: Sequence[LevelPair], metrics: Sequence[str]) -> list[tuple[LevelPair, Answer]]:
-    measurements = subject.measurements
-    compared = [
-        (pair, Asked(metric, measurements.units[metric], found))
-        for metric in metrics
-        for pair in pairs
-        if (found := compare(measurements, measurements, metric, pair.cells))
-    ]
-    answers = judge([asked for _, asked in compared], first_screen(subject.metrics))
-    return [(pair, answer) for (pair, _), answer in zip(compared, answers, strict=True)]
 
 
 def _table(
@@ -187,6 +174,6 @@ def _table(
     )
 
 
-def _row(pair: LevelPair, answer: Answer) -> Sequence[str]:
-    at = ", ".join(f"{name}={text}" for name, text in pair.at.items()) or "all"
-    return [*literals([at, f"{pair.first}, {pair.second}"]), *answer.cells]
+def _row(answer: Answer) -> Sequence[str]:
+    at = ", ".join(f"{name}={text}" for name, text in answer.at.items()) or "all"
+    return [*literals([at, ", ".join(answer.names)]), *answer.cells]

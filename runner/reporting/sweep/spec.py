@@ -14,7 +14,7 @@ from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, S
 from runner.reporting.markup import literal
 from runner.reporting.spec_blocks import RULE, bound_text, late_text, probability
 from runner.reporting.sweep import maps
-from runner.reporting.sweep.subject import Subject, key_label, spans_decades, value_names
+from runner.reporting.sweep.subject import Subject, key_label, spans_decades
 from runner.statistics.spec import bounds_of
 from runner.statistics.spec.history import merge_histories, settings
 from runner.statistics.spec.kept import within
@@ -145,7 +145,7 @@ def _curve(one: Failing, axis: Axis) -> Curves:
         series,
         numbers is not None and spans_decades(numbers),
         spans_decades(pooled.share) and not few.any(),
-        x_names=value_names(axis) if numbers is None else (),
+        x_names=axis.texts if numbers is None else (),
     )
     return Curves(literal(f"Probability of failing over {axis.name}: {one.name}."), [panel], columns=1)
 
@@ -184,7 +184,7 @@ def _row(one: Failing, x: Axis, y: Axis, cells: NDArray[np.intp], start: str) ->
     ]
     unmarked = np.zeros(shape, dtype=bool)
     drawn = (("share that failed", pooled.share, few), ("upper end of the 95 % interval", high, unmarked))
-    names = (key_label(x.name), key_label(y.name), value_names(x), value_names(y))
+    names = (key_label(x.name), key_label(y.name), x.texts, y.texts)
     return [Map(start + title, *names, values.reshape(shape), marks, hints=hints) for title, values, marks in drawn]
 
 

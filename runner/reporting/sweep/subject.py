@@ -176,11 +176,6 @@ def first_screen(metrics: Sequence[str]) -> list[str]:
     return [*metrics[:1], *costs[:1]]
 
 
-def value_names(axis: Axis) -> list[str]:
-    """Return all values of an axis as texts."""
-    return [axis.text(level) for level in range(len(axis.values))]
-
-
 def spans_decades(values: FloatArray) -> bool:
     """Return whether values are seen better on a logarithmic scale: all positive, over a decade or more."""
     finite = values[np.isfinite(values)]

@@ -117,7 +117,7 @@ def test_a_comparison_is_in_pairs_of_equal_seeds(sweep):
             lambda sweep: sweep.to_frame(level="cell"),
             r"level: no 'cell' \(did you mean cells\?\); allowed: cells, repet",
         ),
-        (lambda sweep: sweep.compare(by="robt"), r"no axis 'robt' \(did you mean robot\?\)"),
+        (lambda sweep: sweep.compare(by="robt"), r"'robt' was not swept \(did you mean robot\?\)"),
         (lambda sweep: sweep.compare(by="robot", metrics="peak"), "no metric 'peak'"),
         (lambda sweep: sweep.run(robt="macro"), r"'robt' was not swept \(did you mean robot\?\)"),
         (lambda sweep: sweep.run(robot="makro"), r"robot has no value 'makro' \(did you mean macro\?\)"),

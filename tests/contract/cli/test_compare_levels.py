@@ -52,8 +52,11 @@ def test_what_goes_with_an_axis_is_told_before_any_number(cli):
     ("arguments", "message"),
     [
         ((), "is one sweep alone; compare the levels of one of its axes (it was swept over: controller, gravity)"),
-        (("--by", "controler"), "the sweep has no axis 'controler' (did you mean controller?)"),
-        (("--by", "controller", "--within", "robot"), "the sweep has no axis 'robot'"),
+        (
+            ("--by", "controler"),
+            "'controler' was not swept (did you mean controller?)",
+        ),
+        (("--by", "controller", "--within", "robot"), "'robot' was not swept"),
         (("--by", "controller", "--metrics", "torque"), "the runs have no metric 'torque'"),
         (("--within", "controller"), "--within goes with --by AXIS"),
     ],

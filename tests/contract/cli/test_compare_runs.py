@@ -6,6 +6,7 @@ import pytest
 from fixtures.stored import SHORT
 from support.engines import ASKED
 
+import runner
 from runner.store.stored import write_job
 
 
@@ -150,3 +151,11 @@ def test_equal_seeds_are_compared_in_pairs(cli, copy_run):
 )
 def test_what_makes_no_pairs_is_said(cli, copy_run, one, other, reason):
     assert reason in cli("compare", copy_run(one), copy_run(other)).out
+
+
+def test_json_has_the_rows_of_the_function(cli, copy_run):
+    a, b = copy_run("pairs"), copy_run("more noise")
+    ending = cli("compare", a, b, "--metrics", "rms_torque,peak_torque", "--json")
+    assert (ending.code, ending.err) == (0, "")
+    found = runner.compare(a, b, metrics=["rms_torque", "peak_torque"])
+    assert json.loads(ending.out) == found.to_dict(orient="records")

@@ -111,8 +111,7 @@ def test_more_than_two_sweeps_are_held_against_the_first():
 def test_caveats_of_both_and_the_commands_are_shown():
     one, other = pair()
     caveat = {"rule": "exact_velocity", "text": "velocities are exact", "value": 1.0}
-    doubted = replace(other.measurements, caveats=[[caveat], [], [], [caveat]])
-    document = comparison_document([one, replace(other, measurements=doubted)])
+    document = comparison_document([one, replace(other, caveats=[[caveat], [], [], [caveat]])])
     table = next(block for block in parts(document.sections, Table) if "caveat" in block.header)
     assert [list(row) for row in table.rows] == [["B", "exact_velocity", "2 of 4", "velocities are exact"]]
     assert [block.text for block in parts(document.sections, Code)] == ["runner -m A", "runner -m B"]

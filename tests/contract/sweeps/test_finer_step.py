@@ -5,12 +5,11 @@ import pytest
 from support.engines import ASKED
 
 from runner.base.errors import StoreError
-from runner.reporting.comparison.cells import one_cell
-from runner.reporting.comparison.operand import side_of_run
-from runner.reporting.comparison.pairs import compare
+from runner.reporting.comparison.pairs import compare, match
 from runner.store.finer import finer_names, read_finer
 from runner.sweeps.finer_step import DRAWS, work_out
 from runner.sweeps.job import run
+from runner.sweeps.measurements import measure_run
 
 TASK = ("robot=macro", "trajectory=quintic", "trajectory.duration=0.5", "duration=0.6", "noise=thesis")
 
@@ -37,12 +36,11 @@ def test_the_first_repetitions_are_those_of_the_same_run_on_the_finer_plant(tmp_
 
 def test_both_sides_err_alike_so_that_a_difference_errs_less(tmp_path):
     a, b = (made(tmp_path, ASKED, f"controller.natural_frequency={rate}") for rate in (20.0, 20.2))
-    sides = side_of_run("A", a), side_of_run("B", b)
-    one, other = (side.measurements for side in sides)
-    error = compare(one, other, "rms_tracking_error", one_cell().pairs).error
+    one, other = measure_run(a, "A"), measure_run(b, "B")
+    error = compare(match(one, other), "rms_tracking_error").error
     each = np.median(np.abs(one.finer["rms_tracking_error"] - one.values["rms_tracking_error"][:, :DRAWS]))
     assert 0.0 < error < 0.1 * each
-    assert compare(one, one, "rms_tracking_error", one_cell().pairs).error == 0.0
+    assert compare(match(one, one), "rms_tracking_error").error == 0.0
 
 
 def test_what_is_known_is_not_made_again(tmp_path, monkeypatch):
@@ -63,8 +61,8 @@ def test_a_wall_has_no_finer_step_and_the_error_is_not_known(tmp_path):
     work_out(tmp_path, [found])
     assert finer_names(tmp_path) == {found.hash}
     assert read_finer(tmp_path, found.hash) == {}
-    side = side_of_run("A", found).measurements
-    assert compare(side, side, "peak_force", one_cell().pairs).error is None
+    side = measure_run(found, "A")
+    assert compare(match(side, side), "peak_force").error is None
 
 
 def test_a_damaged_file_is_told(tmp_path):
@@ -72,4 +70,4 @@ def test_a_damaged_file_is_told(tmp_path):
     (path,) = (tmp_path / "finer").iterdir()
     path.write_bytes(path.read_bytes().replace(b"0", b"1", 3))
     with pytest.raises(StoreError, match="delete it: `runner compare` works it out again"):
-        side_of_run("A", own)
+        measure_run(own, "A")

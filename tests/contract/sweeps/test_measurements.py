@@ -1,12 +1,14 @@
-"""Axes and values of a sweep as arrays, against runs by hand."""
+"""Axes and values of a sweep as arrays, against runs by hand, and what is missing or damaged in a stored sweep."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from runner.base.errors import StoreError
 from runner.store import Run
-from runner.sweeps.measurements import measure
+from runner.sweeps.measurements import measure, measure_run, measure_stored
 
 
 def stored(name, metrics, status="ok"):
@@ -109,3 +111,32 @@ def test_the_same_repetition_of_one_seed_has_the_same_draws():
     draws = measure([("robot=macro",), ("robot=mini",), ("robot=xarm7",)], runs).draws
     assert draws[0].tolist() == draws[1].tolist()
     assert len({*draws[0].tolist(), *draws[2].tolist()}) == 4
+
+
+def test_what_is_stored_of_a_sweep_is_opened_and_what_is_missing_counted(copy_run, copy_sweep):
+    folder = copy_sweep("goal", "other seed")
+    whole = measure_stored(folder, "A")
+    assert (len(whole.hashes), whole.missing, whole.failed) == (2, 0, 0)
+    gone = copy_run("other seed")
+    shutil.rmtree(gone)
+    part = measure_stored(folder, "A")
+    assert (part.hashes, part.missing) == ([copy_run("goal").name], 1)
+    shutil.rmtree(gone.parent)
+    with pytest.raises(StoreError, match="none of its 2 cells is stored; continue with: runner -m "):
+        measure_stored(folder, "A")
+
+
+def test_a_damaged_cell_is_left_out_and_told(copy_run, copy_sweep):
+    folder = copy_sweep("goal", "other seed")
+    (copy_run("other seed") / "metrics.json").write_text("{")
+    part = measure_stored(folder, "A")
+    assert part.missing == 1
+    assert "metrics.json" in " ".join(part.damage)
+
+
+def test_a_run_is_a_sweep_of_one_cell(runs):
+    run = runs["goal"]
+    side = measure_run(run, "B")
+    assert (side.hashes, side.missing, side.folder) == ([run.hash], 0, run.folder)
+    assert side.resolved("gravity") == [9.81]
+    assert side.resolved("nothing.of.this") == [None]

@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.cli.columns import COMPARED, align_columns, answer_cells
 from runner.reporting.answers import Asked, judge
-from runner.reporting.comparison.operand import letter
+from runner.reporting.comparison.sweeps import letter
 from runner.statistics import compare_paired
 
 

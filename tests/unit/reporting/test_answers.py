@@ -48,8 +48,8 @@ def test_what_the_plants_step_leaves_is_no_answer_and_is_told():
     assert one(0.5 * APART, error=0.6).word == "below what the plant's step leaves (0.6 m)"
     assert one(0.5 * APART, error=0.4).word == "larger"
     assert one(0.5 * APART, error=np.inf).word == "below what the plant's step leaves (a run fails on a finer step)"
-    assert "error in it is not known" in one(0.5 * APART).sentence("a", "b")
-    assert "not known" not in one(0.5 * APART, error=0.4).sentence("a", "b")
+    assert "error in it is not known" in one(0.5 * APART).sentence()
+    assert "not known" not in one(0.5 * APART, error=0.4).sentence()
 
 
 def test_rounding_of_nothing_is_no_answer():
@@ -60,14 +60,14 @@ def test_rounding_of_nothing_is_no_answer():
 def test_fewer_than_six_pairs_say_what_they_cannot_show():
     answer = one(APART[:5])
     assert answer.word == "too few pairs to say (5 of 6)"
-    assert answer.sentence("a", "b").endswith("At least 6 pairs are needed.")
+    assert answer.sentence().endswith("At least 6 pairs are needed.")
     assert (answer.p_value, answer.interval, answer.sign) == (None, None, 0)
 
 
 def test_too_few_pairs_for_so_many_comparisons_say_how_many_would_do():
     few = judge([asked(APART)] * 7, ["rms_tracking_error"])  # .0078 times 7 is above .05, times 6 below
     assert {answer.word for answer in few} == {"too few pairs for 7 comparisons (8 of 9)"}
-    assert few[0].sentence("a", "b").endswith("At least 9 pairs are needed.")
+    assert few[0].sentence().endswith("At least 9 pairs are needed.")
     enough = judge([asked(APART)] * 6, ["rms_tracking_error"])
     assert {answer.word for answer in enough} == {"larger"}
 
@@ -76,16 +76,16 @@ def test_pairs_that_show_nothing_say_how_many_would_do_from_their_correlation():
     rng = np.random.default_rng(1)
     a = rng.normal(10.0, 1.0, 20)
     (answer,) = judge([Asked("rms_tracking_error", "m", compare_paired(a, a + rng.normal(0.0, 1.0, 20)))], [])
-    text = answer.sentence("a", "b")
+    text = answer.sentence()
     found = answer.comparison
     assert f"correlate by {found.correlation:.2f}: about {found.pairs_needed(answer.least, ALPHA)} would" in text
-    assert text.startswith("Rms tracking error: no difference between a and b is shown")
+    assert text.startswith("Rms tracking error: no difference between A and B is shown")
 
 
 def test_a_metric_without_a_value_in_some_draws_says_in_how_many():
     a, b = np.ones(N), np.where(np.arange(N) < 3, np.inf, 1.5)
     (answer,) = judge([Asked("settling_time", "s", compare_paired(a, b))], [])
-    assert "no value in 0 and 3 of 8 draws" in answer.sentence("a", "b")
+    assert "no value in 0 and 3 of 8 draws" in answer.sentence()
 
 
 def test_the_first_metric_the_others_of_the_first_screen_and_the_rest_are_families():

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 from support.sample_sides import LAWS, side
 
-from runner.reporting.comparison.cells import match
 from runner.reporting.comparison.differences import ABSENT, Value, find_differences
+from runner.reporting.comparison.pairs import match
 
 
 def nothing(*_):
@@ -13,7 +13,7 @@ def nothing(*_):
 
 
 def found(a, b):
-    return find_differences(a, b, match(a, b))
+    return find_differences(match(a, b))
 
 
 def test_one_value_differs_alone():
@@ -50,7 +50,7 @@ def test_what_follows_from_other_values_stands_behind_them():
 
 def test_values_that_differ_at_some_cells_say_where():
     a, b = side("A", LAWS, nothing, noise={"position": 1e-3}), side("B", LAWS, nothing, noise={"position": 1e-3})
-    b.measurements.configs[3][0]["noise"] = {"position": 1e-4}
+    b.configs[3][0]["noise"] = {"position": 1e-4}
     assert list(found(a, b).values) == [Value("noise.position", "0.001", "0.0001", "robot=xarm7, gravity=9.81")]
 
 
@@ -77,6 +77,5 @@ def test_a_value_that_one_lacks_is_absent():
 
 def test_commits_and_versions_are_told():
     a, b = side("A", LAWS, nothing), side("B", LAWS, nothing)
-    made = {**b.measurements.provenance, "commit": ["def"], "machine": ["another"], "made on": ["2027-01-01"]}
-    other = replace(b, measurements=replace(b.measurements, provenance=made))
-    assert list(found(a, other).provenance) == [Value("commit", "abc", "def")]
+    made = {**b.provenance, "commit": ["def"], "machine": ["another"], "made on": ["2027-01-01"]}
+    assert list(found(a, replace(b, provenance=made)).provenance) == [Value("commit", "abc", "def")]

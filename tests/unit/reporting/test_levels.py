@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.reporting.comparison.pairs import MOST_PAIRS, CellPairs, compare, level_pairs, levels
+from runner.reporting.comparison.pairs import MOST_PAIRS, compare, level_pairs
+from runner.reporting.comparison.sweeps import compare_levels
 from runner.statistics import compare_paired
 from runner.sweeps.measurements import Axis, Measurements
 
@@ -36,35 +37,35 @@ LAWS = {"robot": ["macro", "xarm7"], "controller": ["a", "b", "c"]}
 
 def test_each_level_is_compared_with_the_first_within_each_level_of_the_other_axis():
     sweep = grid(LAWS, lambda robot, law: 10.0 * robot + law)
-    found = levels(sweep, "controller")
-    assert [(one.pair.at, one.pair.first, one.pair.second) for one in found] == [
+    found = compare_levels(sweep, "controller")
+    assert [(one.at, *one.names) for one in found] == [
         (at, "a", law) for at in ({}, {"robot": "macro"}, {"robot": "xarm7"}) for law in ("b", "c")
     ]
     values = sweep.values["rms"]
     assert found[5].comparison.differences.tolist() == compare_paired(values[3], values[5]).differences.tolist()
-    assert (found[5].axis, found[5].metric, found[5].unit) == ("controller", "rms", "m")
+    assert (found[5].metric, found[5].unit) == ("rms", "m")
 
 
 def test_a_known_shift_is_found_and_none_is_none():
     shifted = grid(LAWS, lambda robot, law: 0.0)
     shifted.values["rms"][:] = shifted.values["rms"][0] + 0.25 * shifted.axes[1].level[:, None]
-    for one in levels(shifted, "controller"):
-        expected = 0.25 if one.pair.second == "b" else 0.5
+    for one in compare_levels(shifted, "controller"):
+        expected = 0.25 if one.names[1] == "b" else 0.5
         assert one.comparison.difference == pytest.approx(expected)
         assert one.comparison.effect == 1.0
-    for one in levels(shifted, "robot"):
+    for one in compare_levels(shifted, "robot"):
         assert (one.comparison.difference, one.comparison.effect, one.comparison.p_value) == (0.0, 0.0, 1.0)
 
 
 def test_axes_that_are_not_named_are_pooled_and_a_draw_counts_once():
     axes = {"robot": ["macro", "xarm7"], "noise": [1e-3, 1e-2, 1e-1], "controller": ["a", "b"]}
     sweep = grid(axes, lambda robot, noise, law: 100.0 * robot + 7.0 * noise + law)
-    one, other = levels(sweep, "controller", within=["robot"])
+    one, other = compare_levels(sweep, "controller", within=["robot"])
     values = sweep.values["rms"]
     by_draw = compare_paired(values[0:6:2].mean(axis=0), values[1:6:2].mean(axis=0))
     assert one.comparison.differences == pytest.approx(by_draw.differences)
     assert one.comparison.a == pytest.approx(by_draw.a)
-    assert (other.pair.at, other.comparison.n) == ({"robot": "xarm7"}, 8)
+    assert (other.at, other.comparison.n) == ({"robot": "xarm7"}, 8)
     # What the pooled axis does to both is no difference: the shift is one, whatever the noise does.
     assert other.comparison.difference == pytest.approx(1.0, abs=5e-3)
 
@@ -72,23 +73,23 @@ def test_axes_that_are_not_named_are_pooled_and_a_draw_counts_once():
 def test_a_swept_seed_is_pooled_like_repetitions_and_can_be_asked_for():
     axes = {"seed": [0.0, 1.0, 2.0], "controller": ["a", "b"]}
     sweep = grid(axes, lambda seed, law: seed + law, seeds=[0, 0, 1, 1, 2, 2], repetitions=1)
-    (pooled,) = levels(sweep, "controller")
-    assert (pooled.pair.at, pooled.comparison.n) == ({}, 3)
-    assert [one.pair.at["seed"] for one in levels(sweep, "controller", within=["seed"])] == ["0", "1", "2"]
+    (pooled,) = compare_levels(sweep, "controller")
+    assert (pooled.at, pooled.comparison.n) == ({}, 3)
+    assert [one.at["seed"] for one in compare_levels(sweep, "controller", within=["seed"])] == ["0", "1", "2"]
     with pytest.raises(RunnerError, match="share their seed"):
-        levels(sweep, "seed")
+        compare_levels(sweep, "seed")
 
 
 def test_cells_of_different_seeds_are_no_pair():
     sweep = grid(LAWS, lambda robot, law: law)
     apart = replace(sweep, seeds=np.array([0, 1, 0, 0, 0, 0]))
-    assert [one.pair.second for one in levels(apart, "controller", within=["robot"])] == ["c", "b", "c"]
+    assert [one.names[1] for one in compare_levels(apart, "controller", within=["robot"])] == ["c", "b", "c"]
 
 
 def test_cells_that_are_missing_are_left_out():
     sweep = grid({"robot": ["macro", "xarm7"], "controller": ["a", "b"]}, lambda robot, law: law)
     sweep.values["rms"][2] = np.nan
-    assert [one.pair.at for one in levels(sweep, "controller")] == [{}, {"robot": "macro"}]
+    assert [one.at for one in compare_levels(sweep, "controller")] == [{}, {"robot": "macro"}]
     listed = replace(sweep, axes=[replace(axis, level=axis.level[:3]) for axis in sweep.axes], hashes=sweep.hashes[:3])
     assert [pair.at for pair in level_pairs(listed, "controller")] == [{"robot": "macro"}]
 
@@ -96,24 +97,31 @@ def test_cells_that_are_missing_are_left_out():
 def test_very_many_pairs_are_drawn_from_and_n_says_so():
     sweep = grid({"seed": np.arange(3000.0), "controller": ["a", "b"]}, lambda seed, law: law, repetitions=2)
     sweep = replace(sweep, seeds=np.repeat(np.arange(3000), 2))
-    (found,) = levels(sweep, "controller")
+    (found,) = compare_levels(sweep, "controller")
     assert found.comparison.n == MOST_PAIRS
     assert found.comparison.difference == pytest.approx(1.0, abs=1e-3)
-    assert levels(sweep, "controller")[0].comparison.differences.tolist() == found.comparison.differences.tolist()
+    assert (
+        compare_levels(sweep, "controller")[0].comparison.differences.tolist() == found.comparison.differences.tolist()
+    )
 
 
 @pytest.mark.parametrize(
     ("axis", "within", "metrics", "message"),
     [
-        ("controler", (), (), "no axis 'controler' (did you mean controller?); it was swept over: robot, controller"),
-        ("controller", ("robt",), (), "no axis 'robt' (did you mean robot?)"),
+        (
+            "controler",
+            (),
+            (),
+            "'controler' was not swept (did you mean controller?); the sweep is over: robot, ",
+        ),
+        ("controller", ("robt",), (), "'robt' was not swept (did you mean robot?)"),
         ("controller", ("controller",), (), "controller: is compared"),
         ("controller", (), ("rsm",), "the runs have no metric 'rsm' (did you mean rms?); known: rms"),
     ],
 )
 def test_unknown_names_are_refused(axis, within, metrics, message):
     with pytest.raises(RunnerError) as caught:
-        levels(grid(LAWS, lambda robot, law: law), axis, within, metrics)
+        compare_levels(grid(LAWS, lambda robot, law: law), axis, within, metrics)
     assert message in str(caught.value)
 
 
@@ -122,7 +130,7 @@ def test_cells_of_one_draw_are_no_further_evidence():
     sweep = grid({"noise": [1.0, 2.0, 3.0], "controller": ["a", "b"]}, lambda noise, law: 0.0)
     drawn = np.random.default_rng(5).normal(size=8)
     sweep.values["rms"][:] = np.where(sweep.axes[1].level[:, None] == 1, drawn, 0.0)
-    overall = levels(sweep, "controller")[0].comparison
+    overall = compare_levels(sweep, "controller")[0].comparison
     assert overall.differences == pytest.approx(drawn)
     assert overall.p_value == compare_paired(np.zeros(8), drawn).p_value
 
@@ -131,7 +139,7 @@ def test_what_is_beyond_every_number_in_more_levels_on_one_side_is_so_in_the_mea
     sweep = grid({"noise": [1.0, 2.0], "controller": ["a", "b"]}, lambda noise, law: law)
     values = sweep.values["rms"]
     values[1, 0] = values[2, 1] = values[0, 2] = values[1, 2] = np.inf  # b; a at the other level; both at one level
-    overall = levels(sweep, "controller", within=())[0].comparison
+    overall = compare_levels(sweep, "controller", within=())[0].comparison
     assert overall.differences[:2].tolist() == [np.inf, -np.inf]
     assert overall.differences[2] == pytest.approx((values[3, 2] - values[2, 2]) / 2)
     assert overall.lost == (2, 2)
@@ -140,21 +148,24 @@ def test_what_is_beyond_every_number_in_more_levels_on_one_side_is_so_in_the_mea
 def test_repetitions_that_are_copies_of_each_other_count_once():
     sweep = grid({"controller": ["a", "b"]}, lambda law: law)
     sweep.values["rms"][:] = [[1.0], [2.0]]
-    assert levels(sweep, "controller")[0].comparison.n == 1
+    assert compare_levels(sweep, "controller")[0].comparison.n == 1
     drawn = replace(sweep, values={**sweep.values, "peak": np.random.default_rng(1).normal(size=(2, 8))}, units={
         "rms": "m", "peak": "N m"})  # fmt: skip
-    assert levels(drawn, "controller", metrics=["rms"])[0].comparison.n == 8
+    assert compare_levels(drawn, "controller", metrics=["rms"])[0].comparison.n == 8
 
 
 def test_the_error_of_the_plant_is_that_of_the_difference():
     """Both sides err by 0.3 and the second by 0.02 beyond that, in the first repetitions, which alone are known."""
+
+    def error(measurements):
+        return compare(level_pairs(measurements, "controller")[0], "rms").error
+
     sweep = grid({"controller": ["a", "b"]}, lambda law: law)
-    pairs = CellPairs(np.array([0]), np.array([1]))
-    assert compare(sweep, sweep, "rms", pairs).error is None
+    assert error(sweep) is None
     finer = sweep.values["rms"][:, :4] + [[0.3], [0.32]]
     known = replace(sweep, finer={"rms": finer})
-    assert compare(known, known, "rms", pairs).error == pytest.approx(0.02)
+    assert error(known) == pytest.approx(0.02)
     finer[1] = np.nan
-    assert compare(known, known, "rms", pairs).error is None
+    assert error(known) is None
     finer[1] = np.inf
-    assert compare(known, known, "rms", pairs).error == np.inf
+    assert error(known) == np.inf

@@ -40,7 +40,7 @@ def test_cells_can_be_limited_to_a_value(value):
     [
         (["controller"], [], "differ in robot.payload.mass; only seeds are put together: write "
          "--by controller,robot.payload.mass for a row each, or fix a value, as in --where robot.payload.mass=0.5"),
-        (["controler"], [], "--by: 'controler' was not swept (did you mean controller?); swept were: controller, "),
+        (["controler"], [], "--by: 'controler' was not swept (did you mean controller?); the sweep is over: "),
         (None, ["controller=pid"], "controller has no value 'pid'; allowed: computed_torque, operational_space"),
         (None, ["controller"], "controller has no value ''; allowed: computed_torque, operational_space"),
         (None, ["load=1"], "--where: 'load' was not swept"),

@@ -30,9 +30,9 @@ def test_asked_is_about_choices_overall_and_at_each_value_of_the_axis_that_sprea
     given = {"max_tracking_error": lambda noise, law, limit: 1.0 + limit + 0.1 * noise + drawn(8, law) / 100.0}
     question = find_question(choose(measurements(axes, given)))
     assert (question.axis, question.within) == ("controller", "torque_limits.max")
-    assert [pair.at for pair, _ in question.overall] == [{}]
-    assert [pair.at for pair, _ in question.at] == [{"torque_limits.max": "20"}, {"torque_limits.max": "40"}]
-    assert {answer.comparison.n for _, answers in question.overall for answer in answers} == {8}
+    assert [pairs.at for pairs in question.overall] == [{}]
+    assert [pairs.at for pairs in question.at] == [{"torque_limits.max": "20"}, {"torque_limits.max": "40"}]
+    assert {answer.comparison.n for answer in question.about(question.overall[0])} == {8}
 
 
 def test_no_winner_is_named_where_pairs_show_none_and_what_turns_over_is_told():

@@ -2,8 +2,7 @@
 
 import pytest
 
-from runner.reporting.comparison.messages import format_count
-from runner.reporting.comparison.sweeps import noise_alone
+from runner.reporting.comparison.sweeps import format_count, noise_alone
 
 
 @pytest.mark.parametrize(("count", "text"), [(0, "0 cells are"), (1, "1 cell is"), (2, "2 cells are")])

@@ -6,7 +6,7 @@ import pytest
 from support.sample_sides import LAWS, side
 
 from runner.base.errors import RunnerError
-from runner.reporting.comparison.cells import label_text, match
+from runner.reporting.comparison.pairs import keep_common_seeds, label_text, match
 
 
 def nothing(*_):
@@ -20,7 +20,7 @@ def test_cells_are_matched_by_what_either_sweeps():
         "robot=macro, gravity=9.81",
         "robot=xarm7, gravity=9.81",
     ]
-    assert (matched.pairs.a.tolist(), matched.pairs.b.tolist()) == ([1, 3], [0, 2])
+    assert (matched.of_a.tolist(), matched.of_b.tolist()) == ([1, 3], [0, 2])
     assert [label["gravity"] for label in matched.alone[0]] == ["9.6", "9.6"]
     assert [label["gravity"] for label in matched.alone[1]] == ["9.4", "9.4"]
 
@@ -47,7 +47,7 @@ def test_equal_cells_are_matched_in_turn():
     a = side("A", LAWS, nothing)
     twice = side("B", LAWS, nothing, order=[0, 0, 1, 2, 3])
     matched = match(twice, a)
-    assert matched.pairs.b.tolist() == [0, 1, 2, 3]
+    assert matched.of_b.tolist() == [0, 1, 2, 3]
     assert [label_text(label) for label in matched.alone[0]] == ["robot=macro, gravity=9.6"]
 
 
@@ -64,7 +64,6 @@ def test_sweeps_that_share_no_cell_are_refused_with_where_they_part():
 def test_other_seeds_share_no_noise():
     a, b = side("A", LAWS, nothing), side("B", LAWS, nothing, seed=1)
     with pytest.raises(RunnerError, match="have 4 cells in common, but no seed"):
-        match(a, b)
-    some = replace(b, measurements=replace(b.measurements, seeds=[0, 1, 0, 1]))
-    matched = match(a, some)
+        keep_common_seeds(match(a, b))
+    matched = keep_common_seeds(match(a, replace(b, seeds=[0, 1, 0, 1])))
     assert (len(matched.labels), matched.other_seeds) == (2, 2)
