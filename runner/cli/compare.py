@@ -110,9 +110,9 @@ def _compare(options: Namespace) -> None:
 
 def _json_text(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return rows as JSON, which has no number for what is beyond every number: null."""
-    finite = [{key: value if isinstance(value, str) or abs(value or 0.0) < math.inf else None for key, value in row.items()}
-              for row in rows]  # fmt: skip
-    return json.dumps(finite, indent=2)
+    infinite = (math.inf, -math.inf)
+    finite = [{key: None if value in infinite else value for key, value in row.items()} for row in rows]
+    return json.dumps(finite, indent=2, allow_nan=False)
 
 
 def _level_lines(side: "Measurements", axis: str, answers: "Sequence[Answer]") -> Iterator[str]:
