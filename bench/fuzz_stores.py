@@ -19,8 +19,8 @@ from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.store.shards import open_row, read_outcomes, shard_files
 from runner.sweeps.calibration_job import calibrate
-from runner.sweeps.grid import plan_sweep
 from runner.sweeps.job import execute
+from runner.sweeps.plan import plan_sweep
 from runner.sweeps.run import Engine, run_sweep
 from runner.sweeps.status import read_pace
 from runner.sweeps.tuning.objective import Objective

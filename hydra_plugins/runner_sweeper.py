@@ -41,7 +41,7 @@ class RunnerSweeper(Sweeper):
         command = shlex.join(["runner", *(argument.removeprefix("++") for argument in sys.argv[1:])])
         return sweep_typed(arguments, self._sweeper, self, command)
 
-    def load(self, options: Sequence[str]) -> DictConfig:
+    def load(self, options: Sequence[str], _root: str = "config") -> DictConfig:
         """Compose a config from overrides of options, as Hydra does for one job; see ConfigSource."""
         config: DictConfig = self._loader.load_sweep_config(self._config, list(options))
         return config

@@ -74,8 +74,8 @@ def sweep(
         RunnerError: for a config that cannot be run, before any run is made; if another sweep is at work there.
     """
     from runner.sweeps.finer_step import work_out_sweep
-    from runner.sweeps.grid import Grid
     from runner.sweeps.loading import Loader
+    from runner.sweeps.plan import Grid
     from runner.sweeps.run import Engine, run_sweep
 
     use_plugins(plugins)

@@ -1,93 +1,145 @@
-"""Stored axes of a grid, and the overrides of each cell."""
+"""Axes of a sweep: keys with their typed values, and the overrides of each cell."""
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from runner.base.errors import StoreError
 
+_PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}")
+_OTHER_KIND = re.compile(r"(?i)null|true|false|[+-]?(inf|nan|[\d._]+(e[+-]?[\d_]+)?)")
+_LISTED_UP_TO = 1000  # values of a range; so a short range and the same numbers one by one are one sweep
+
 
 @dataclass(frozen=True)
-class Counted(Sequence[str]):
-    """Overrides that count, such as seed=0, seed=1, ..., made when asked for.
+class SweepAxis:
+    """A swept key.
 
     Attributes:
-        start: What each begins with, such as "seed=".
-        numbers: What follows.
+        key: The key as an override begins, such as "noise.position" or "+robot.note".
+        values: Its values: numbers in SI units, strings, lists and so on. A range of integers is not expanded.
     """
 
-    start: str
-    numbers: range
+    key: str
+    values: Sequence[Any]
 
-    def __len__(self) -> int:
-        return len(self.numbers)
-
-    def __getitem__(self, place: Any) -> Any:
-        found = self.numbers[place]
-        return f"{self.start}{found}" if isinstance(found, int) else Counted(self.start, found)
-
-    def __iter__(self) -> Iterator[str]:
-        return (f"{self.start}{number}" for number in self.numbers)
+    def text(self, number: int) -> str:
+        """Return the override of a value, which is given by its number."""
+        return f"{self.key}={override_value(self.values[number])}"
 
 
-class GridOverrides(Sequence[Sequence[str]]):
+class Axes(Sequence[tuple[str, ...]]):
     """The overrides of each cell of a grid, made when asked for; the last axis changes fastest.
 
     Args:
-        axes: Overrides of each axis; an empty one says only how a run is made, and is none of the cell's.
+        entries: The swept keys, and the overrides that all cells share as typed, in the order of the command line.
 
     Attributes:
-        axes: As given.
+        entries: As given.
     """
 
-    def __init__(self, axes: Sequence[Sequence[str]]) -> None:
-        self.axes = axes
+    def __init__(self, entries: Sequence[SweepAxis | str]) -> None:
+        self.entries = entries
+        self._sizes = [1 if isinstance(entry, str) else len(entry.values) for entry in entries]
 
     def __len__(self) -> int:
-        return math.prod(len(axis) for axis in self.axes)
+        return math.prod(self._sizes)
 
     def __getitem__(self, cell: Any) -> Any:
         if isinstance(cell, slice):
             return [self[each] for each in range(*cell.indices(len(self)))]
-        left = range(len(self))[cell]
-        texts = []
-        for axis in reversed(self.axes):
-            left, place = divmod(left, len(axis))
-            texts.append(axis[place])
-        return tuple(text for text in reversed(texts) if text)
+        numbers = zip(self.entries, digits(range(len(self))[cell], self._sizes), strict=True)
+        given = (entry if isinstance(entry, str) else entry.text(number) for entry, number in numbers)
+        return tuple(text for text in given if is_simulated(text))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Sequence) and list(self) == list(other)
 
     __hash__ = None  # type: ignore[assignment]
 
+    def runs_of_levels(self) -> Iterator[tuple[SweepAxis | str, int]]:
+        """Yield each entry that is simulated, and the number of successive cells that share one of its values."""
+        successive = len(self)
+        for entry, size in zip(self.entries, self._sizes, strict=True):
+            successive //= size
+            if is_simulated(entry if isinstance(entry, str) else entry.key):
+                yield entry, successive
+
     def content(self) -> list[Any]:
         """Return the axes as they are stored; see `read_axes`."""
-        return [
-            {"start": axis.start, "range": [axis.numbers.start, axis.numbers.stop, axis.numbers.step]}
-            if isinstance(axis, Counted)
-            else list(axis)
-            for axis in self.axes
-        ]
+        return [entry if isinstance(entry, str) else _content(entry) for entry in self.entries]
 
 
-def read_axes(content: object) -> GridOverrides:
-    """Return stored axes: a list of overrides each, or `start` and `range` (start, stop, step) of one that counts.
+def digits(number: int, sizes: Sequence[int]) -> list[int]:
+    """Return the digits of a number whose places count up to these sizes; the last one changes fastest."""
+    found = []
+    for size in reversed(sizes):
+        number, digit = divmod(number, size)
+        found.append(digit)
+    return found[::-1]
+
+
+def is_simulated(override: str) -> bool:
+    """Tell whether a key, or an override of it, says what is simulated, not how and where that is done."""
+    key = override.lstrip("+~").partition("=")[0].partition(".")[0]
+    return key not in ("caveats", "hydra", "limits", "outputs", "spec", "sweep")
+
+
+def override_value(value: object) -> str:
+    """Return a value as it is written behind `KEY=`, so that it is read back as the same value."""
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | float):
+        return repr(value)
+    if isinstance(value, str):
+        return value if _PLAIN.fullmatch(value) and not _OTHER_KIND.fullmatch(value) else _quoted(value)
+    if isinstance(value, Mapping):
+        return "{" + ",".join(f"{key}:{override_value(each)}" for key, each in value.items()) + "}"
+    if isinstance(value, Sequence):
+        return f"[{','.join(map(override_value, value))}]"
+    raise TypeError(f"no override holds a {type(value).__name__}")
+
+
+def _quoted(text: str) -> str:
+    from hydra.core.override_parser.types import Quote, QuotedString  # not needed to read a stored sweep
+
+    return QuotedString(text, Quote.single).with_quotes()
+
+
+def _content(axis: SweepAxis) -> dict[str, Any]:
+    values = axis.values
+    if isinstance(values, range) and len(values) > _LISTED_UP_TO:
+        return {"key": axis.key, "range": [values.start, values.stop, values.step]}
+    return {"key": axis.key, "values": list(values)}
+
+
+def read_axes(content: object) -> Axes:
+    """Return stored axes: a list of overrides that all cells share, and of `key` with `values` or `range`.
+
+    A range has start, stop and step.
 
     Raises:
         StoreError: if they are none.
     """
     if not isinstance(content, list):
-        raise StoreError("its axes are no list")
-    return GridOverrides([_read_axis(axis) for axis in content])
+        raise StoreError("its axes are not a list")
+    return Axes([entry if isinstance(entry, str) else _read_axis(entry) for entry in content])
 
 
-def _read_axis(axis: object) -> Sequence[str]:
-    if isinstance(axis, list) and all(isinstance(text, str) for text in axis):
-        return tuple(axis)
-    if isinstance(axis, Mapping) and isinstance(axis.get("start"), str) and isinstance(axis.get("range"), list):
-        numbers = axis["range"]
-        if len(numbers) == 3 and all(type(number) is int for number in numbers) and numbers[2]:
-            return Counted(axis["start"], range(*numbers))
-    raise StoreError("an axis is no list of overrides, and none that counts")
+def _read_axis(entry: object) -> SweepAxis:
+    if isinstance(entry, Mapping) and isinstance(entry.get("key"), str):
+        values, numbers = entry.get("values"), entry.get("range")
+        if isinstance(values, list) and values:
+            return SweepAxis(entry["key"], values)
+        if (
+            isinstance(numbers, list)
+            and len(numbers) == 3
+            and all(type(each) is int for each in numbers)
+            and numbers[2]
+        ):
+            return SweepAxis(entry["key"], range(*numbers))
+    raise StoreError("an axis has no key with values or a range")

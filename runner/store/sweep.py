@@ -15,7 +15,7 @@ from runner.base.errors import StoreError
 from runner.config.spec import Bound
 from runner.statistics.spec.history import Histories, merge_histories, settings, today
 from runner.store.atomic import write_atomically
-from runner.store.axes import Counted, GridOverrides, read_axes
+from runner.store.axes import Axes, read_axes
 from runner.store.finished import Finished
 from runner.store.names import Names
 from runner.store.run import Run, open_run
@@ -129,14 +129,12 @@ def write_sweep(
     return folder
 
 
-def write_grid(
-    outputs: Path, axes: GridOverrides, names: Names, command: str, spec: Mapping[str, Bound] = _NO_SPEC
-) -> Path:
+def write_grid(outputs: Path, axes: Axes, names: Names, command: str, spec: Mapping[str, Bound] = _NO_SPEC) -> Path:
     """Store a sweep over a grid by its axes, with the runs' names in a file beside, and return the sweep's folder.
 
     Args:
         outputs: The outputs folder.
-        axes: Overrides of each cell.
+        axes: What is swept.
         names: Hash of each cell's run.
         command: The command that makes the sweep; no part of its name.
         spec: Bounds on metrics; no part of its name either.
@@ -144,8 +142,8 @@ def write_grid(
     Raises:
         StoreError: if the disk does not take it.
     """
-    folder = outputs / "sweeps" / _name(_grid_rows(axes, names))
     runs = names.packed()
+    folder = outputs / "sweeps" / _name(_grid_rows(axes, digest(runs)))
     write_atomically(folder / _RUNS, runs)
     content = {**_head(folder, command, spec), "axes": axes.content(), "cells": len(names), "runs": digest(runs)}
     write_atomically(folder / _FILE, seal_text(json.dumps(content, indent=1) + "\n"))
@@ -179,37 +177,8 @@ def _rows(jobs: Iterable[tuple[Sequence[str], str]]) -> Iterator[str]:
     return (json.dumps({"overrides": list(overrides), "run": name}) for overrides, name in jobs)
 
 
-def _grid_rows(axes: GridOverrides, names: Names) -> Iterator[str]:
-    """Yield what `_rows` does of the cells of a grid, in which most of their texts are the same."""
-    overrides = _joined(axes.axes)
-    for first in range(0, len(names), _AT_ONCE):
-        for name, texts in zip(names.texts[first : first + _AT_ONCE].astype(str).tolist(), overrides, strict=False):
-            yield f'{{"overrides": [{texts}], "run": "{name}"}}'
-
-
-def _joined(axes: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Yield the overrides of each cell of a grid as JSON, without brackets; the last axis changes fastest."""
-    if not axes:
-        yield ""
-        return
-    *others, last = axes
-    kept = list(_encoded(last)) if len(last) <= _AT_ONCE else None
-    for before in _joined(others):
-        start = f"{before}, " if before else ""
-        for text in kept or _encoded(last):
-            yield f"{start}{text}" if text else before
-
-
-def _encoded(axis: Sequence[str]) -> Iterator[str]:
-    """Yield the overrides of an axis as JSON; nothing of an empty one."""
-    if isinstance(axis, Counted):
-        start = json.dumps(axis.start)[:-1]
-        return (f'{start}{number}"' for number in axis.numbers)
-    return (json.dumps(text) if text else "" for text in axis)
-
-
 def _name(rows: Iterable[str]) -> str:
-    """Return the name of a sweep's folder: a digest over the rows of its jobs, however it is stored."""
+    """Return the name of a sweep's folder: a digest over the rows of its jobs, or over what names a grid."""
     found, left, between = hashlib.sha256(), iter(rows), ""
     while some := list(islice(left, _AT_ONCE)):
         found.update((between + "\n".join(some)).encode())
@@ -273,7 +242,12 @@ def _read_grid(path: Path, content: Mapping[str, Any]) -> tuple[Sequence[Sequenc
     if not len(axes) == len(names) == content.get("cells"):
         count = f"its axes have {len(axes)} cells, and {len(names)} runs stand beside"
         raise DamagedError(f"cannot read {path}: {count}; {_MEND}")
-    return axes, names, _grid_rows(axes, names)
+    return axes, names, _grid_rows(axes, str(content["runs"]))
+
+
+def _grid_rows(axes: Axes, runs: str) -> Iterator[str]:
+    """Return what names a grid: its axes, and the digest of the names of its runs."""
+    return iter((json.dumps(axes.content()), runs))
 
 
 def _is_job(job: object) -> bool:

@@ -14,10 +14,10 @@ from runner.study.items import Way, listed
 from runner.study.study import Study
 from runner.study.tune import ROUNDS
 from runner.study.tunings import Tuning
+from runner.sweeps.check import check
 from runner.sweeps.estimate import START_UP, Estimate, estimate
-from runner.sweeps.explicit import Item, Listed
 from runner.sweeps.loading import Loader
-from runner.sweeps.plan import Plan, check
+from runner.sweeps.plan import Item, Listed, Plan
 
 Counts = tuple[int, int, int]
 """Numbers of trials, of long runs, and of the runs that follow."""

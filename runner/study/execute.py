@@ -16,9 +16,9 @@ from runner.study.study import Study
 from runner.study.tune import find_gains
 from runner.study.tunings import Tuning
 from runner.sweeps.calibration_job import CALIBRATION
-from runner.sweeps.explicit import Item
+from runner.sweeps.check import check
 from runner.sweeps.loading import Loader
-from runner.sweeps.plan import check
+from runner.sweeps.plan import Item
 
 
 def make_all(

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Literal
 
 from runner.store import Outcome
-from runner.sweeps.explicit import Item, Listed
 from runner.sweeps.loading import Loader
+from runner.sweeps.plan import Item, Listed
 from runner.sweeps.run import Engine, run_sweep
 
 

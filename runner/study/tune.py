@@ -13,9 +13,8 @@ from runner.study.gains import Gains
 from runner.study.grid import Overrides
 from runner.study.items import Way, make_items
 from runner.study.tunings import Tuning, key_of
-from runner.sweeps.explicit import Item
-from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader
+from runner.sweeps.plan import Grid, Item
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.sampler import make_optuna_trial, propose

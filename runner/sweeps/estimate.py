@@ -15,9 +15,10 @@ from runner.config.validation import validate
 from runner.simulation.batch_jobs import seconds_together
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
+from runner.sweeps.check import Checked
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.job import PROBED_TICKS, seconds_per_tick
-from runner.sweeps.plan import Checked, Plan
+from runner.sweeps.plan import Plan
 from runner.sweeps.status import NOTE
 
 _EVERY = 2.0  # s between two notes of the pace

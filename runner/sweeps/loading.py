@@ -27,8 +27,8 @@ class ConfigSource(Protocol):
     hydra: ConfigLoader
     config_dirs: tuple[Path, ...]
 
-    def load(self, options: Sequence[str]) -> DictConfig:
-        """Return the config of a run that is composed from overrides of options; it must not be changed."""
+    def load(self, options: Sequence[str], root: str = "config") -> DictConfig:
+        """Return the config that is composed from a root and overrides of options; it must not be changed."""
         ...
 
 

@@ -15,12 +15,11 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.sanitize import few, quoted
 from runner.store import Finished, Run, Sweep, open_sweep
-from runner.store.axes import GridOverrides
+from runner.store.axes import Axes, is_simulated, override_value
 from runner.store.finer import finer_names, read_finer
 from runner.store.sweep import InShard
 from runner.sweeps.differing import Difference, Resolved
 from runner.sweeps.gathering import Gathered
-from runner.sweeps.swept import is_simulated
 
 
 @dataclass(frozen=True)
@@ -349,44 +348,43 @@ def _by_seed(cells: NDArray[np.intp], seeds: NDArray[np.int64]) -> list[NDArray[
 def axes_of(overrides: Sequence[Sequence[str]]) -> tuple[list[Axis], list[str]]:
     """Return the keys whose values differ between jobs as axes, and the other overrides."""
     axes, fixed = [], []
-    columns = _of_grid(overrides) if isinstance(overrides, GridOverrides) else _of_jobs(overrides)
-    for key, texts, times in columns:
-        if len(set(texts)) == 1:
-            fixed.append(f"{key}={texts[0]}")
-            continue
-        values, level = _levels(texts)
-        axes.append(Axis(key, values, np.resize(np.repeat(level, times), len(overrides))))
+    columns = _of_grid(overrides) if isinstance(overrides, Axes) else _of_jobs(overrides)
+    for key, values, times in columns:
+        if isinstance(values, str):
+            fixed.append(f"{key}={values}")
+        else:
+            found, level = _levels(values)
+            axes.append(Axis(key, found, np.resize(np.repeat(level, times), len(overrides))))
     return axes, fixed
 
 
-def _of_grid(overrides: GridOverrides) -> Iterator[tuple[str, Sequence[str], int]]:
-    """Yield keys and their values in turn, and for how many cells each stands."""
-    times = len(overrides)
-    for axis in overrides.axes:
-        times //= len(axis)
-        if axis[0]:
-            yield axis[0].lstrip("+").partition("=")[0], [text.partition("=")[2] for text in axis], times
+def _of_grid(overrides: Axes) -> Iterator[tuple[str, Sequence[Any], int]]:
+    """Yield keys and their values in turn, and for how many cells each stands; the text of what all cells share."""
+    for entry, times in overrides.runs_of_levels():
+        if isinstance(entry, str) or all(value == entry.values[0] for value in entry.values):
+            key, _, text = (entry if isinstance(entry, str) else entry.text(0)).lstrip("+").partition("=")
+            yield key, text, times
+        else:
+            yield entry.key.lstrip("+"), entry.values, times
 
 
-def _of_jobs(overrides: Sequence[Sequence[str]]) -> Iterator[tuple[str, Sequence[str], int]]:
-    """Yield keys and their values job by job."""
+def _of_jobs(overrides: Sequence[Sequence[str]]) -> Iterator[tuple[str, Sequence[Any], int]]:
+    """Yield keys and their values job by job; the text of what all jobs share."""
     given = [dict(override.lstrip("+").partition("=")[::2] for override in job) for job in overrides]
     for key in dict.fromkeys(key for job in given for key in job if is_simulated(key)):
-        yield key, [job.get(key, "") for job in given], 1
+        texts = [job.get(key, "") for job in given]
+        numbers = [_number(text) for text in texts]
+        yield key, texts[0] if len(set(texts)) == 1 else texts if None in numbers else numbers, 1
 
 
-def _levels(texts: Sequence[str]) -> tuple[Sequence[float] | Sequence[str], NDArray[np.intp]]:
-    """Return the distinct values behind some texts, and the place of each among them, shape (n,)."""
-    distinct = list(dict.fromkeys(texts))
-    numbers = [_number(text) for text in distinct]
-    if None not in numbers:
-        values: Sequence[float] | Sequence[str] = sorted({number for number in numbers if number is not None})
-        places = {value: place for place, value in enumerate(values)}
-        place = {text: places[number] for text, number in zip(distinct, numbers, strict=True)}
-    else:
-        values = [text.strip("'\"") for text in distinct]
-        place = {text: index for index, text in enumerate(distinct)}
-    return values, np.array([place[text] for text in texts], dtype=np.intp)
+def _levels(values: Sequence[Any]) -> tuple[Sequence[float] | Sequence[str], NDArray[np.intp]]:
+    """Return the distinct ones of some values, and the place of each among them, shape (n,)."""
+    if isinstance(values, range) or all(type(value) in (int, float) and np.isfinite(value) for value in values):
+        numbers, level = np.unique(np.array(values, dtype=float), return_inverse=True)
+        return numbers.tolist(), level
+    texts = [value.strip("'\"") if isinstance(value, str) else override_value(value) for value in values]
+    place = {text: index for index, text in enumerate(dict.fromkeys(texts))}
+    return list(place), np.array([place[text] for text in texts], dtype=np.intp)
 
 
 def _number(text: str) -> float | None:

@@ -1,29 +1,25 @@
-"""Plan of a sweep: its cells with their configs in blocks, composed and checked before the first run."""
+"""Plan of a sweep: its cells, composed when asked for. The plan of `runner -m` is a grid, that of a study a list."""
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any, NoReturn, Protocol
+from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from runner import store
-from runner.base import progress
 from runner.base.errors import ConfigError
-from runner.config.calibration import validate_calibration
 from runner.config.compose.compose import Composed
-from runner.config.limits import LimitsConfig, memory_of_run
-from runner.config.run import RunConfig
-from runner.config.spec import Bound
-from runner.config.sweep import SweepConfig
-from runner.config.validation import validate
-from runner.simulation.assembly import assemble
-from runner.store.axes import GridOverrides
-from runner.store.identity import json_text
-from runner.store.names import Names, Texts
-from runner.sweeps.calibration_job import CALIBRATION, TICKS
-from runner.sweeps.differing import Resolved, is_one_arm, resolve
+from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.options import groups
+from runner.config.compose.overrides import force
+from runner.schema.plausibility import LARGEST_WHOLE
+from runner.store.axes import Axes, digits, is_simulated
+from runner.sweeps.loading import ConfigSource, Loader
+from runner.sweeps.swept import SweptKey, parse_sweep
+from runner.sweeps.template import Template
+
+_SEED = "seed"
 
 
 @dataclass(frozen=True)
@@ -41,13 +37,13 @@ class Block:
 
 @dataclass(frozen=True)
 class Alike(Sequence[Composed]):
-    """Configs that differ in nothing but the seed, made when asked for: to another process goes one of them.
+    """Configs that differ only in the seed. They are made when asked for, and one of them is sent to another process.
 
     Attributes:
         first: One of them.
         seeds: Seed of each.
-        texts: The override that gives each its seed.
-        place: Place of that among the overrides.
+        texts: The override of each seed.
+        place: Position of that override.
     """
 
     first: Composed
@@ -65,193 +61,232 @@ class Alike(Sequence[Composed]):
         return Composed(resolved, overrides, first.choices, first.config_dirs, first.root)
 
 
-@dataclass(frozen=True)
-class Part:
-    """Runs whose configs differ in nothing but the seed, or a single run or calibration.
+class Plan(ABC):
+    """Runs and calibrations to make, counted as cells. Those that choose the same options are composed together.
 
-    Attributes:
-        names: Hash of each.
-        configs: Composed config of each.
+    Args:
+        source: Composes the configs.
     """
 
-    names: Sequence[str]
-    configs: Sequence[Composed]
+    def __init__(self, source: ConfigSource) -> None:
+        self._source = source
+        self._templates: dict[Hashable, Template | ConfigError] = {}
 
-
-_PROBLEMS_SHOWN = 20
-
-
-class Plan(Protocol):
-    """Runs and calibrations to make, counted as cells."""
-
+    @abstractmethod
     def __len__(self) -> int:
         """Return the number of cells."""
-        ...
 
+    @abstractmethod
     def overrides(self, cell: int) -> tuple[str, ...]:
         """Return the overrides of a cell, as typed; what only says how and where it is made is left out."""
-        ...
+
+    @abstractmethod
+    def _locate(self, cell: int) -> tuple[Hashable, Sequence[int]]:
+        """Return the key of the template of a cell, and the number of the value of each key in it."""
+
+    @abstractmethod
+    def _parts(self, group: Hashable) -> tuple[Sequence[str], Sequence[SweptKey], str]:
+        """Return the parts of a template: the overrides of options, the keys of values and the root."""
+
+    def axes(self) -> Axes | None:
+        """Return the axes of a grid, whose cells have every combination of their values; None of no grid."""
+        return None
+
+    def blocks(self) -> Iterator[Block]:
+        """Yield all cells, in blocks that differ in nothing but the seed."""
+        return (Block(range(cell, cell + 1)) for cell in range(len(self)))
+
+    def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
+        """Yield those of some cells whose configs differ in nothing but the seed, with their configs."""
+        return (([cell], [self.composed(cell)]) for cell in cells)
 
     def composed(self, cell: int) -> Composed:
-        """Return the composed config of a cell, of which cells that share a group share the object.
+        """Return the composed config of a cell. Cells for which a group is the same share it as one object.
 
         Raises:
             ConfigError: if it does not compose.
         """
-        ...
+        group, numbers = self._locate(cell)
+        template = self._template(group)
+        resolved = template.resolve(numbers)
+        return Composed(resolved, self.overrides(cell), template.choices, self._source.config_dirs, template.root)
 
-    def axes(self) -> GridOverrides | None:
-        """Return the axes of a grid, whose cells have every combination of their overrides; None of no grid."""
-        ...
+    def _template(self, group: Hashable) -> Template:
+        if group not in self._templates:
+            self._templates[group] = self._compose(*self._parts(group))
+        template = self._templates[group]
+        if isinstance(template, ConfigError):
+            raise template
+        return template
+
+    def _compose(self, options: Sequence[str], keys: Sequence[SweptKey], root: str) -> Template | ConfigError:
+        own = self._source.config_dirs
+        try:
+            return Template(self._source.load(options, root), root, own, keys)
+        except COMPOSITION_ERRORS as error:
+            return explain(error, own)
+        except ConfigError as error:
+            return error
+
+
+class Grid(Plan):
+    """Every combination of the values of a sweep's keys; the last key changes fastest.
+
+    Args:
+        arguments: Overrides, such as "robot=macro,mini" and "noise.position=1e-4,1e-3".
+        source: Composes the configs.
+
+    Raises:
+        ConfigError: for what is no override, and for a key that is swept over no value.
+    """
+
+    def __init__(self, arguments: Sequence[str], source: ConfigSource) -> None:
+        super().__init__(source)
+        self._keys = parse_sweep(force(arguments), groups(source.config_dirs), source.hydra)
+        self._sizes = [len(key.values) for key in self._keys]
+        self._axes = Axes([key.entry() for key in self._keys if len(key.values) > 1 or is_simulated(key.name)])
+
+    def __len__(self) -> int:
+        return math.prod(self._sizes)
+
+    def overrides(self, cell: int) -> tuple[str, ...]:
+        """Return the overrides of a cell; see Plan."""
+        found: tuple[str, ...] = self._axes[cell]
+        return found
+
+    def axes(self) -> Axes:
+        """Return the axes; see Plan."""
+        return self._axes
 
     def blocks(self) -> Iterator[Block]:
-        """Yield all cells, in blocks that differ in nothing but the seed."""
-        ...
+        """Yield the cells in blocks; see Plan."""
+        place = self._place_of_seeds
+        if place is None:
+            yield from super().blocks()
+            return
+        seeds, stride = self._keys[place].values, math.prod(self._sizes[place + 1 :])
+        for start in range(0, len(self), stride * len(seeds)):
+            for first in range(start, start + stride):
+                cells = range(first, first + stride * len(seeds), stride)
+                if self._seeds_stand_alone(first, place):
+                    yield Block(cells, seeds)
+                else:
+                    yield from (Block(range(cell, cell + 1)) for cell in cells)
 
     def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
-        """Yield those of some cells whose configs differ in nothing but the seed, with their configs."""
-        ...
+        """Yield those of some cells whose configs differ in nothing but the seed, with their configs; see Plan."""
+        place = self._place_of_seeds
+        if place is None:
+            yield from super().alike(cells)
+            return
+        key, stride = self._keys[place], math.prod(self._sizes[place + 1 :])
+        before = sum(is_simulated(each.name) for each in self._keys[:place])
+        together: dict[int, list[int]] = {}
+        for cell in cells:
+            together.setdefault(cell - cell // stride % len(key.values) * stride, []).append(cell)
+        for first, own in together.items():
+            if self._seeds_stand_alone(first, place):
+                numbers = [cell // stride % len(key.values) for cell in own]
+                texts = [key.override(number).removeprefix("++") for number in numbers]
+                yield own, Alike(self.composed(own[0]), [key.values[number] for number in numbers], texts, before)
+            else:
+                yield from super().alike(own)
+
+    @cached_property
+    def _place_of_seeds(self) -> int | None:
+        """Place of the key that gives the seeds; None where no key gives nothing else."""
+        return next((place for place, key in enumerate(self._keys) if key.name == _SEED and _may_be_seeds(key)), None)
+
+    def _seeds_stand_alone(self, cell: int, place: int) -> bool:
+        """Tell whether a key, given by its place, changes the seed and nothing else in cells that are as one."""
+        try:
+            template = self._template(self._locate(cell)[0])
+        except ConfigError:
+            return True  # the same problem in all of them
+        return template.changes_alone(sum(not key.option for key in self._keys[:place]), (_SEED,))
+
+    def _locate(self, cell: int) -> tuple[tuple[int, ...], list[int]]:
+        pairs = list(zip(self._keys, digits(cell, self._sizes), strict=True))
+        return tuple(number for key, number in pairs if key.option), [number for key, number in pairs if not key.option]
+
+    def _parts(self, group: Any) -> tuple[Sequence[str], Sequence[SweptKey], str]:
+        options = [key for key in self._keys if key.option]
+        texts = [key.override(number) for key, number in zip(options, group, strict=True)]
+        return texts, [key for key in self._keys if not key.option], "config"
 
 
 @dataclass(frozen=True)
-class Checked:
-    """What the check of a plan gave.
+class Item:
+    """A run or a calibration of a list.
 
     Attributes:
-        names: Hash of each cell's run or calibration.
-        costs: Ticks of all its repetitions together, shape (cells,).
-        calibrations: The cells that are calibrations, not runs.
-        outputs: Folder in which they are stored.
-        settings: How the runs are made.
-        limits: What they may cost.
-        spec: Bounds on metrics.
-        resolved: What differs between the configs of the runs.
-        memory: What the largest of its runs takes, in bytes.
+        overrides: The overrides that make it.
+        root: Name of the file in conf/ that its config hangs on: "config" of a run, "calibrate" of a calibration.
     """
 
-    names: Names
-    costs: NDArray[np.int64]
-    calibrations: frozenset[int]
-    outputs: Path
-    settings: SweepConfig
-    limits: LimitsConfig
-    spec: Mapping[str, Bound]
-    resolved: Resolved
-    memory: float
+    overrides: tuple[str, ...]
+    root: str = "config"
 
 
-def check(plan: Plan) -> Checked:
-    """Compose and check all cells of a plan, one of which is a run.
+class Listed(Plan):
+    """Runs and calibrations by name.
+
+    Args:
+        items: What to make, by name.
+        shared: Overrides of all runs, such as "outputs=FOLDER" and "sweep.trace=all". A calibration takes only
+            outputs.
+        loader: Composes the configs.
 
     Raises:
-        ConfigError: telling each problem once, with the first cell that has it.
+        ConfigError: for what is no override.
     """
-    names, costs = np.empty(len(plan), dtype="S24"), np.empty(len(plan), dtype=np.int64)
-    calibrations: set[int] = set()
-    problems = _Problems()
-    first: RunConfig | None = None
-    memory = 0.0
-    resolved = Resolved()
-    assembled: dict[tuple[str, bytes], ConfigError | None] = {}
-    progress.begin("checking", len(plan), "cells")
-    for block in plan.blocks():
-        cells = slice(block.cells.start, block.cells.stop, block.cells.step)
-        try:
-            composed = plan.composed(block.cells[0])
-            if composed.root == CALIBRATION:
-                calibrations.add(block.cells[0])
-                names[cells], costs[cells] = _check_calibration(composed)
-                continue
-            config = validate(composed.resolved, composed.config_dirs)
-            first = first or config
-            _check_alike(first, config)
-            _check_assembly(composed, config, assembled)
-            names[cells] = _names(composed, config, block)
-            repetitions = config.settings.repetitions
-            costs[cells] = config.timing.ticks * repetitions
-            memory = max(memory, memory_of_run(config.arm, config.timing.ticks, repetitions, config.has_contact))
-            start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
-            described = resolve(composed.resolved, config.timing.step, start)
-            resolved.add(described, composed.overrides, block.cells)
-        except ConfigError as error:
-            problems.add(error, block)
-        finally:
-            progress.step(len(block.cells))
-    if problems or first is None:
-        problems.report(plan)
-    outputs = Path(first.settings.outputs)
-    shared = first.sweep, first.limits, first.spec.metrics
-    return Checked(Names(names), costs, frozenset(calibrations), outputs, *shared, resolved, memory)
+
+    def __init__(self, items: Mapping[str, Item], shared: Sequence[str], loader: Loader) -> None:
+        super().__init__(loader)
+        self._items = tuple(items.values())
+        known = groups(loader.config_dirs)
+        self._cells: dict[Hashable, list[list[SweptKey]]] = {}  # keys of values of each cell that is composed together
+        self._places: list[tuple[Hashable, int]] = []
+        for item in self._items:
+            taken = [text for text in shared if item.root == "config" or text.startswith("outputs=")]
+            keys = parse_sweep(force([*item.overrides, *taken]), known, loader.hydra)
+            options, values = [[key for key in keys if key.option is which] for which in (True, False)]
+            group = item.root, tuple(key.override(0) for key in options), tuple(key.start for key in values)
+            together = self._cells.setdefault(group, [])
+            self._places.append((group, len(together)))
+            together.append(values)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def overrides(self, cell: int) -> tuple[str, ...]:
+        """Return the overrides of a cell; see Plan."""
+        return self._items[cell].overrides
+
+    def _locate(self, cell: int) -> tuple[Hashable, Sequence[int]]:
+        group, place = self._places[cell]
+        return group, [place] * len(self._cells[group][0])
+
+    def _parts(self, group: Any) -> tuple[Sequence[str], Sequence[SweptKey], str]:
+        root, options, starts = group
+        columns = zip(starts, zip(*self._cells[group], strict=True), strict=True)
+        keys = [
+            SweptKey(same[0].name, [key.values[0] for key in same], option=False, start=start)
+            for start, same in (columns if starts else ())
+        ]
+        return options, keys, root
 
 
-class _Problems:
-    """What is wrong: each problem with its first cell and the number of cells that have it."""
-
-    def __init__(self) -> None:
-        self._found: dict[str, tuple[int, int]] = {}
-
-    def __bool__(self) -> bool:
-        return bool(self._found)
-
-    def add(self, error: ConfigError, block: Block) -> None:
-        """Take the problems of the cells of a block."""
-        for problem in error.problems:
-            first, count = self._found.get(problem, (block.cells[0], 0))
-            self._found[problem] = min(first, block.cells[0]), count + len(block.cells)
-
-    def report(self, plan: Plan) -> NoReturn:
-        """End the check, with the problems in the order of the cells.
-
-        Raises:
-            ConfigError: always.
-        """
-        found = sorted(self._found.items(), key=lambda item: item[1][0])
-        more = len(found) - _PROBLEMS_SHOWN
-        hint = "  nothing was started" if more <= 0 else f"  and {more} more problems; nothing was started"
-        raise ConfigError([_describe(plan, problem, *where) for problem, where in found[:_PROBLEMS_SHOWN]], hint)
+def _may_be_seeds(key: SweptKey) -> bool:
+    """Tell whether all values of a key are seeds."""
+    values = key.values
+    if key.option:
+        return False
+    if isinstance(values, range):
+        return min(values[0], values[-1]) >= 0 and max(values[0], values[-1]) <= LARGEST_WHOLE
+    return all(type(value) is int and 0 <= value <= LARGEST_WHOLE for value in values)
 
 
-def _names(composed: Composed, config: RunConfig, block: Block) -> Texts:
-    """Return the names of the runs of a block, shape (n,)."""
-    if block.seeds is None:
-        return Names.of([store.run_hash(composed.resolved, config.arm.urdf)]).texts
-    return store.run_hashes(composed.resolved, config.arm.urdf, block.seeds).texts
-
-
-def _check_calibration(composed: Composed) -> tuple[str, int]:
-    """Return hash and cost of a calibration."""
-    config = validate_calibration(composed)
-    name = store.run_hash(config.resolved, config.arm.urdf)
-    return name, TICKS * config.settings.repetitions
-
-
-def _check_alike(first: RunConfig, other: RunConfig) -> None:
-    if _shared(first) != _shared(other):
-        raise ConfigError(["outputs, sweep.*, limits.*, caveats.*, spec.*: must have one value in all runs of a sweep"])
-
-
-def _shared(config: RunConfig) -> tuple[object, ...]:
-    """Return what is the same in all runs of a sweep."""
-    return config.settings.outputs, config.sweep, config.limits, config.caveats, config.spec
-
-
-def _check_assembly(
-    composed: Composed, config: RunConfig, assembled: dict[tuple[str, bytes], ConfigError | None]
-) -> None:
-    """Assemble each robot on each plant from each start once: some problems show only there."""
-    parts = [json_text(composed.resolved[group]) for group in ("robot", "plant")]
-    key = ", ".join(parts), config.path.start.tobytes()
-    if key not in assembled:
-        assembled[key] = None
-        try:
-            assemble(config).close()
-        except ConfigError as error:
-            assembled[key] = error
-    problem = assembled[key]
-    if problem is not None:
-        raise problem
-
-
-def _describe(plan: Plan, problem: str, cell: int, count: int) -> str:
-    others = f" and {count - 1} other cell{'s' if count > 2 else ''}:" if count > 1 else ""
-    return f"[{' '.join(plan.overrides(cell))}]{others} {problem}"
+def plan_sweep(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Grid:
+    """Plan what `runner -m OVERRIDES` makes, from Python; see Grid."""
+    return Grid(overrides, Loader(config_dirs))

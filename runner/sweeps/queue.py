@@ -1,8 +1,7 @@
 """Queue of runs and calibrations, handed out in chunks."""
 
 from collections import deque
-from collections.abc import Iterable, Sequence
-from typing import Protocol
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +9,7 @@ from numpy.typing import NDArray
 from runner import store
 from runner.config.compose.compose import Composed
 from runner.store.shards import next_number, shard_name
-from runner.sweeps.plan import Part
-from runner.sweeps.work import Chunk, Report, find_stored
+from runner.sweeps.work import Chunk, Part, Report, find_stored
 from runner.sweeps.writer import Rules
 
 _SECONDS_PER_CHUNK = 1.0  # long against the 5 ms that a chunk costs, short against a sweep
@@ -20,11 +18,8 @@ _LARGEST = 2000  # jobs; of longer chunks much would be lost with their worker
 _SHORTEST_TICK = 1e-7  # s; what was found stored takes none
 
 
-class Cells(Protocol):
-    """What gives the cells of a queue, such as a plan."""
-
-    def alike(self, cells: Sequence[int]) -> Iterable[tuple[Sequence[int], Sequence[Composed]]]:
-        """Yield those of some cells whose configs differ in nothing but the seed, with their configs."""
+Alike = Callable[[Sequence[int]], Iterable[tuple[Sequence[int], Sequence[Composed]]]]
+"""Gives those of some cells whose configs differ in nothing but the seed, with their configs; see Plan.alike."""
 
 
 class Queue:
@@ -33,7 +28,7 @@ class Queue:
     They are single jobs at first, until it is known how long one takes.
 
     Args:
-        cells_of: Gives their configs: the sweep's plan.
+        alike: Gives their configs: that of the sweep's plan.
         names: Hash of each cell's run or calibration.
         costs: What each cell costs, in ticks.
         cells: The cells to do, in their order, shape (n,).
@@ -45,7 +40,7 @@ class Queue:
 
     def __init__(
         self,
-        cells_of: Cells,
+        alike: Alike,
         names: Sequence[str],
         costs: "Sequence[int] | NDArray[np.int64]",
         cells: NDArray[np.intp],
@@ -53,7 +48,7 @@ class Queue:
     ) -> None:
         self.rules, self._ticks_done = rules, 0
         self._ticks_of: dict[str, int] = {}  # made so far of each chunk under way
-        self._cells_of, self._names, self._costs = cells_of, names, costs
+        self._alike, self._names, self._costs = alike, names, costs
         self._cells, self._next = cells, 0
         of_each = np.asarray(costs, dtype=np.int64)[cells]
         self._ticks = np.concatenate([[0], np.cumsum(of_each)])  # of all cells before each that is to do
@@ -130,7 +125,7 @@ class Queue:
     def _chunk(self, cells: Sequence[int]) -> Chunk:
         self._handed_out += 1
         parts = []
-        for own, configs in self._cells_of.alike(cells):
+        for own, configs in self._alike(cells):
             names = [self._names[cell] for cell in own]
             self._under_way |= dict(zip(names, own, strict=True))
             parts.append(Part(names, configs))

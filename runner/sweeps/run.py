@@ -25,13 +25,13 @@ from runner.store.atomic import remove_leftovers
 from runner.store.finer import FOLDER as FINER
 from runner.store.latest import note
 from runner.store.names import Names
+from runner.sweeps.check import Checked, check
 from runner.sweeps.differing import Resolved
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
-from runner.sweeps.grid import Grid
 from runner.sweeps.loading import ConfigSource
 from runner.sweeps.outcomes import Ends
-from runner.sweeps.plan import Checked, Plan, check
+from runner.sweeps.plan import Grid, Plan
 from runner.sweeps.queue import Queue
 from runner.sweeps.status import at_work
 from runner.sweeps.work import Report, find_calibrated
@@ -128,7 +128,7 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
         ends = _find_stored(checked, rules)
         stored = len(ends)
         left = ends.left[np.argsort(-checked.costs[ends.left], kind="stable")]
-        queue = Queue(plan, names, checked.costs, left, rules)
+        queue = Queue(plan.alike, names, checked.costs, left, rules)
         try:
             for report in make_jobs(plan, checked, queue, left, engine, stored):
                 ends.add(report.outcomes)

@@ -13,7 +13,7 @@ from runner.base.errors import ConfigError
 from runner.base.limits import CELLS
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.units import as_numbers
-from runner.store.axes import Counted
+from runner.store.axes import SweepAxis
 
 
 @dataclass(frozen=True)
@@ -22,23 +22,27 @@ class SweptKey:
 
     Attributes:
         name: The key, such as "noise.position".
-        overrides: The override of each value as Hydra takes it, such as "++noise.position=0.001".
-        values: The values themselves; quantities, such as 1mrad, as numbers in SI units.
+        values: Its values; quantities, such as 1mrad, as numbers in SI units.
         option: Whether they choose an option of a config group, or delete a key: what needs composing anew.
-        in_si: Whether its values are numbers in place of quantities that were typed.
+        start: How its overrides begin for Hydra, such as "++noise.position".
+        typed: The override as typed; empty for a key that is swept.
     """
 
     name: str
-    overrides: Sequence[str]
     values: Sequence[Any]
     option: bool
-    in_si: bool = False
+    start: str
+    typed: str = ""
 
-    def text(self, number: int) -> str:
-        """Return the override of a value, given by its number, as a sweep keeps it."""
-        if self.in_si:
-            return f"{self.name}={self.values[number]!r}"
-        return self.overrides[number].removeprefix("++")
+    def override(self, number: int) -> str:
+        """Return the override of a value as Hydra takes it; the value is given by its number."""
+        return self.typed or SweepAxis(self.start, self.values).text(number)
+
+    def entry(self) -> SweepAxis | str:
+        """Return the key as an entry of a sweep's axes."""
+        if len(self.values) == 1:
+            return self.override(0).removeprefix("++")
+        return SweepAxis(self.start.removeprefix("++"), self.values)
 
 
 def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigLoader) -> list[SweptKey]:
@@ -78,31 +82,19 @@ def _check_cells(cells: float) -> None:
         raise ConfigError([f"the sweep {excess}; sweep over fewer values"])
 
 
-def is_simulated(key: str) -> bool:
-    """Tell whether a key says what is simulated, not how and where that is done."""
-    return key.partition(".")[0] not in ("caveats", "hydra", "limits", "outputs", "spec", "sweep")
-
-
 def _read(override: Override, groups: Sequence[str]) -> SweptKey:
-    name = override.key_or_group
+    name, start = override.key_or_group, override.get_key_element()
     is_group = name in groups or "/" in name or override.package is not None
-    counted = _counted(override)
-    if counted is not None:
-        return SweptKey(name, Counted(f"{override.get_key_element()}=", counted), counted, is_group)
-    if override.is_sweep_override():
+    values: Sequence[Any] | None = _counted(override)
+    if values is None and override.is_sweep_override():
         values = [Override._convert_value(value) for value in override.sweep_iterator(Transformer.identity)]
-        encoded = override.sweep_string_iterator()
-        # Hydra would escape the braces of an interpolation, and so end it.
-        texts = [value if "${" in str(value) else text for value, text in zip(values, encoded, strict=True)]
-        overrides = [f"{override.get_key_element()}={text}" for text in texts]
-    else:
-        value: Any = override.value()
-        values, overrides = [value], [override.input_line or ""]
-    numbers = None if is_group else as_numbers(values, name)
+    typed = "" if values is not None else override.input_line or ""
+    values = [override.value()] if values is None else values
+    numbers = None if is_group or isinstance(values, range) else as_numbers(values, name)
     if numbers is not None:
-        return SweptKey(name, overrides, numbers, option=False, in_si=True)
-    mapping = any(isinstance(value, dict) for value in values)
-    return SweptKey(name, overrides, values, (is_group and not mapping) or override.is_delete())
+        return SweptKey(name, numbers, option=False, start=start)
+    mapping = not isinstance(values, range) and any(isinstance(value, dict) for value in values)
+    return SweptKey(name, values, (is_group and not mapping) or override.is_delete(), start, typed)
 
 
 def _counted(override: Override) -> range | None:

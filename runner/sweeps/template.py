@@ -30,21 +30,21 @@ class Template:
 
     Args:
         config: The config as Hydra composed it from the options alone.
-        chosen: What Hydra took in each group.
+        root: Name of the file in conf/ that it hangs on: "config" of a run, "calibrate" of a calibration.
         config_dirs: Config folders of the user's.
         keys: The keys of values, in the order of the command line.
 
     Attributes:
+        root: As given.
         choices: The option chosen in each of our groups.
 
     Raises:
         ConfigError: if a value does not compose.
     """
 
-    def __init__(
-        self, config: DictConfig, chosen: Mapping[str, Any], config_dirs: Sequence[Path], keys: Sequence[SweptKey]
-    ) -> None:
-        self._chosen, self._config_dirs, self._keys = chosen, config_dirs, keys
+    def __init__(self, config: DictConfig, root: str, config_dirs: Sequence[Path], keys: Sequence[SweptKey]) -> None:
+        self.root, self._config_dirs, self._keys = root, config_dirs, keys
+        self._chosen: Mapping[str, Any] = config.hydra.runtime.choices
         self._config = OmegaConf.masked_copy(config, [str(key) for key in config if key != "hydra"])
         OmegaConf.set_struct(self._config, True)
         first = self.compose([0] * len(keys))
@@ -97,7 +97,7 @@ class Template:
 
     def compose(self, cell: Sequence[int]) -> Composed:
         """Compose a cell by Hydra's own function for overrides of values; see `resolve`."""
-        texts = [key.overrides[number] for key, number in zip(self._keys, cell, strict=True)]
+        texts = [key.override(number) for key, number in zip(self._keys, cell, strict=True)]
         config = copy.deepcopy(self._config)
         try:
             ConfigLoaderImpl._apply_overrides_to_config(OverridesParser.create().parse_overrides(texts), config)

@@ -29,12 +29,24 @@ from runner.sweeps.batch import make_together
 from runner.sweeps.calibration_job import CALIBRATION, carry_out
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.job import simulate_job
-from runner.sweeps.plan import Part
 from runner.sweeps.writer import ResultWriter, Rules, without_trace, write_failure, write_log
 
 Made = TypeVar("Made")
 
 _one_at_a_time = threading.Lock()  # should a worker have several threads
+
+
+@dataclass(frozen=True)
+class Part:
+    """Runs whose configs differ in nothing but the seed, or a single run or calibration.
+
+    Attributes:
+        names: Hash of each.
+        configs: Composed config of each.
+    """
+
+    names: Sequence[str]
+    configs: Sequence[Composed]
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from runner import store
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import Composed
 from runner.config.validation import validate
-from runner.sweeps.grid import Grid
 from runner.sweeps.loading import Loader
+from runner.sweeps.plan import Grid
 from runner.sweeps.queue import Queue
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.objective import Trial
@@ -49,7 +49,7 @@ class TrialQueue(Queue):
         self._runs: list[str] = []
         self._costs_of_runs: list[int] = []
         self._cell_of: dict[str, int] = {}
-        super().__init__(self, self._runs, self._costs_of_runs, np.zeros(0, dtype=np.intp), rules)
+        super().__init__(self._composed, self._runs, self._costs_of_runs, np.zeros(0, dtype=np.intp), rules)
         self._study, self._journal, self._loader = study, journal, loader
         self._trials, self._seed = trials, seed
         self._started = deque[_Started]()
@@ -61,8 +61,8 @@ class TrialQueue(Queue):
         """Number of trials that have not ended."""
         return max(0, self._trials - len(self._journal.trials))
 
-    def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
-        """Yield each run that is to do, and its composed config; cells are counted as they are handed in."""
+    def _composed(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
+        """Yield each run that is to do with its config; cells are counted in the order in which they were put."""
         return (([cell], [self._configs[cell]]) for cell in cells)
 
     def take(self, workers: int) -> Chunk | None:

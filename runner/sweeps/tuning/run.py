@@ -15,14 +15,14 @@ from runner.base.limits import TRIALS
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.options import groups
 from runner.config.compose.overrides import force
+from runner.store.axes import is_simulated
 from runner.store.latest import note
 from runner.store.names import Names
-from runner.sweeps.grid import Grid
+from runner.sweeps.check import Checked, check
 from runner.sweeps.loading import Loader
-from runner.sweeps.plan import Checked, Plan, check
+from runner.sweeps.plan import Grid, Plan
 from runner.sweeps.run import Engine, clean, make_jobs, make_rules
 from runner.sweeps.status import at_work
-from runner.sweeps.swept import is_simulated
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import RANGES, Key, read_key
 from runner.sweeps.tuning.objective import Objective

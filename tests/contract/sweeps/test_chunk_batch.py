@@ -10,10 +10,9 @@ from runner.simulation import batch
 from runner.store.json_texts import JsonTexts
 from runner.sweeps import work
 from runner.sweeps.batch import _rows
-from runner.sweeps.explicit import Item, Listed
-from runner.sweeps.grid import plan_sweep
+from runner.sweeps.check import check
 from runner.sweeps.loading import Loader
-from runner.sweeps.plan import check
+from runner.sweeps.plan import Item, Listed, plan_sweep
 from runner.sweeps.queue import Queue
 from runner.sweeps.run import make_rules
 from runner.sweeps.work import Chunk
@@ -44,7 +43,7 @@ def whole_chunk(plan):
     store.prepare(checked.outputs)
     folder = store.write_sweep(checked.outputs, [(plan.overrides(n), checked.names[n]) for n in range(len(plan))], "x")
     rules = make_rules(checked.settings, folder, len(plan))
-    queue = Queue(plan, checked.names, checked.costs, np.arange(len(plan)), rules)
+    queue = Queue(plan.alike, checked.names, checked.costs, np.arange(len(plan)), rules)
     return queue._chunk(range(len(plan)))
 
 

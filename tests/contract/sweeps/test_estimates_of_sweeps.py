@@ -12,8 +12,8 @@ from runner.simulation.batch_jobs import seconds_together, warm_time
 from runner.sweeps import job, run
 from runner.sweeps.engine import in_process
 from runner.sweeps.estimate import START_UP, Estimate
-from runner.sweeps.grid import plan_sweep
 from runner.sweeps.job import PROBED_TICKS, seconds_per_tick
+from runner.sweeps.plan import plan_sweep
 from runner.sweeps.run import Engine, run_sweep
 
 SHORT = ("robot=macro", "duration=0.05", "noise=none")

@@ -4,9 +4,9 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.sweeps.explicit import Item, Listed
+from runner.sweeps.check import check
 from runner.sweeps.loading import Loader
-from runner.sweeps.plan import check
+from runner.sweeps.plan import Item, Listed
 
 ITEMS = {
     "slow": Item(("experiment=thesis/figure_3_9", "preset=full_equations", "trajectory.duration=1.5", "repetitions=2")),

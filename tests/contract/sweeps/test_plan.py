@@ -5,8 +5,8 @@ import pytest
 from runner.base.errors import ConfigError
 from runner.config.validation import validate
 from runner.store import run_hash
-from runner.sweeps.grid import plan_sweep
-from runner.sweeps.plan import check
+from runner.sweeps.check import check
+from runner.sweeps.plan import plan_sweep
 
 SHORT = ("robot=macro", "duration=0.05")
 

@@ -21,7 +21,7 @@ from runner.simulation.compiled.closed_loop import CommandsRun
 from runner.sweeps import work
 from runner.sweeps.deadline import TimeLimitError
 from runner.sweeps.estimate import Estimate
-from runner.sweeps.grid import plan_sweep
+from runner.sweeps.plan import plan_sweep
 from runner.sweeps.run import Engine
 from runner.sweeps.writer import one_in
 from runner.symbolic.engine import evaluator

@@ -6,7 +6,7 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.sweeps.grid import plan_sweep
+from runner.sweeps.plan import plan_sweep
 
 INDEPENDENT = [
     ("robot=macro,mini", "noise.position=1e-4,1e-3", "controller.period=0.01,0.02"),
@@ -57,7 +57,7 @@ def test_hydra_composes_once_for_each_combination_of_options(monkeypatch):
     plan = plan_sweep(("robot=macro,mini", "noise=none,thesis", "seed=range(0,50)"))
     loaded = []
     load = plan._source.load
-    monkeypatch.setattr(plan._source, "load", lambda options: loaded.append(options) or load(options))
+    monkeypatch.setattr(plan._source, "load", lambda *given: loaded.append(given) or load(*given))
     seeds = {plan.composed(cell).resolved["seed"] for cell in range(len(plan))}
     assert (len(plan), len(loaded), seeds) == (200, 4, {*range(50)})
 

@@ -10,7 +10,7 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation.provenance import command
-from runner.sweeps.grid import plan_sweep
+from runner.sweeps.plan import plan_sweep
 
 
 @pytest.fixture(params=[True, False], ids=["with PyBullet", "without"])

@@ -4,8 +4,7 @@ import pickle
 
 import pytest
 
-from runner.sweeps.grid import plan_sweep
-from runner.sweeps.plan import Alike
+from runner.sweeps.plan import Alike, plan_sweep
 
 SHORT = ("robot=macro", "duration=0.05", "outputs=somewhere")
 

@@ -11,19 +11,14 @@ from runner.sweeps.work import Report
 from runner.sweeps.writer import Rules
 
 
-class Cells:
-    def alike(self, cells):
-        return (([cell], [self.composed(cell)]) for cell in cells)
-
-    @staticmethod
-    def composed(cell):
-        return Composed({"seed": cell}, (), {}, ())
+def alike(cells):
+    return (([cell], [Composed({"seed": cell}, (), {}, ())]) for cell in cells)
 
 
 def queue_of(tmp_path, costs):
     rules = Rules((), tmp_path, tmp_path, "never", True, True, False, 1, None)
     names = [f"{cell:024x}" for cell in range(len(costs))]
-    return Queue(Cells(), names, costs, np.arange(len(costs)), rules)
+    return Queue(alike, names, costs, np.arange(len(costs)), rules)
 
 
 def drain(tmp_path, costs, seconds_per_tick, workers=2):

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.sweeps.grid import plan_sweep
+from runner.sweeps.plan import plan_sweep
 
 
 def keys(*arguments):
@@ -26,7 +26,10 @@ def test_values_are_read_as_hydra_reads_them(argument, values):
     (key,) = keys(argument)
     assert list(key.values) == values
     assert not key.option
-    assert [plan_sweep([text]).composed(0).resolved for text in key.overrides]
+    for number, value in enumerate(values):
+        (again,) = keys(key.override(number).removeprefix("++"))
+        assert again.values == [value]
+        assert plan_sweep([key.override(number)]).composed(0).resolved
 
 
 def test_options_of_groups_are_told_from_values():

@@ -1,0 +1,172 @@
+"""Check of a plan: all its cells are composed and checked before the first run."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner import store
+from runner.base import progress
+from runner.base.errors import ConfigError
+from runner.config.calibration import validate_calibration
+from runner.config.compose.compose import Composed
+from runner.config.limits import LimitsConfig, memory_of_run
+from runner.config.run import RunConfig
+from runner.config.spec import Bound
+from runner.config.sweep import SweepConfig
+from runner.config.validation import validate
+from runner.simulation.assembly import assemble
+from runner.store.identity import json_text
+from runner.store.names import Names, Texts
+from runner.sweeps.calibration_job import CALIBRATION, TICKS
+from runner.sweeps.differing import Resolved, is_one_arm, resolve
+from runner.sweeps.plan import Block, Plan
+
+_PROBLEMS_SHOWN = 20
+
+
+@dataclass(frozen=True)
+class Checked:
+    """Result of the check of a plan.
+
+    Attributes:
+        names: Hash of each cell's run or calibration.
+        costs: Ticks of all its repetitions together, shape (cells,).
+        calibrations: The cells that are calibrations, not runs.
+        outputs: Folder in which they are stored.
+        settings: Settings of the sweep.
+        limits: Limits of CPU time and memory.
+        spec: Bounds on metrics.
+        resolved: What differs between the configs of the runs.
+        memory: What the largest of its runs takes, in bytes.
+    """
+
+    names: Names
+    costs: NDArray[np.int64]
+    calibrations: frozenset[int]
+    outputs: Path
+    settings: SweepConfig
+    limits: LimitsConfig
+    spec: Mapping[str, Bound]
+    resolved: Resolved
+    memory: float
+
+
+def check(plan: Plan) -> Checked:
+    """Compose and check all cells of a plan, at least one of them a run.
+
+    Raises:
+        ConfigError: telling each problem once, with the first cell that has it.
+    """
+    names, costs = np.empty(len(plan), dtype="S24"), np.empty(len(plan), dtype=np.int64)
+    calibrations: set[int] = set()
+    problems = _Problems()
+    first: RunConfig | None = None
+    memory = 0.0
+    resolved = Resolved()
+    assembled: dict[tuple[str, bytes], ConfigError | None] = {}
+    progress.begin("checking", len(plan), "cells")
+    for block in plan.blocks():
+        cells = slice(block.cells.start, block.cells.stop, block.cells.step)
+        try:
+            composed = plan.composed(block.cells[0])
+            if composed.root == CALIBRATION:
+                calibrations.add(block.cells[0])
+                names[cells], costs[cells] = _check_calibration(composed)
+                continue
+            config = validate(composed.resolved, composed.config_dirs)
+            first = first or config
+            _check_alike(first, config)
+            _check_assembly(composed, config, assembled)
+            names[cells] = _names(composed, config, block)
+            repetitions = config.settings.repetitions
+            costs[cells] = config.timing.ticks * repetitions
+            memory = max(memory, memory_of_run(config.arm, config.timing.ticks, repetitions, config.has_contact))
+            start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
+            described = resolve(composed.resolved, config.timing.step, start)
+            resolved.add(described, composed.overrides, block.cells)
+        except ConfigError as error:
+            problems.add(error, block)
+        finally:
+            progress.step(len(block.cells))
+    if problems or first is None:
+        problems.report(plan)
+    outputs = Path(first.settings.outputs)
+    shared = first.sweep, first.limits, first.spec.metrics
+    return Checked(Names(names), costs, frozenset(calibrations), outputs, *shared, resolved, memory)
+
+
+class _Problems:
+    """Problems, each with its first cell and the number of cells that have it."""
+
+    def __init__(self) -> None:
+        self._found: dict[str, tuple[int, int]] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._found)
+
+    def add(self, error: ConfigError, block: Block) -> None:
+        """Take the problems of the cells of a block."""
+        for problem in error.problems:
+            first, count = self._found.get(problem, (block.cells[0], 0))
+            self._found[problem] = min(first, block.cells[0]), count + len(block.cells)
+
+    def report(self, plan: Plan) -> NoReturn:
+        """End the check, with the problems in the order of the cells.
+
+        Raises:
+            ConfigError: always.
+        """
+        found = sorted(self._found.items(), key=lambda item: item[1][0])
+        more = len(found) - _PROBLEMS_SHOWN
+        hint = "  nothing was started" if more <= 0 else f"  and {more} more problems; nothing was started"
+        raise ConfigError([_describe(plan, problem, *where) for problem, where in found[:_PROBLEMS_SHOWN]], hint)
+
+
+def _names(composed: Composed, config: RunConfig, block: Block) -> Texts:
+    """Return the names of the runs of a block, shape (n,)."""
+    if block.seeds is None:
+        return Names.of([store.run_hash(composed.resolved, config.arm.urdf)]).texts
+    return store.run_hashes(composed.resolved, config.arm.urdf, block.seeds).texts
+
+
+def _check_calibration(composed: Composed) -> tuple[str, int]:
+    """Return hash and cost of a calibration."""
+    config = validate_calibration(composed)
+    name = store.run_hash(config.resolved, config.arm.urdf)
+    return name, TICKS * config.settings.repetitions
+
+
+def _check_alike(first: RunConfig, other: RunConfig) -> None:
+    if _shared(first) != _shared(other):
+        raise ConfigError(["outputs, sweep.*, limits.*, caveats.*, spec.*: must have one value in all runs of a sweep"])
+
+
+def _shared(config: RunConfig) -> tuple[object, ...]:
+    """Return the parts that must be equal in all runs of a sweep."""
+    return config.settings.outputs, config.sweep, config.limits, config.caveats, config.spec
+
+
+def _check_assembly(
+    composed: Composed, config: RunConfig, assembled: dict[tuple[str, bytes], ConfigError | None]
+) -> None:
+    """Assemble each robot on each plant from each start once: some problems show only there."""
+    parts = [json_text(composed.resolved[group]) for group in ("robot", "plant")]
+    key = ", ".join(parts), config.path.start.tobytes()
+    if key not in assembled:
+        assembled[key] = None
+        try:
+            assemble(config).close()
+        except ConfigError as error:
+            assembled[key] = error
+    problem = assembled[key]
+    if problem is not None:
+        raise problem
+
+
+def _describe(plan: Plan, problem: str, cell: int, count: int) -> str:
+    others = f" and {count - 1} other cell{'s' if count > 2 else ''}:" if count > 1 else ""
+    return f"[{' '.join(plan.overrides(cell))}]{others} {problem}"
