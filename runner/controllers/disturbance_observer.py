@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, Literal, NamedTuple, Protocol, cast
+from typing import Literal, NamedTuple, Protocol, cast
 
 import numpy as np
 from pydantic import PositiveFloat
@@ -10,8 +10,9 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
-from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
-from runner.plugins.guard import guarded_like, unguarded
+from runner.controllers.torque_filter import FilteredController, TorqueFilter, with_filter
+from runner.controllers.torque_law import Arm, PinocchioArm
+from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import RadiansPerSecond
@@ -68,7 +69,7 @@ class ObserverNumbers(NamedTuple):
     gravity: Array
 
 
-class MomentumObserver:
+class MomentumObserver(TorqueFilter):
     r"""What acts on some joints beside the torque that their law asks for.
 
     After De Luca, Albu-Schaeffer, Haddadin and Hirzinger (IEEE/RSJ International Conference on Intelligent Robots and
@@ -98,23 +99,19 @@ class MomentumObserver:
     def __init__(
         self, robot: Robot, joints: slice, bandwidth: float, period: float, limits: FloatArray, late: int
     ) -> None:
-        self.model = robot.model
+        self.models = (robot.model,)
         self._first, self._end, self._late = joints.start, joints.stop, late
         gain = float(-np.expm1(-bandwidth * period))
         self.numbers = ObserverNumbers(gain, period, limits, robot.model.gravity)
 
-    def structure(self) -> dict[str, Any]:
-        """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""
-        return structure_of(self)
-
     @property
     def remembers(self) -> int:
-        """How many numbers it keeps from tick to tick."""
+        """Size of its memory."""
         return (3 + self._late) * len(self.numbers.limits)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return what it keeps before the first tick: the arm rests at q, and nothing disturbs it."""
-        b = PinocchioArm(self.model).momentum(q, np.zeros(len(q)), self.numbers.gravity)[1][self._first : self._end]
+        """Return the memory before the first tick: the arm rests at q, and nothing disturbs it."""
+        b = PinocchioArm(self.models[0]).momentum(q, np.zeros(len(q)), self.numbers.gravity)[1][self._first : self._end]
         return np.concatenate([np.zeros(len(b)), 0.5 * self.numbers.period * b, *[-b] * (1 + self._late)])
 
     def measured(self, memory: FloatArray, reading: FloatArray) -> FloatArray:
@@ -122,20 +119,10 @@ class MomentumObserver:
         n = len(self.numbers.limits)
         return np.concatenate([memory[: 2 * n], reading[self._first : self._end], memory[3 * n :]])
 
-    def correct(
+    def filter(
         self, arm: Arm, numbers: ObserverNumbers, time: Scalar, q: Array, dq: Array, torque: Array, memory: Array
     ) -> tuple[Array, Array]:
-        """Return a law's torques less what else acts, shape (n,), in N m, and what the observer keeps.
-
-        Args:
-            arm: The whole nominal robot.
-            numbers: The observer's numbers.
-            time: Time since the start, in s.
-            q: Measured joint positions, shape (nq,), in rad.
-            dq: Measured joint velocities, shape (nq,), in rad/s.
-            torque: What the law asks for, shape (n,), in N m.
-            memory: What the observer kept.
-        """
+        """Return the torques of the law less the estimated disturbance, and the memory; see TorqueFilter."""
         n, h, less = len(numbers.limits), numbers.period, arm.backend.less
         r, before, acted, to_come = memory[:n], memory[n : 2 * n], memory[2 * n : 3 * n], memory[3 * n :]
         p, b = (values[self._first : self._end] for values in arm.momentum(q, dq, numbers.gravity))
@@ -149,102 +136,23 @@ class MomentumObserver:
         return asked, np.concatenate([r, p + 0.5 * h * b, to_come, held])
 
 
-class ObservedNumbers(NamedTuple):
-    """The numbers of a law with an observer.
-
-    Attributes:
-        law: The law's.
-        observer: The observer's.
-    """
-
-    law: Any
-    observer: ObserverNumbers
-
-
-class ObservedLaw(TorqueLaw[ObservedNumbers]):
-    """A torque law that carries an observer; compiled where the law can be.
-
-    Args:
-        law: The law.
-        observer: The observer.
-    """
-
-    def __init__(self, law: TorqueLaw[Any], observer: MomentumObserver) -> None:
-        numbers = ObservedNumbers(law.numbers, observer.numbers)
-        super().__init__([*law.models, observer.model], law.gravity_compensation, numbers, law.measured)
-        self._law, self._observer = law, observer
-
-    def start(self, q: FloatArray) -> FloatArray:
-        """Return what law and observer keep at the first tick; see TorqueLaw."""
-        return np.concatenate([self._law.start(q), self._observer.start(q)])
-
-    def evaluate(
-        self,
-        arms: Sequence[Arm],
-        numbers: ObservedNumbers,
-        time: Scalar,
-        q: Array,
-        dq: Array,
-        reference: Array,
-        memory: Array,
-    ) -> tuple[Array, Array]:
-        """Return the law's torques less what else acts, and what both keep; see TorqueLaw."""
-        own = len(memory) - self._observer.remembers
-        torque, kept = self._law.evaluate(arms[:-1], numbers.law, time, q, dq, reference, memory[:own])
-        asked, seen = self._observer.correct(arms[-1], numbers.observer, time, q, dq, torque, memory[own:])
-        return asked, np.concatenate([kept, seen])
-
-
-class ObservedController:
-    """A controller of any kind that carries an observer; see Controller.
+class MeasuringController(FilteredController):
+    """A controller whose observer takes the torques that sensors in the joints read; see ReadsJointTorques.
 
     Args:
         controller: The controller.
         observer: The observer.
+        model: The nominal robot.
     """
 
-    def __init__(self, controller: Controller, observer: MomentumObserver) -> None:
-        self._controller, self._observer = controller, observer
-        self._arm = PinocchioArm(observer.model)
-        self._memory: FloatArray | None = None
-
-    def reset(self) -> None:
-        """Forget what an earlier run left."""
-        self._controller.reset()
-        self._memory = None
-
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the controller's torques less what else acts; see Controller."""
-        torque = self._controller.torque(time, q, dq, reference)
-        memory = self._observer.start(q) if self._memory is None else self._memory
-        asked, self._memory = self._observer.correct(self._arm, self._observer.numbers, time, q, dq, torque, memory)
-        return asked
-
-
-class MeasuringController(ObservedController):
-    """A controller whose observer takes the torques that sensors in the joints read; see ReadsJointTorques."""
+    def __init__(self, controller: Controller, observer: "MomentumObserver", model: RobotModel) -> None:
+        super().__init__(controller, observer, model)
+        self._observer = observer
 
     def read_joint_torques(self, reading: FloatArray) -> None:
         """Take the mean torques on the links since the last tick; see ReadsJointTorques."""
         if self._memory is not None:
             self._memory = self._observer.measured(self._memory, reading)
-
-
-def observe(controller: Controller, observer: MomentumObserver, measures: bool) -> Controller:
-    """Return a controller with an observer; a guarded law stays guarded.
-
-    Args:
-        controller: The controller.
-        observer: The observer.
-        measures: Whether the observer takes what sensors in the joints read; no such law is compiled.
-    """
-    if measures:
-        return MeasuringController(controller, observer)
-    law = unguarded(controller)
-    if not isinstance(law, TorqueLaw):
-        return ObservedController(controller, observer)
-    observed: Controller = guarded_like(controller, ObservedLaw(law, observer))
-    return observed
 
 
 class Ticks(Protocol):
@@ -285,7 +193,8 @@ def add_observers(
     for loop, bandwidth, delay in zip(loops, bandwidths, ticks.late, strict=True):
         late = 0 if measures else delay // round(loop.period / ticks.tick)
         observer = MomentumObserver(robot, loop.joints, bandwidth, loop.period, limits[loop.joints], late)
-        carried.append(replace(loop, controller=observe(cast(Controller, loop.controller), observer, measures)))
+        wrap = MeasuringController if measures else with_filter  # no law that measures is compiled
+        carried.append(replace(loop, controller=wrap(cast(Controller, loop.controller), observer, robot.model)))
     return tuple(carried)
 
 

@@ -1,9 +1,8 @@
 """Notch filter of controller torques, against excitation of a resonance, and its config."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple, cast
+from typing import NamedTuple, cast
 
 import numpy as np
 from pydantic import PositiveFloat
@@ -11,13 +10,13 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
-from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
-from runner.plugins.guard import guarded_like, unguarded
+from runner.controllers.torque_filter import TorqueFilter, with_filter
+from runner.controllers.torque_law import Arm
 from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import NotchPerStage
 from runner.schema.units import Hertz
-from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
+from runner.symbolic.maths import Array, Scalar
 
 
 class NotchConfig(StrictModel):
@@ -60,7 +59,7 @@ class NotchNumbers(NamedTuple):
     a: Array
 
 
-class Notch:
+class Notch(TorqueFilter):
     r"""A second-order notch for each of some torques, by the bilinear transform, exact at its own frequency.
 
     .. math:: H(s) = \frac{s^2 + \omega^2}{s^2 + \Delta s + \omega^2}, \qquad
@@ -78,20 +77,16 @@ class Notch:
         each = np.array([_coefficients(float(f), width, period) for f in frequency]).T
         self.numbers = NotchNumbers(period, each[:3], each[3:])
 
-    def structure(self) -> dict[str, Any]:
-        """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""
-        return structure_of(self)
-
     @property
     def remembers(self) -> int:
-        """How many numbers it keeps from tick to tick."""
+        """Size of its memory."""
         return 2 * len(self.numbers.b[0])
 
     def filter(
-        self, backend: Backend, numbers: NotchNumbers, time: Scalar, torque: Array, memory: Array
+        self, arm: Arm, numbers: NotchNumbers, time: Scalar, q: Array, dq: Array, torque: Array, memory: Array
     ) -> tuple[Array, Array]:
-        """Return what passes of some torques, shape (n,), in N m, and what the notch keeps."""
-        (b0, b1, b2), (a1, a2), n = numbers.b, numbers.a, len(torque)
+        """Return the torques that pass, and the memory; see TorqueFilter."""
+        (b0, b1, b2), (a1, a2), n, backend = numbers.b, numbers.a, len(torque), arm.backend
         late = (b2 - a2) * torque
         rest = np.concatenate([(b1 - a1) * torque + late, late])
         memory = backend.choose(backend.less(time, 0.5 * numbers.period), lambda: rest, lambda: memory)
@@ -113,97 +108,17 @@ def _coefficients(frequency: float, width: float, period: float) -> tuple[float,
     return gain, gain * (-2.0 * cosine), gain, -2.0 * gain * cosine, 2.0 * gain - 1.0
 
 
-class NotchedNumbers(NamedTuple):
-    """The numbers of a law with a notch.
-
-    Attributes:
-        law: The law's.
-        notch: The notch's.
-    """
-
-    law: Any
-    notch: NotchNumbers
-
-
-class NotchedLaw(TorqueLaw[NotchedNumbers]):
-    """A torque law whose torques pass a notch; compiled where the law can be.
-
-    Args:
-        law: The law.
-        notch: The notch.
-    """
-
-    def __init__(self, law: TorqueLaw[Any], notch: Notch) -> None:
-        super().__init__(law.models, law.gravity_compensation, NotchedNumbers(law.numbers, notch.numbers), law.measured)
-        self._law, self._notch = law, notch
-
-    def start(self, q: FloatArray) -> FloatArray:
-        """Return what law and notch keep at the first tick; see TorqueLaw."""
-        return np.concatenate([self._law.start(q), np.zeros(self._notch.remembers)])
-
-    def evaluate(
-        self,
-        arms: Sequence[Arm],
-        numbers: NotchedNumbers,
-        time: Scalar,
-        q: Array,
-        dq: Array,
-        reference: Array,
-        memory: Array,
-    ) -> tuple[Array, Array]:
-        """Return what passes of the law's torques, and what both keep; see TorqueLaw."""
-        own = len(memory) - self._notch.remembers
-        torque, kept = self._law.evaluate(arms, numbers.law, time, q, dq, reference, memory[:own])
-        passed, seen = self._notch.filter(arms[0].backend, numbers.notch, time, torque, memory[own:])
-        return passed, np.concatenate([kept, seen])
-
-
-class NotchedController:
-    """A controller of any kind whose torques pass a notch; see Controller.
-
-    Args:
-        controller: The controller.
-        notch: The notch.
-    """
-
-    def __init__(self, controller: Controller, notch: Notch) -> None:
-        self._controller, self._notch = controller, notch
-        self._memory = np.zeros(notch.remembers)
-
-    def reset(self) -> None:
-        """Forget what an earlier run left; the notch starts anew at time 0."""
-        self._controller.reset()
-
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return what passes of the controller's torques; see Controller."""
-        torque = self._controller.torque(time, q, dq, reference)
-        passed, self._memory = self._notch.filter(NUMPY, self._notch.numbers, time, torque, self._memory)
-        return passed
-
-
-def add_notch(loops: tuple[Loop, ...], frequency: FloatArray, width: float) -> tuple[Loop, ...]:
+def add_notch(robot: Robot, loops: tuple[Loop, ...], frequency: FloatArray, width: float) -> tuple[Loop, ...]:
     """Return control loops whose torques pass a notch.
 
     Args:
+        robot: The nominal robot.
         loops: Loops that command torques.
-        frequency: Of each joint of the robot, shape (nq,), in Hz; infinite for none.
+        frequency: Frequency of each joint of the robot, shape (nq,), in Hz; infinite for none.
         width: In Hz.
     """
+    notches = [Notch(frequency[loop.joints], width, loop.period) for loop in loops]
     return tuple(
-        replace(
-            loop,
-            controller=_with_notch(
-                cast(Controller, loop.controller), Notch(frequency[loop.joints], width, loop.period)
-            ),
-        )
-        for loop in loops
+        replace(loop, controller=with_filter(cast(Controller, loop.controller), notch, robot.model))
+        for loop, notch in zip(loops, notches, strict=True)
     )
-
-
-def _with_notch(controller: Controller, notch: Notch) -> Controller:
-    """Return a controller with a notch; a guarded law stays guarded."""
-    law = unguarded(controller)
-    if not isinstance(law, TorqueLaw):
-        return NotchedController(controller, notch)
-    notched: Controller = guarded_like(controller, NotchedLaw(law, notch))
-    return notched

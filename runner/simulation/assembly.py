@@ -141,7 +141,7 @@ def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loo
         loops = CONTROLLERS.build_for(config.controller, nominal, isinstance(config.path, TipOfJoints))
     loops = tell_limits(loops, config.torque_limits)
     if config.notch is not None:
-        loops = add_notch(loops, config.notch.by_joint(config.arm), config.notch.width)
+        loops = add_notch(nominal, loops, config.notch.by_joint(config.arm), config.notch.width)
     return nominal, add_observers(config.disturbance_observer, nominal, loops, config.torque_limits, config.timing)
 
 

@@ -31,7 +31,7 @@ _TABLE = """
         settings timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer graph kinds=controllers.kinds notch=controllers.notch
-        sampled_stability torque_law
+        sampled_stability torque_filter torque_law
     controllers/force: admittance admittance_filter admittance_stability force_reading=controllers.force_reading
         force_stability hybrid_force impedance tip_force wrist
     controllers/joint_space: adaptive computed_torque iterative_learning joint_law

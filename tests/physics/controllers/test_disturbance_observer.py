@@ -27,8 +27,8 @@ def assembled(*overrides):
 
 def found(law):
     """r of an observed law, shape (n,)."""
-    n = len(law.numbers.observer.limits)
-    return law.memory[-law._observer.remembers :][:n]
+    n = len(law.numbers.filter.limits)
+    return law.memory[-law._filter.remembers :][:n]
 
 
 @pytest.mark.parametrize("name", ["macro", "xarm7"])

@@ -1,6 +1,7 @@
 """Notch of torques: its frequency response, a flexible arm with and without it, and refusals."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +9,8 @@ from support.arms import checked
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.controllers.notch import Notch, NotchedController
+from runner.controllers.notch import Notch
+from runner.controllers.torque_filter import FilteredController
 from runner.simulation.assembly import assemble
 from runner.simulation.compiled.closed_loop import LoopProgram
 from runner.simulation.loop import simulate
@@ -23,9 +25,9 @@ NOTCHED = ("notch=torques", "notch.frequency=[6,null,9]")
 
 
 def passed(torques, notch):
-    memory, rows = np.zeros(notch.remembers), []
+    memory, rows, arm = np.zeros(notch.remembers), [], SimpleNamespace(backend=NUMPY)
     for k, torque in enumerate(torques):
-        row, memory = notch.filter(NUMPY, notch.numbers, k * H, torque, memory)
+        row, memory = notch.filter(arm, notch.numbers, k * H, None, None, torque, memory)
         rows.append(row)
     return np.array(rows)
 
@@ -67,7 +69,7 @@ def test_code_and_any_controller_ask_for_the_same_as_the_law():
     assert isinstance(closed.compiled, LoopProgram)
     (loop,), (bare,) = closed.loops, config.loops
     notch = Notch(np.array([6.0, np.inf, 9.0]), 5.0, loop.period)
-    wrapped = replace(loop, controller=NotchedController(bare.controller, notch))
+    wrapped = replace(loop, controller=FilteredController(bare.controller, notch, config.arm.model))
     traces = [
         simulate(replace(closed, compiled=compiled, loops=(each,)), make_encoders(closed, config.noise, 0, 0))
         for compiled, each in ((closed.compiled, loop), (None, loop), (None, wrapped))

@@ -1,0 +1,143 @@
+"""Filters of the torques of any controller, such as notches and disturbance observers."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from runner.base.arrays import FloatArray
+from runner.controllers.controller import Controller
+from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
+from runner.plugins.guard import guarded_like, unguarded
+from runner.robots.model import RobotModel
+from runner.symbolic.maths import Array, Scalar
+
+
+class TorqueFilter(ABC):
+    """A filter of the torques of a control law.
+
+    Attributes:
+        models: The arms of the filter, in addition to those of the law.
+        numbers: Its numbers; see TorqueLaw.
+    """
+
+    models: tuple[RobotModel, ...] = ()
+    numbers: Any
+
+    def structure(self) -> dict[str, Any]:
+        """Return the structure of the filter, without its numbers; see TorqueLaw.structure."""
+        return structure_of(self)
+
+    @property
+    @abstractmethod
+    def remembers(self) -> int:
+        """Size of its memory."""
+
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return the memory before the first tick, from the measured joint positions, shape (nq,), in rad."""
+        return np.zeros(self.remembers)
+
+    @abstractmethod
+    def filter(
+        self, arm: Arm, numbers: Any, time: Scalar, q: Array, dq: Array, torque: Array, memory: Array
+    ) -> tuple[Array, Array]:
+        """Return the filtered torques, shape (n,), in N m, and the memory for the next tick.
+
+        Args:
+            arm: The arm of the filter; of a filter without arms, any arm.
+            numbers: The numbers of the filter.
+            time: Time since the start, in s.
+            q: Measured joint positions, shape (nq,), in rad.
+            dq: Measured joint velocities, shape (nq,), in rad/s.
+            torque: Torques of the law, shape (n,), in N m.
+            memory: Memory of the last tick, or `start`.
+        """
+
+
+class FilteredNumbers(NamedTuple):
+    """The numbers of a law with a filter.
+
+    Attributes:
+        law: Those of the law.
+        filter: Those of the filter.
+    """
+
+    law: Any
+    filter: Any
+
+
+class FilteredLaw(TorqueLaw[FilteredNumbers]):
+    """A torque law with a filter; compiled if the law can be.
+
+    Args:
+        law: The law.
+        torque_filter: The filter.
+    """
+
+    def __init__(self, law: TorqueLaw[Any], torque_filter: TorqueFilter) -> None:
+        numbers = FilteredNumbers(law.numbers, torque_filter.numbers)
+        super().__init__([*law.models, *torque_filter.models], law.gravity_compensation, numbers, law.measured)
+        self._law, self._filter = law, torque_filter
+
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return the memories of law and filter at the first tick; see TorqueLaw."""
+        return np.concatenate([self._law.start(q), self._filter.start(q)])
+
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: FilteredNumbers,
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return the filtered torques of the law, and the memories of both; see TorqueLaw."""
+        own, of_law = len(memory) - self._filter.remembers, arms[: len(self._law.models)]
+        torque, kept = self._law.evaluate(of_law, numbers.law, time, q, dq, reference, memory[:own])
+        passed, seen = self._filter.filter(arms[-1], numbers.filter, time, q, dq, torque, memory[own:])
+        return passed, np.concatenate([kept, seen])
+
+
+class FilteredController:
+    """A controller of any kind with a filter; see Controller.
+
+    Args:
+        controller: The controller.
+        torque_filter: The filter.
+        model: The nominal robot.
+    """
+
+    def __init__(self, controller: Controller, torque_filter: TorqueFilter, model: RobotModel) -> None:
+        self._controller, self._filter = controller, torque_filter
+        self._arm = PinocchioArm(model)
+        self._memory: FloatArray | None = None
+
+    def reset(self) -> None:
+        """Forget everything of an earlier run."""
+        self._controller.reset()
+        self._memory = None
+
+    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
+        """Return the filtered torques of the controller; see Controller."""
+        torque, filtered = self._controller.torque(time, q, dq, reference), self._filter
+        memory = filtered.start(q) if self._memory is None else self._memory
+        passed, self._memory = filtered.filter(self._arm, filtered.numbers, time, q, dq, torque, memory)
+        return passed
+
+
+def with_filter(controller: Controller, torque_filter: TorqueFilter, model: RobotModel) -> Controller:
+    """Return a controller with a filter; a guarded law stays guarded.
+
+    Args:
+        controller: The controller.
+        torque_filter: The filter.
+        model: The nominal robot.
+    """
+    law = unguarded(controller)
+    if not isinstance(law, TorqueLaw):
+        return FilteredController(controller, torque_filter, model)
+    filtered: Controller = guarded_like(controller, FilteredLaw(law, torque_filter))
+    return filtered
