@@ -1,11 +1,15 @@
-"""Interface of a metric family, built-in or from a plug-in, and the context of its metrics."""
+"""Interface of a metric family, built-in or from a plug-in, context of its metrics, and evaluation of plug-ins."""
 
-from collections.abc import Mapping
+import copy
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Protocol, runtime_checkable
 
 from runner.base.arrays import FloatArray
+from runner.base.errors import SimulationError
 from runner.base.trace import Trace, Traces
+from runner.plugins import metric_units
+from runner.plugins.guard import describe_fault, find_fault, is_write, place, read_only
 from runner.trajectories.trajectory import Trajectory
 
 
@@ -54,3 +58,41 @@ class MetricFamily(Protocol):
     def evaluate(self, trace: Trace, context: MetricContext) -> Mapping[str, float | None]:
         """Return the metrics of one run by name; None for one without a value."""
         ...
+
+
+def evaluate_added(trace: Trace, context: MetricContext, notices: list[str]) -> dict[str, float | None]:
+    """Return the metrics of one run from user-supplied families; if a family fails, its metrics have no value.
+
+    Args:
+        trace: The trace of the run.
+        context: Its setting.
+        notices: Takes a message for each fault.
+
+    Raises:
+        SimulationError: if a family tries to change the trace or its setting; names the place.
+    """
+    values: dict[str, float | None] = {}
+    for family in metric_units.added_families():
+        try:
+            values |= dict(_evaluate_family(family, trace, context, notices))
+        except Exception as error:
+            fault = f"metrics of {family.__name__}: {describe_fault(error)}"
+            if is_write(error):
+                raise SimulationError(fault) from error
+            notices.append(fault)
+            values |= dict.fromkeys(family.UNITS)
+    return values
+
+
+def _evaluate_family(
+    family: MetricFamily, trace: Trace, context: MetricContext, notices: list[str]
+) -> Iterator[tuple[str, float | None]]:
+    """Yield names and values of the metrics of a family that have a unit; a value with a fault is None."""
+    for name, value in dict(family.evaluate(read_only(trace), copy.deepcopy(context))).items():
+        if not any(f"_{known}_" in f"_{name}_" for known in family.UNITS):
+            notices.append(f"metric {name}: {family.__name__}.UNITS names no unit for it; it is left out")
+            continue
+        fault = None if value is None else find_fault(value, ())
+        if fault:
+            notices.append(f"metric {name}: {place(family.evaluate)} gave {fault}")
+        yield name, None if fault or value is None else float(value)

@@ -1,20 +1,17 @@
 """Metrics of runs, and their summary over the repetitions of a run."""
 
-import copy
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib import import_module
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import SimulationError
 from runner.base.trace import Trace, Traces
 from runner.metrics import positioning, tracking
-from runner.metrics.family import MetricContext, MetricFamily, OwnFamily
+from runner.metrics.family import MetricContext, OwnFamily, evaluate_added
 from runner.plugins import metric_units
-from runner.plugins.guard import describe_fault, find_fault, is_write, place, read_only
 from runner.trajectories.shaped import Shifted
 
 _FAMILIES: list[OwnFamily] = [import_module(name) for name in metric_units.FAMILIES]
@@ -74,44 +71,6 @@ def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = N
         return {}
     told = [] if notices is None else notices
     return of_run(measure(Traces.of(trace), context), 0) | evaluate_added(trace, context, told)
-
-
-def evaluate_added(trace: Trace, context: MetricContext, notices: list[str]) -> dict[str, float | None]:
-    """Return the metrics of one run from user-supplied families; if a family fails, its metrics have no value.
-
-    Args:
-        trace: The trace of the run.
-        context: Its setting.
-        notices: Takes a message for each fault.
-
-    Raises:
-        SimulationError: if a family tries to change the trace or its setting; names the place.
-    """
-    values: dict[str, float | None] = {}
-    for family in metric_units.added_families():
-        try:
-            values |= dict(_evaluate_family(family, trace, context, notices))
-        except Exception as error:
-            fault = f"metrics of {family.__name__}: {describe_fault(error)}"
-            if is_write(error):
-                raise SimulationError(fault) from error
-            notices.append(fault)
-            values |= dict.fromkeys(family.UNITS)
-    return values
-
-
-def _evaluate_family(
-    family: MetricFamily, trace: Trace, context: MetricContext, notices: list[str]
-) -> Iterator[tuple[str, float | None]]:
-    """Yield names and values of the metrics of a family that have a unit; a value with a fault is None."""
-    for name, value in dict(family.evaluate(read_only(trace), copy.deepcopy(context))).items():
-        if not any(f"_{known}_" in f"_{name}_" for known in family.UNITS):
-            notices.append(f"metric {name}: {family.__name__}.UNITS names no unit for it; it is left out")
-            continue
-        fault = None if value is None else find_fault(value, ())
-        if fault:
-            notices.append(f"metric {name}: {place(family.evaluate)} gave {fault}")
-        yield name, None if fault or value is None else float(value)
 
 
 def measure(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
