@@ -142,11 +142,9 @@ class Sweep:
         parts = []
         for name in names:
             cells, repetitions = np.nonzero(~np.isnan(found.values[name]))
-            columns: dict[str, object] = {
-                axis.name: [axis.values[level] for level in axis.level[cells].tolist()] for axis in found.axes
-            }
-            columns |= {"repetition": repetitions, "metric": name, "unit": found.units[name]}
-            parts.append(pd.DataFrame(columns | {"value": found.values[name][cells, repetitions]}))
+            values = {"repetition": repetitions, "metric": name, "unit": found.units[name],
+                      "value": found.values[name][cells, repetitions]}  # fmt: skip
+            parts.append(pd.DataFrame(found.axis_columns(cells) | values))
         keys = [axis.name for axis in found.axes]
         none = pd.DataFrame(columns=[*keys, "repetition", "metric", "unit", "value"])
         return pd.concat(parts, ignore_index=True) if parts else none

@@ -57,7 +57,7 @@ def main(arguments: Sequence[str]) -> int:
 
         table = of_sweep(measurements, sweep.command, options.metrics, options.by, options.where)
         return _put(_for_paper(table, chosen), options.output)
-    from runner.reporting.export.tidy import as_csv, as_parquet, selection
+    from runner.reporting.export.pooling import as_csv, as_parquet, selection
 
     frame = selection(measurements, options.metrics, options.by, options.where)
     return _put(as_parquet(frame, measurements) if chosen == "parquet" else as_csv(frame), options.output)
@@ -130,11 +130,12 @@ def _of_run(options: "Namespace", chosen: str) -> int:
         if not chosen:
             print(options.folder)
         return 0
-    from runner.reporting.export.paper_table import measure_run
-    from runner.reporting.export.tidy import as_csv, as_parquet, of_one
+    from runner.reporting.export.pooling import as_csv, as_parquet, of_one
+    from runner.sweeps.measurements import measure_run
 
-    frame = of_one(measure_run(run), options.metrics)
-    return _put(as_parquet(frame, measure_run(run)) if chosen == "parquet" else as_csv(frame), options.output)
+    measured = measure_run(run)
+    frame = of_one(measured, options.metrics)
+    return _put(as_parquet(frame, measured) if chosen == "parquet" else as_csv(frame), options.output)
 
 
 def _for_paper(table: "PaperTable", chosen: str) -> bytes:

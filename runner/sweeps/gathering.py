@@ -1,7 +1,9 @@
 """Measurements of stored runs in arrays, read run by run or a shard at once."""
 
+import contextlib
+import io
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +13,12 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.metrics.caveats import changes_since
 from runner.store import Run
-from runner.store.shards import open_row
+from runner.store.shards import METRIC, open_row, read_columns
 from runner.sweeps.differing import Resolver
-from runner.sweeps.shard_columns import Columns, read_shard
 
 Cells = NDArray[np.intp]
+
+_SEED = '"seed": '
 
 
 class Gathered:
@@ -62,7 +65,7 @@ class Gathered:
         self.configs.append((self._resolver.resolve(run), [np.array([cell])]))
 
     def add_shard(self, path: Path, rows: Cells, cells: Cells) -> None:
-        """Take runs of a shard.
+        """Take runs of a shard: in columns, or one by one if they have little in common.
 
         Args:
             path: The shard.
@@ -72,30 +75,36 @@ class Gathered:
         Raises:
             DamagedError: if it is damaged.
         """
-        found = read_shard(path, rows)
-        if found is None:
+        import pyarrow
+
+        table = read_columns(path, ("run", "failure", "config", "record")).take(rows)
+        rules = None
+        with contextlib.suppress(pyarrow.ArrowException, KeyError):  # two kinds of values in one place
+            record = _parsed(table["record"].to_pylist())
+            provenance = record.field("provenance")
+            seeds, caveats = provenance.field("seed").to_numpy(), _caveats(record)
+            metrics, made_by = list(_metrics(table)), list(_made_by(provenance))
+            rules = _rules(record) if seeds.dtype.kind == "i" else None
+        if rules is None:
             for row, cell in zip(rows.tolist(), cells.tolist(), strict=True):
                 self.add_run(cell, open_row(path, row))
             return
-        self.seeds[cells] = found.seeds
+        self.seeds[cells] = seeds
+        names, failures = table["run"].to_pylist(), table["failure"].to_pylist()
         for place, cell in enumerate(cells.tolist()):
-            self.hashes[cell], self.failures[cell] = found.names[place], found.failures[place]
-            self.caveats[cell] = found.caveats[place]
-        for rules, count in found.rules:
-            self.changes.update(dict.fromkeys(changes_since(rules), count))
-        for key, members in found.settings.items():
+            self.hashes[cell], self.failures[cell], self.caveats[cell] = names[place], failures[place], caveats[place]
+        for some, count in rules:
+            self.changes.update(dict.fromkeys(changes_since(some), count))
+        for key, same in _settings(table["config"].to_pylist()).items():
             if key not in self._places:
-                run = open_row(path, int(rows[members[0]]))
+                run = open_row(path, int(rows[same[0]]))
                 self._note(run)
                 self._places[key] = len(self.configs)
                 self.configs.append((self._resolver.resolve(run), []))
-            self.configs[self._places[key]][1].append(cells[members])
-        for name, texts in found.made_by.items():
+            self.configs[self._places[key]][1].append(cells[same])
+        for name, texts in made_by:
             self.provenance.setdefault(name, {}).update(dict.fromkeys(texts))
-        self._take_metrics(found, cells)
-
-    def _take_metrics(self, found: Columns, cells: Cells) -> None:
-        for name, (unit, members, values) in found.metrics.items():
+        for name, unit, members, values in metrics:
             self._put(name, unit, cells[members], values)
 
     def _note(self, run: Run) -> None:
@@ -140,3 +149,103 @@ class Gathered:
 def commit_text(commit: object) -> str:
     """Return a commit as the provenance of a sweep tells it."""
     return str(commit or "none (installed package)")
+
+
+def _parsed(records: Sequence[str]) -> Any:
+    """Return records given as JSON as one struct array: pyarrow parses all of them at once."""
+    import pyarrow
+    import pyarrow.json
+
+    content = "\n".join(records).encode()
+    text, number = pyarrow.string(), pyarrow.float64()
+    caveat = pyarrow.struct({"rule": text, "text": text, "value": number})
+    known = pyarrow.schema({
+        "caveats": pyarrow.list_(caveat),
+        "provenance": pyarrow.struct({"date": text, "commit": text, "machine": text, "command": text}),
+    })  # fmt: skip
+    table = pyarrow.json.read_json(
+        io.BytesIO(content),
+        read_options=pyarrow.json.ReadOptions(use_threads=False, block_size=len(content) + 1),
+        parse_options=pyarrow.json.ParseOptions(explicit_schema=known),
+    )
+    return table.to_struct_array().combine_chunks()
+
+
+def _settings(configs: Sequence[str]) -> dict[object, list[int]]:
+    """Return the places of configs, given as JSON, that are the same except for their seed, by their other text."""
+    found: dict[object, list[int]] = {}
+    for place, text in enumerate(configs):
+        before, _, after = text.partition(_SEED)
+        key = (text,) if _SEED in after else (before, after.partition(",")[2])
+        found.setdefault(key, []).append(place)
+    return found
+
+
+def _rules(record: Any) -> list[tuple[Mapping[str, Any] | None, int]] | None:
+    """Return the rules that found caveats, each with the number of runs; None where they differ between runs."""
+    if record.type.get_field_index("caveat_rules") < 0:
+        return [(None, len(record))]
+    rules = _inner(record, "caveat_rules").drop_null()
+    if any(len(leaf.unique()) > 1 for leaf in _leaves(rules)):
+        return None
+    found: list[tuple[Mapping[str, Any] | None, int]] = [(rules[0].as_py(), len(rules))] if len(rules) else []
+    return [*found, (None, len(record) - len(rules))] if len(rules) < len(record) else found
+
+
+def _leaves(array: Any) -> Iterator[Any]:
+    import pyarrow
+
+    if isinstance(array, pyarrow.StructArray):
+        for inner in array.flatten():
+            yield from _leaves(inner)
+    else:
+        yield array
+
+
+def _caveats(record: Any) -> list[Sequence[Mapping[str, Any]]]:
+    """Return the caveats of each run; runs with the same ones share them."""
+    found = _inner(record, "caveats")
+    counts = np.nan_to_num(found.value_lengths().to_numpy(zero_copy_only=False)).astype(int).tolist()
+    columns = [column.to_pylist() for column in found.flatten().flatten()]
+    names = [field.name for field in found.type.value_type]
+    every = iter(zip(*columns, strict=True))
+    shared: dict[object, Sequence[Mapping[str, Any]]] = {}
+    lists: list[Sequence[Mapping[str, Any]]] = []
+    for count in counts:
+        own = tuple(next(every) for _ in range(count))
+        if own not in shared:
+            shared[own] = tuple(dict(zip(names, values, strict=True)) for values in own)
+        lists.append(shared[own])
+    return lists
+
+
+def _made_by(provenance: Any) -> Iterator[tuple[str, Sequence[str]]]:
+    """Yield distinct values of what made the runs."""
+    yield "commit", [commit_text(value) for value in provenance.field("commit").unique().to_pylist()]
+    yield "machine", provenance.field("machine").unique().to_pylist()
+    versions = provenance.field("versions")
+    for field in versions.type:
+        yield field.name, [value for value in versions.field(field.name).unique().to_pylist() if value is not None]
+    yield "made on", provenance.field("date").unique().to_pylist()
+
+
+def _metrics(table: Any) -> Iterator[tuple[str, str, Cells, FloatArray]]:
+    """Yield name and unit of each metric, the runs that have it, and their values, shape (runs, repetitions).
+
+    The values are NaN behind the last repetition of a run, and infinite if a repetition has none.
+    """
+    for field in table.schema:
+        if field.name.startswith(METRIC):
+            values = table[field.name].combine_chunks()
+            counts = values.value_lengths().to_numpy(zero_copy_only=False)
+            members = np.flatnonzero(~np.isnan(counts.astype(float)))
+            sizes = counts[members].astype(int)
+            flat = values.flatten().to_numpy(zero_copy_only=False).astype(float)
+            rows = np.full((len(members), int(sizes.max(initial=0))), np.nan)
+            rows[np.arange(rows.shape[1]) < sizes[:, None]] = np.where(np.isnan(flat), np.inf, flat)
+            yield field.name.removeprefix(METRIC), (field.metadata or {}).get(b"unit", b"").decode(), members, rows
+
+
+def _inner(array: Any, name: str) -> Any:
+    """Return a field of a struct array, missing where the struct is."""
+    return array.flatten()[array.type.get_field_index(name)]

@@ -215,6 +215,10 @@ class Measurements:
         """Return the median of a metric in each cell, shape (cells,): infinite or NaN as its values."""
         return medians(np.sort(self.values[metric], axis=1))  # NaN, which is no repetition, comes last
 
+    def axis_columns(self, cells: slice | NDArray[np.intp] = slice(None)) -> dict[str, object]:
+        """Return the values of some cells on each axis, by the names of the axes."""
+        return {axis.name: [axis.values[level] for level in axis.level[cells].tolist()] for axis in self.axes}
+
 
 def medians(ordered: FloatArray) -> FloatArray:
     """Return the median of each row of values, shape (cells, repetitions), ascending, NaN last: shape (cells,)."""
@@ -225,6 +229,22 @@ def medians(ordered: FloatArray) -> FloatArray:
     low, high = ordered[cells, np.maximum(count - 1, 0) // 2], ordered[cells, count // 2]
     found: FloatArray = (low + high) / 2
     return found
+
+
+def median_ends(ordered: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the ends of the 95 % interval of the median of each row, shape (cells,); NaN for too few values.
+
+    Args:
+        ordered: Values, shape (cells, repetitions), ascending, NaN last.
+    """
+    from runner.statistics import SMALLEST_SAMPLE, median_intervals  # imports SciPy
+
+    counts = np.sum(~np.isnan(ordered), axis=1)
+    low, high = np.full((2, len(ordered)), np.nan)
+    for count in np.unique(counts[counts >= SMALLEST_SAMPLE]).tolist():
+        cells = np.flatnonzero(counts == count)
+        low[cells], high[cells] = median_intervals(ordered[cells, :count])
+    return low, high
 
 
 def measure(overrides: Sequence[Sequence[str]], runs: Iterable[Run]) -> Measurements:

@@ -8,9 +8,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.sanitize import table_cell
-from runner.statistics import SMALLEST_SAMPLE, median_intervals
 from runner.store.atomic import open_atomically
-from runner.sweeps.measurements import Measurements, medians
+from runner.sweeps.measurements import Measurements, median_ends, medians
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,10 +42,7 @@ def table(
     """
     import pandas as pd
 
-    columns: dict[str, object] = {
-        axis.name: [axis.values[level] for level in axis.level[rows].tolist()] for axis in measurements.axes
-    }
-    columns |= {
+    columns = measurements.axis_columns(rows) | {
         "status": list(measurements.statuses[rows]),
         "failure": list(measurements.failures[rows]),
         "hash": list(measurements.hashes[rows]),
@@ -110,10 +106,7 @@ def _columns(name: str, values: FloatArray) -> Iterator[tuple[str, FloatArray]]:
     ordered = np.sort(values, axis=1)  # NaN, which is no repetition, comes last
     count = np.sum(~np.isnan(ordered), axis=1)
     yield f"{name}.median", _finite(medians(ordered))
-    low, high = np.full((2, len(ordered)), np.nan)
-    for n in np.unique(count[count >= SMALLEST_SAMPLE]).tolist():
-        cells = np.flatnonzero(count == n)
-        low[cells], high[cells] = median_intervals(ordered[cells, :n])
+    low, high = median_ends(ordered)
     yield f"{name}.low", _finite(low)
     yield f"{name}.high", _finite(high)
     for share in QUANTILES:

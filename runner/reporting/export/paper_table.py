@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 from runner.base.quantities import ROUNDING
 from runner.reporting.export.columns import Column, Unit, column
-from runner.reporting.export.pooling import Pooled, failed_cells, pool
+from runner.reporting.export.pooling import Pooled, pool
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import choose, key_label
 from runner.statistics import SMALLEST_SAMPLE
 from runner.statistics.interval import RESAMPLES
 from runner.store import Run
 from runner.sweeps.differing import in_words
-from runner.sweeps.measurements import Measurements, measure
+from runner.sweeps.measurements import Measurements, measure_run
 
 Label = str | Unit
 
@@ -102,11 +102,6 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
     return PaperTable(["metric", "unit"], [[own.title, own.unit] for own in each], [together], notes, sources)
 
 
-def measure_run(run: Run) -> Measurements:
-    """Return one run as a sweep of one cell."""
-    return measure([()], [run])
-
-
 def _of_numbers(columns: Sequence[Column], seeds: Sequence[int]) -> list[str]:
     cells = [cell for each in columns for cell in each.cells]
     counts = {cell.n for cell in cells}
@@ -143,7 +138,7 @@ def _of_cells(measurements: Measurements, pooled: Pooled) -> list[str]:
     """Return what must be known of the cells: failures, caveats, and what differs beyond the axes."""
     cells = [int(cell) for own in pooled.cells for cell in own]
     notes = []
-    failed = sum(failed_cells(measurements, pooled))
+    failed = sum(pooled.failed)
     if failed:
         notes.append(f"{failed} of {len(cells)} cells failed.")
     doubted = [cell for cell in cells if measurements.caveats and measurements.caveats[cell]]

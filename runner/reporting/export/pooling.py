@@ -1,14 +1,21 @@
-"""Pooling of sweep cells that differ only in the seed."""
+"""Tables of pooled cells: rows of cells that differ only in the seed, as CSV or Parquet in SI units."""
 
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
+from runner.base.sanitize import table_cell
 from runner.sweeps.measurements import Axis, Measurements, find_axis
+from runner.sweeps.table import metric_columns, with_units
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 SEED = "seed"
 
@@ -19,12 +26,14 @@ class Pooled:
 
     Attributes:
         measurements: A sweep with one cell for each row, whose repetitions are those of all cells behind it.
-        cells: Which cells of the whole sweep are behind each row.
-        seeds: Number of seeds behind each row; 1 where the seed was not swept.
+        cells: The cells of the whole sweep behind each row.
+        failed: Number of these that failed.
+        seeds: Number of seeds behind each row; 1 if the seed was not swept.
     """
 
     measurements: Measurements
     cells: Sequence[NDArray[np.intp]]
+    failed: Sequence[int]
     seeds: Sequence[int]
 
 
@@ -49,12 +58,13 @@ def pool(measurements: Measurements, by: Sequence[str] | None = None, where: Seq
     levels = np.column_stack([axes[name].level[kept] for name in names] or [np.zeros((len(kept), 1), dtype=np.intp)])
     rows, row_of = np.unique(levels, axis=0, return_inverse=True)
     groups = [_distinct(measurements, kept[row_of.ravel() == row]) for row in range(len(rows))]
+    failed = [sum(measurements.statuses[cell] != "ok" for cell in cells) for cells in groups]
     pooled = replace(
         measurements,
         axes=[Axis(name, axes[name].values, rows[:, column]) for column, name in enumerate(names)],
         fixed=[*measurements.fixed, *where],
         hashes=[measurements.hashes[cells[0]] if len(cells) == 1 else "" for cells in groups],
-        statuses=["ok" if _failed(measurements, cells) == 0 else "failed" for cells in groups],
+        statuses=["failed" if count else "ok" for count in failed],
         failures=[next((measurements.failures[cell] for cell in cells if measurements.failures[cell]), "")
                   for cells in groups],
         values={name: _together(values, groups) for name, values in measurements.values.items()},
@@ -63,16 +73,7 @@ def pool(measurements: Measurements, by: Sequence[str] | None = None, where: Seq
         seeds=(),
     )  # fmt: skip
     seeds = [len(np.unique(axes[SEED].level[cells])) if SEED in axes else 1 for cells in groups]
-    return Pooled(pooled, groups, seeds)
-
-
-def failed_cells(measurements: Measurements, pooled: Pooled) -> list[int]:
-    """Return how many of the cells behind each row failed."""
-    return [_failed(measurements, cells) for cells in pooled.cells]
-
-
-def _failed(measurements: Measurements, cells: NDArray[np.intp]) -> int:
-    return sum(measurements.statuses[cell] != "ok" for cell in cells)
+    return Pooled(pooled, groups, failed, seeds)
 
 
 def _limited(measurements: Measurements, where: Sequence[str]) -> NDArray[np.intp]:
@@ -114,3 +115,53 @@ def _together(values: FloatArray, groups: Sequence[NDArray[np.intp]]) -> FloatAr
     for row, own in enumerate(rows):
         found[row, : len(own)] = own
     return found
+
+
+def selection(
+    measurements: Measurements,
+    metrics: Sequence[str] | None = None,
+    by: Sequence[str] | None = None,
+    where: Sequence[str] = (),
+) -> "pd.DataFrame":
+    """Return a row for each combination of some axes: their values, how many cells stand behind it, and the metrics.
+
+    The columns of a metric are those of `runner.sweeps.table`; see `pool` for the arguments and errors.
+    """
+    import pandas as pd
+
+    pooled = pool(measurements, by, where)
+    rows = pooled.measurements
+    counts = {"cells": [len(cells) for cells in pooled.cells], "failed": pooled.failed}
+    return pd.DataFrame(rows.axis_columns() | counts | metric_columns(rows, metrics))
+
+
+def of_one(measurements: Measurements, metrics: Sequence[str] | None = None) -> "pd.DataFrame":
+    """Return the table of one run: a row for each metric, with its unit."""
+    import pandas as pd
+
+    rows = []
+    for name in measurements.named(metrics):
+        found = metric_columns(measurements, [name])
+        rows.append({"metric": name, "unit": measurements.units[name]}
+                    | {key.removeprefix(f"{name}."): column[0] for key, column in found.items()})  # fmt: skip
+    return pd.DataFrame(rows)
+
+
+def as_csv(frame: "pd.DataFrame") -> bytes:
+    """Return a table as CSV of which no cell is taken for a formula."""
+    texts = frame.select_dtypes(exclude="number").columns
+    safe = frame.assign(**{name: frame[name].map(lambda value: table_cell(str(value))) for name in texts})
+    return safe.rename(columns=table_cell).to_csv(index=False, lineterminator="\n").encode()
+
+
+def as_parquet(frame: "pd.DataFrame", measurements: Measurements) -> bytes:
+    """Return a table as Parquet, with the unit of each column of a metric in its metadata."""
+    import pyarrow
+    import pyarrow.parquet
+
+    content = pyarrow.Table.from_pandas(frame, preserve_index=False)
+    stream = io.BytesIO()
+    pyarrow.parquet.write_table(
+        content.cast(with_units(content.schema, measurements.units)), stream, compression="zstd"
+    )
+    return stream.getvalue()

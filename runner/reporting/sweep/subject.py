@@ -13,7 +13,7 @@ from runner.base.quantities import label_with_unit, quantity
 from runner.config.compose.units import key_unit
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.differing import UNITS
-from runner.sweeps.measurements import Axis, Measurements, is_part
+from runner.sweeps.measurements import Axis, Measurements, is_part, median_ends
 
 if TYPE_CHECKING:
     from runner.statistics import EffectAnalysis
@@ -75,15 +75,7 @@ class Subject:
 
     def ends(self, metric: str) -> tuple[FloatArray, FloatArray]:
         """Return the ends of the 95 % interval of each cell's median, shape (cells,); NaN where repetitions are few."""
-        from runner.statistics import SMALLEST_SAMPLE, median_intervals
-
-        ordered = np.sort(self.measurements.values[metric], axis=1)  # NaN, which is no repetition, comes last
-        counts = np.sum(~np.isnan(ordered), axis=1)
-        low, high = np.full((2, len(ordered)), np.nan)
-        for count in np.unique(counts[counts >= SMALLEST_SAMPLE]):
-            cells = counts == count
-            low[cells], high[cells] = median_intervals(ordered[cells, :count])
-        return low, high
+        return median_ends(np.sort(self.measurements.values[metric], axis=1))  # NaN, which is no repetition, is last
 
     def _analyse(self, values: FloatArray) -> "EffectAnalysis":
         from runner.statistics import axis_effects  # SciPy, a second, which the end of a sweep does without

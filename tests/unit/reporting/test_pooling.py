@@ -7,7 +7,7 @@ import pytest
 from support.paper_sweep import by_hand
 
 from runner.base.errors import RunnerError
-from runner.reporting.export.pooling import failed_cells, pool
+from runner.reporting.export.pooling import pool
 from runner.sweeps.measurements import Axis
 
 
@@ -69,7 +69,7 @@ def test_rows_with_fewer_values_have_none_in_their_place():
 def test_failed_cells_are_counted_by_row():
     sweep = replace(by_hand(), statuses=["failed", *["ok"] * 11], failures=["diverged", *[""] * 11])
     pooled = pool(sweep)
-    assert failed_cells(sweep, pooled) == [1, 0, 0, 0]
+    assert pooled.failed == [1, 0, 0, 0]
     assert pooled.measurements.statuses == ["failed", "ok", "ok", "ok"]
 
 

@@ -9,7 +9,7 @@ import pyarrow.parquet as pq
 import pytest
 from support.paper_sweep import by_hand
 
-from runner.reporting.export.tidy import as_csv, as_parquet, of_one, selection
+from runner.reporting.export.pooling import as_csv, as_parquet, of_one, selection
 from runner.sweeps.measurements import Axis, Measurements
 
 

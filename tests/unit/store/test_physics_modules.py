@@ -18,7 +18,7 @@ OTHERS = {
     "sweeps/check.py", "sweeps/closed_nodes.py", "sweeps/deadline.py", "sweeps/differing.py", "sweeps/engine.py",
     "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/gathering.py", "sweeps/loading.py",
     "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/plan.py", "sweeps/queue.py", "sweeps/run.py",
-    "sweeps/shard_columns.py", "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py",
+ "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py",
     "sweeps/tuning", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
 }  # fmt: skip
 TREE = {
