@@ -24,12 +24,12 @@ from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
 from runner.config.compose.options import group_options
 from runner.config.input_shaper import InputShaperConfig
+from runner.config.limits import SweepConfig
 from runner.config.noise import NoiseConfig
-from runner.config.preset import PresetConfig
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.run import RunSettings
+from runner.config.settings import PresetConfig
 from runner.config.spec import Bound
-from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig

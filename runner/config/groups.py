@@ -1,36 +1,44 @@
-"""Config groups of a run, and the model of each."""
+"""Config groups of a run: the table of their models, and their validation group by group."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import cast
+from typing import Any
 
 from runner.base.errors import ConfigError, nearest
 from runner.config.caveats import CaveatsConfig
 from runner.config.compose.problems import Problems
 from runner.config.input_shaper import InputShaperConfig
-from runner.config.limits import LimitsConfig
+from runner.config.limits import LimitsConfig, SweepConfig
 from runner.config.noise import NoiseConfig
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
-from runner.config.plugin_groups import GroupReader
-from runner.config.preset import PresetConfig
-from runner.config.robot import OneArmConfig, RobotConfig
-from runner.config.settings import RunSettings
+from runner.config.robot import OneArmConfig
+from runner.config.settings import PresetConfig, RunSettings
 from runner.config.spec import SpecConfig
-from runner.config.sweep import SweepConfig
 from runner.config.torque_limits import TorqueLimitsConfig
-from runner.controllers import CONTROLLERS, ControllerConfig
+from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch import NotchConfig
 from runner.environments import ENVIRONMENTS
-from runner.plants import PLANTS, PlantConfig
-from runner.plugins.registry import KindConfig, Kinds
-from runner.robots.mismatch import MismatchConfig
+from runner.plants import PLANTS
+from runner.plugins.registry import Kinds
+from runner.robots.mismatch import MISMATCHES, MismatchConfig
+from runner.robots.mismatch import NONE as NO_MISMATCH
 from runner.schema.model import StrictModel
-from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig
+from runner.sensing import (
+    JOINT_TORQUE_SENSORS,
+    NOISES,
+    WRIST_SENSORS,
+    EndpointSensorConfig,
+    ForceTorqueConfig,
+    JointTorqueConfig,
+)
+from runner.sensing.force_torque import IDEAL
 from runner.trajectories import TRAJECTORIES
 
 GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
-    **{kinds.group: kinds for kinds in (PLANTS, CONTROLLERS, TRAJECTORIES, ENVIRONMENTS)},
+    "plant": PLANTS,
+    "controller": CONTROLLERS,
+    "trajectory": TRAJECTORIES,
+    "environment": ENVIRONMENTS,
     "noise": NoiseConfig,
     "torque_limits": TorqueLimitsConfig,
     "wrist_sensor": ForceTorqueConfig,
@@ -47,95 +55,55 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "caveats": CaveatsConfig,
     "spec": SpecConfig,
 }
+"""The model of each group, or the kinds whose models it may have; see also parse_robot."""
+
+PLUGGED: Mapping[str, tuple[Kinds, StrictModel | None]] = {
+    "noise": (NOISES, None),
+    "wrist_sensor": (WRIST_SENSORS, IDEAL),
+    "joint_torque_sensor": (JOINT_TORQUE_SENSORS, JointTorqueConfig(noise=None, bias=0.0)),
+    "mismatch": (MISMATCHES, NO_MISMATCH),
+}
+"""Groups that a plug-in replaces if they have a `kind`, each with the built-in config without effect.
+
+That of encoders depends on the robot.
+"""
+
+_OPTIONAL = ("input_shaper", "notch")
 _SETTINGS = tuple(RunSettings.model_fields)
 
 
-@dataclass(frozen=True)
-class Groups:
-    """The groups of a config, each checked for itself; None for one with a problem.
-
-    Attributes:
-        settings: The keys at the root.
-        plant: Config of the plant, of the model that its kind names.
-        controller: Config of the controller, likewise.
-        trajectory: Config of the trajectory, likewise.
-        environment: Config of the world around the tip, likewise.
-        noise: Config of the joint measurement.
-        torque_limits: Config of the torque limits.
-        wrist_sensor: Config of the force/torque sensor.
-        joint_torque_sensor: Config of the torque sensors in the joints.
-        endpoint_sensor: Config of the sensor of the tip's position.
-        mismatch: How what the controllers believe of the robot differs from it.
-        disturbance_observer: Config of the observer that control laws carry.
-        input_shaper: Config of what shapes the desired motion; None where nothing does.
-        notch: Config of the notch in the torques; None where there is none.
-        robot: Config of the robot.
-        sweep: How a sweep that the run is part of is run.
-        limits: What a command may cost.
-        caveats: When a run tells that its result may mislead.
-        spec: Bounds on metrics.
-        plugged: Configs of plug-ins in place of ours, by group; see GroupReader.
-    """
-
-    settings: RunSettings | None
-    plant: PlantConfig | None
-    controller: ControllerConfig | None
-    trajectory: KindConfig | None
-    environment: KindConfig | None
-    noise: NoiseConfig | None
-    torque_limits: TorqueLimitsConfig | None
-    wrist_sensor: ForceTorqueConfig | None
-    joint_torque_sensor: JointTorqueConfig | None
-    endpoint_sensor: EndpointSensorConfig | None
-    mismatch: MismatchConfig | None
-    disturbance_observer: DisturbanceObserverConfig | None
-    input_shaper: InputShaperConfig | None
-    notch: NotchConfig | None
-    robot: RobotConfig | None
-    sweep: SweepConfig | None
-    limits: LimitsConfig | None
-    caveats: CaveatsConfig | None
-    spec: SpecConfig | None
-    plugged: Mapping[str, KindConfig]
-
-
-def read_groups(resolved: Mapping[str, object], problems: Problems) -> Groups:
-    """Return the groups of a config; one that was read before, the same object, is not read again.
+def read_groups(resolved: Mapping[str, object], problems: Problems) -> dict[str, Any]:
+    """Return the valid groups of a config by name; a group that was read before, the same object, is not read again.
 
     Args:
         resolved: The config as plain data, interpolations resolved.
         problems: Takes what is wrong.
+
+    Returns:
+        The models of valid groups; "settings", the keys at the root; and "plugged", the configs of plug-ins by group.
     """
-
-    def read_kind(kinds: Kinds) -> StrictModel | None:
-        return problems.recall(parse_kind, kinds, problems.attempt(group_of, kinds.group, resolved))
-
     problems.attempt(_check_keys, resolved)
-    reader = GroupReader(problems, resolved)
     settings = {key: resolved.get(key) for key in _SETTINGS}
-    reader.read(PresetConfig, "preset")  # its values have been taken by other groups
-    return Groups(
-        settings=problems.attempt(parse, "", RunSettings, settings),
-        plant=cast("PlantConfig | None", read_kind(PLANTS)),
-        controller=cast("ControllerConfig | None", read_kind(CONTROLLERS)),
-        trajectory=cast("KindConfig | None", read_kind(TRAJECTORIES)),
-        environment=cast("KindConfig | None", read_kind(ENVIRONMENTS)),
-        noise=reader.read(NoiseConfig, "noise"),
-        torque_limits=reader.read(TorqueLimitsConfig, "torque_limits"),
-        wrist_sensor=reader.read(ForceTorqueConfig, "wrist_sensor"),
-        joint_torque_sensor=reader.read(JointTorqueConfig, "joint_torque_sensor"),
-        endpoint_sensor=reader.read(EndpointSensorConfig, "endpoint_sensor"),
-        mismatch=reader.read(MismatchConfig, "mismatch"),
-        disturbance_observer=reader.read(DisturbanceObserverConfig, "disturbance_observer"),
-        input_shaper=reader.read(InputShaperConfig, "input_shaper") if "input_shaper" in resolved else None,
-        notch=reader.read(NotchConfig, "notch") if "notch" in resolved else None,
-        robot=problems.recall(parse_robot, problems.attempt(group_of, "robot", resolved)),
-        sweep=reader.read(SweepConfig, "sweep"),
-        limits=reader.read(LimitsConfig, "limits"),
-        caveats=reader.read(CaveatsConfig, "caveats"),
-        spec=reader.read(SpecConfig, "spec"),
-        plugged=reader.plugged,
-    )
+    found: dict[str, Any] = {"settings": problems.attempt(parse, "", RunSettings, settings), "plugged": {}}
+    for group in GROUPS:
+        if group in resolved or group not in _OPTIONAL:
+            keys = problems.attempt(group_of, group, resolved)
+            found[group] = problems.recall(_read_group, group, keys)
+            if found[group] is not None and is_plugged(group, keys):
+                found["plugged"][group], found[group] = found[group], PLUGGED[group][1]
+    return found
+
+
+def is_plugged(group: str, keys: Mapping[str, object] | None) -> bool:
+    """Tell whether a group with these keys is a plug-in's where another one has a model of ours."""
+    return group in PLUGGED and keys is not None and "kind" in keys
+
+
+def _read_group(group: str, keys: Mapping[str, object]) -> StrictModel:
+    known = PLUGGED[group][0] if is_plugged(group, keys) else GROUPS[group]
+    if isinstance(known, Kinds):
+        return parse_kind(known, keys)
+    return parse_robot(keys) if group == "robot" else parse(group, known, keys)
 
 
 def _check_keys(resolved: Mapping[str, object]) -> None:

@@ -1,14 +1,16 @@
-"""Limits of CPU time and memory, and estimates that are checked before memory is allocated."""
+"""Limits of CPU time and memory, estimates that are checked before memory is allocated, and config of a sweep."""
 
 import math
+from typing import Literal
 
-from pydantic import PositiveFloat
+from pydantic import PositiveFloat, PositiveInt
 
 from runner.base.errors import ConfigError
 from runner.base.limits import half_of_memory
 from runner.config.timing import Timing
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.units import Seconds
 
 _GB = 1e9  # bytes
 _NUMBER = 8  # bytes
@@ -32,6 +34,26 @@ class LimitsConfig(StrictModel):
 
     cpu_hours: PositiveFloat | None
     memory: PositiveFloat | None
+
+
+class SweepConfig(StrictModel):
+    """How the runs of a sweep are kept, and what happens to those that fail.
+
+    Attributes:
+        trace: Which runs keep their trace, and with it a folder of their own: all, the failed ones and one in a
+            hundred, some 200 at most (sample), the failed ones, or none; auto is all up to some thousand runs, sample
+            above.
+        retry: Whether runs that failed in an earlier sweep are simulated again.
+        on_failure: What the first failed run does to the rest of the sweep.
+        attempts: How often a run is tried that was cut short: by its time limit, an error, or a worker's death.
+        time_limit: Longest wall-clock time of a run, in s, after which it is interrupted; None for no limit.
+    """
+
+    trace: Literal["auto", "all", "sample", "failed", "never"]
+    retry: Literal["none", "failed"]
+    on_failure: Literal["continue", "stop"]
+    attempts: PositiveInt
+    time_limit: Seconds[PositiveFloat | None]
 
 
 def memory_of_run(arm: Robot, ticks: int, repetitions: int, has_contact: bool) -> float:

@@ -79,3 +79,9 @@ def _no_angles(key: str, values: Sequence[float], arm: Robot) -> list[str]:
         for stage, value in zip(arm.stages, values, strict=True)
         if abs(value) > math.pi and "rad" in stage.model.joint_units
     ]
+
+
+def exact_encoders(joints: int) -> EncoderNoise:
+    """Return no noise, for a robot with a number of joints whose encoders are a plug-in's."""
+    zero = np.zeros(joints)
+    return EncoderNoise(zero, zero, zero, "none", "exact")

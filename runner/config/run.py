@@ -5,11 +5,10 @@ from dataclasses import dataclass, replace
 
 from runner.base.arrays import FloatArray
 from runner.config.caveats import CaveatsConfig
-from runner.config.limits import LimitsConfig
+from runner.config.limits import LimitsConfig, SweepConfig
 from runner.config.robot import RobotConfig
 from runner.config.settings import RunSettings
 from runner.config.spec import SpecConfig
-from runner.config.sweep import SweepConfig
 from runner.config.timing import Timing
 from runner.controllers import ControllerConfig, Loop
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig

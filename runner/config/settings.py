@@ -1,6 +1,6 @@
-"""Config keys at the root of a run."""
+"""Config keys at the root of a run, and values of a preset."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 
@@ -26,3 +26,23 @@ class RunSettings(StrictModel):
     gravity: Acceleration[NonNegativeFloat]
     plant_error: bool
     outputs: Annotated[str, Field(min_length=1)]
+
+
+class PresetConfig(StrictModel):
+    """A table of values that other groups take as `${preset.x}`; see there for what they mean.
+
+    Attributes:
+        gravity_compensation: For controllers.
+        feedforward: For controllers.
+        macro_target: For stage-wise control.
+        mini_reference_velocity: For stage-wise control.
+        wrist_rotation: For stage-wise control and plants.
+        dynamics: For plants.
+    """
+
+    gravity_compensation: bool
+    feedforward: bool
+    macro_target: Literal["minus_home", "tip_goal"]
+    mini_reference_velocity: Literal["zero", "full"]
+    wrist_rotation: Literal["real", "parallel"]
+    dynamics: Literal["coupled", "decoupled"]

@@ -1,7 +1,9 @@
 """Validation of a composed config, with one message that lists all problems."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -10,19 +12,25 @@ from runner.base.errors import ConfigError
 from runner.base.sanitize import few
 from runner.config.arms import build_loaded, build_robot
 from runner.config.compose.problems import Problems, require
-from runner.config.computation import check_computation, computation_of, count_late
-from runner.config.controller_wrappers import check_notch, check_observer
+from runner.config.cross_checks import (
+    check_computation,
+    check_notch,
+    check_observer,
+    check_payload,
+    check_reading,
+    check_schedule,
+    computation_of,
+    count_late,
+    endpoint_ticks,
+)
 from runner.config.desired_motion import check_path, check_points, check_repeats, start_posture
 from runner.config.flexibility import check_flexible_joints, check_flexible_links
-from runner.config.groups import Groups, read_groups
+from runner.config.groups import read_groups
 from runner.config.input_shaper import shape
 from runner.config.limits import check_memory
-from runner.config.noise import NoiseConfig
-from runner.config.payload import check_payload, check_schedule
-from runner.config.plugin_groups import exact_encoders
+from runner.config.noise import NoiseConfig, exact_encoders
 from runner.config.run import RunConfig
-from runner.config.sensors import check_reading, endpoint_ticks
-from runner.config.timing import Timing, count_steps, count_ticks
+from runner.config.timing import Steps, Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig
@@ -51,80 +59,82 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     """
     problems = Problems(_MEMORY)
     groups = read_groups(resolved, problems)
-    problems.recall(check_payload, groups.robot, groups.mismatch)
-    gravity = STANDARD_GRAVITY if groups.settings is None else groups.settings.gravity
-    made_of = (groups.robot, gravity, config_dirs, *([] if groups.wrist_sensor is None else [groups.wrist_sensor]))
+    settings, robot, sensor = (groups.get(name) for name in ("settings", "robot", "wrist_sensor"))
+    plant, controller = groups.get("plant"), groups.get("controller")
+    problems.recall(check_payload, robot, groups.get("mismatch"))
+    gravity = STANDARD_GRAVITY if settings is None else settings.gravity
+    made_of = (robot, gravity, config_dirs, *([] if sensor is None else [sensor]))
     arm = problems.recall(build_robot, *made_of)
-    noise = problems.recall(NoiseConfig.by_joint, groups.noise, arm)
-    torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.torque_limits, arm)
-    problems.recall(check_points, arm, groups.trajectory)
-    problems.recall(_check_commands, groups.plant, groups.controller)
-    problems.recall(_check_mass, arm, groups.plant)
-    steps = problems.recall(count_steps, arm, groups.plant, groups.controller)
+    noise = problems.recall(NoiseConfig.by_joint, groups.get("noise"), arm)
+    torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), arm)
+    problems.recall(check_points, arm, groups.get("trajectory"))
+    problems.recall(_check_commands, plant, controller)
+    problems.recall(_check_mass, arm, plant)
+    steps = problems.recall(count_steps, arm, plant, controller)
     problems.report()
-    # What follows is made from parts that are sound, each for itself. Parts of the user's may remember other runs.
-    build_loops = problems.recall if CONTROLLERS.is_ours(require(groups.controller).kind) else problems.attempt
-    build_path = problems.recall if TRAJECTORIES.is_ours(require(groups.trajectory).kind) else problems.attempt
     loaded = problems.recall(build_loaded, *made_of)
-    ignore_base_rotation = problems.recall(_ignores_base_rotation, arm, groups.plant)
-    path = build_path(_build_path, arm, groups.trajectory, ignore_base_rotation)
-    loops = build_loops(CONTROLLERS.build_for, groups.controller, arm, isinstance(path, TipOfJoints))
+    built = _build(groups, require(arm), require(steps), problems)
+    config = RunConfig(
+        **{name: group for name, group in groups.items() if name in _PARTS}
+        | built
+        | {"noise": noise or exact_encoders(require(arm).model.nq), "torque_limits": torque_limits}
+        | {"loaded": loaded, "notch": groups.get("notch"), "resolved": resolved}
+    )
+    for check in _CHECKS:
+        check(config)
+    return config
+
+
+def _build(groups: Mapping[str, Any], arm: Robot, steps: Steps, problems: Problems) -> dict[str, Any]:
+    """Return parts of a RunConfig that are built from valid groups; a user-supplied part may remember other runs.
+
+    Raises:
+        ConfigError: with every problem found.
+    """
+    plant, controller, trajectory = groups["plant"], groups["controller"], groups["trajectory"]
+    build_loops = problems.recall if CONTROLLERS.is_ours(controller.kind) else problems.attempt
+    build_path = problems.recall if TRAJECTORIES.is_ours(trajectory.kind) else problems.attempt
+    ignore_base_rotation = problems.recall(_ignores_base_rotation, arm, plant)
+    path = build_path(_build_path, arm, trajectory, ignore_base_rotation)
+    loops = build_loops(CONTROLLERS.build_for, controller, arm, isinstance(path, TipOfJoints))
     path = problems.attempt(_shape, groups, arm, path, loops)
     build_path(check_path, arm, path)
-    ticks = problems.attempt(count_ticks, groups.settings, steps, path)
-    late = problems.recall(count_late, groups.plant, loops)
+    ticks = problems.attempt(count_ticks, groups["settings"], steps, path)
+    late = problems.recall(count_late, plant, loops)
     problems.report()
-    return _checked(RunConfig(
-        settings=require(groups.settings),
-        robot=require(groups.robot),
-        arm=require(arm),
-        loaded=require(loaded),
-        plant=require(groups.plant),
-        controller=require(groups.controller),
-        loops=require(loops),
-        commands=CONTROLLERS.commands(require(groups.controller).kind),
-        path=require(path),
-        environment=require(groups.environment),
-        noise=noise or exact_encoders(require(arm)),  # a plug-in's measure in its place
-        torque_limits=require(torque_limits),
-        wrist_sensor=require(groups.wrist_sensor),
-        joint_torques=require(groups.joint_torque_sensor).by_joint(require(arm)),
-        mismatch=require(groups.mismatch), endpoint_sensor=require(groups.endpoint_sensor),
-        disturbance_observer=require(groups.disturbance_observer), notch=groups.notch,
-        timing=Timing(*require(steps), require(late), computation_of(require(groups.plant)).is_even, require(ticks)),
-        ignore_base_rotation=require(ignore_base_rotation),
-        sweep=require(groups.sweep), limits=require(groups.limits),
-        caveats=require(groups.caveats), spec=require(groups.spec),
-        plugged=groups.plugged, resolved=resolved,
-    ))  # fmt: skip
+    return {
+        "arm": arm,
+        "loops": loops,
+        "commands": CONTROLLERS.commands(controller.kind),
+        "path": path,
+        "joint_torques": groups["joint_torque_sensor"].by_joint(arm),
+        "timing": Timing(*steps, require(late), computation_of(plant).is_even, require(ticks)),
+        "ignore_base_rotation": ignore_base_rotation,
+    }
 
 
-def _shape(groups: Groups, arm: Robot, path: Trajectory, loops: tuple[Loop, ...]) -> Trajectory:
+def _shape(groups: Mapping[str, Any], arm: Robot, path: Trajectory, loops: tuple[Loop, ...]) -> Trajectory:
     """Return the desired motion as an input shaper leaves it, if any; it starts where the motion itself does."""
-    if groups.input_shaper is None:
+    shaper, controller, plant = groups.get("input_shaper"), groups["controller"], groups["plant"]
+    if shaper is None:
         return path
-    controller, plant = require(groups.controller), require(groups.plant)
-    q = (
-        path.q_start
-        if isinstance(path, TipOfJoints)
-        else start_posture(controller, arm, path.start, _ignores_base_rotation(arm, plant))
-    )
-    return shape(groups.input_shaper, plant, arm, path, q, loops)
+    if isinstance(path, TipOfJoints):
+        q = path.q_start
+    else:
+        q = start_posture(controller, arm, path.start, _ignores_base_rotation(arm, plant))
+    return shape(shaper, plant, arm, path, q, loops)
 
 
-def _checked(config: RunConfig) -> RunConfig:
-    """Return a config after the checks of what only the whole of it tells."""
-    check_schedule(config)
-    check_computation(config)
-    check_observer(config)
-    check_notch(config)
-    check_flexible_joints(config)
-    check_flexible_links(config)
-    check_reading(config)
-    endpoint_ticks(config)
-    check_repeats(config)
+def _check_memory(config: RunConfig) -> None:
     check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.has_contact)
-    return config
+
+
+_PARTS = {field.name for field in fields(RunConfig)}
+# Checks of the whole config.
+_CHECKS: Sequence[Callable[[RunConfig], object]] = (
+    check_schedule, check_computation, check_observer, check_notch, check_flexible_joints, check_flexible_links,
+    check_reading, endpoint_ticks, check_repeats, _check_memory,
+)  # fmt: skip
 
 
 def _check_commands(plant: PlantConfig, controller: ControllerConfig) -> None:

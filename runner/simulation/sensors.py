@@ -6,9 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.config.computation import computation_of
+from runner.config.cross_checks import computation_of, endpoint_ticks
 from runner.config.run import RunConfig
-from runner.config.sensors import endpoint_ticks
 from runner.controllers.kinds import ReadsJointTorques
 from runner.plants import Plant, PositionPlant, TellsEndPoints, unwrapped
 from runner.plants.friction import friction_of

@@ -26,9 +26,8 @@ _TABLE = """
         uncertainty=repeatability
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
-    config: arms calibration computation=config.computation controller_wrappers desired_motion feasibility flexibility
-        groups input_shaper noise parsing payload plugin_groups=plugged robot=config.robot run sensors=endpoint_sensor
-        settings timing torque_limits validation
+    config: arms calibration cross_checks desired_motion feasibility flexibility groups input_shaper noise parsing
+        robot=config.robot run settings timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer graph kinds=controllers.kinds notch=controllers.notch
         sampled_stability torque_filter torque_law

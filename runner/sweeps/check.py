@@ -13,10 +13,9 @@ from runner.base import progress
 from runner.base.errors import ConfigError
 from runner.config.calibration import validate_calibration
 from runner.config.compose.compose import Composed
-from runner.config.limits import LimitsConfig, memory_of_run
+from runner.config.limits import LimitsConfig, SweepConfig, memory_of_run
 from runner.config.run import RunConfig
 from runner.config.spec import Bound
-from runner.config.sweep import SweepConfig
 from runner.config.validation import validate
 from runner.simulation.assembly import assemble
 from runner.store.identity import json_text

@@ -18,8 +18,7 @@ from omegaconf import DictConfig
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError, StoreError
-from runner.config.limits import check_cpu_time, check_memory_together
-from runner.config.sweep import SweepConfig
+from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
 from runner.plugins.discovery import has_users_parts, in_use
 from runner.store.atomic import remove_leftovers
 from runner.store.finer import FOLDER as FINER

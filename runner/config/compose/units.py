@@ -161,8 +161,7 @@ def with_numbers(override: str) -> str:
 def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Iterator[type[StrictModel]]:
     """Yield the models of a group, or of the one kind of it that is chosen."""
     from runner.calibration.procedures import CALIBRATIONS
-    from runner.config.groups import GROUPS
-    from runner.config.plugin_groups import PLUGGED
+    from runner.config.groups import GROUPS, PLUGGED
     from runner.config.robot import OneArmConfig, StageConfig
     from runner.config.settings import RunSettings
     from runner.plugins.registry import Kinds
@@ -178,6 +177,6 @@ def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Itera
                 yield known.config_model(kind)
     elif group in PLUGGED and chosen is not None:
         with contextlib.suppress(ConfigError):
-            yield PLUGGED[group].config_model(chosen)
+            yield PLUGGED[group][0].config_model(chosen)
     elif known is not None:
         yield known

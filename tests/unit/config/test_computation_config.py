@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.computation import computation_of, count_late
+from runner.config.cross_checks import computation_of, count_late
 from runner.config.validation import validate
 from runner.plants.computation import EXACT
 

@@ -4,11 +4,10 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.problems import Problems
+from runner.config.groups import GROUPS, read_groups
+from runner.config.limits import SweepConfig
 from runner.config.parsing import group_of, parse, parse_kind
-from runner.config.plugin_groups import GroupReader
-from runner.config.sweep import SweepConfig
 from runner.controllers import CONTROLLERS
-from runner.sensing import ForceTorqueConfig
 from runner.sensing.force_torque import IDEAL
 
 SWEEP = {"trace": "auto", "retry": "none", "on_failure": "stop", "attempts": 2, "time_limit": None}
@@ -37,12 +36,18 @@ def test_a_group_with_kinds_needs_one():
 
 def test_a_plug_in_without_a_known_kind_is_a_problem_and_not_a_sensor():
     problems = Problems()
-    reader = GroupReader(problems, {"wrist_sensor": {"kind": "nobody"}})
-    assert reader.read(ForceTorqueConfig, "wrist_sensor") is None
-    assert reader.plugged == {}
-    assert [problem.partition(" ")[0] for problem in problems.found] == ["wrist_sensor.kind:"]
+    found = read_groups({"wrist_sensor": {"kind": "nobody"}}, problems)
+    assert found["wrist_sensor"] is None
+    assert found["plugged"] == {}
+    assert "wrist_sensor.kind:" in [problem.partition(" ")[0] for problem in problems.found]
 
 
 def test_a_built_in_sensor_is_read_by_its_model():
-    reader = GroupReader(Problems(), {"wrist_sensor": IDEAL.model_dump()})
-    assert reader.read(ForceTorqueConfig, "wrist_sensor") == IDEAL
+    assert read_groups({"wrist_sensor": IDEAL.model_dump()}, Problems())["wrist_sensor"] == IDEAL
+
+
+def test_a_group_that_is_missing_is_a_problem_unless_it_may_be():
+    problems = Problems()
+    read_groups({}, problems)
+    missing = [problem.partition(":")[0] for problem in problems.found if "must be a group of keys" in problem]
+    assert missing == [group for group in GROUPS if group not in ("input_shaper", "notch")]

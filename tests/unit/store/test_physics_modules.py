@@ -11,7 +11,7 @@ OTHERS = {
     "base/data_file.py", "base/engine_output.py", "base/engines.py", "base/environment_variables.py", "base/errors.py",
     "base/expressions", "base/former_names.py", "base/interpolation.py", "base/limits.py", "base/paths.py",
     "base/progress.py", "base/quantities.py", "base/sanitize.py", "base/ticks.py", "cli", "config/caveats.py",
-    "config/compose", "config/limits.py", "config/preset.py", "config/spec.py", "config/sweep.py", "doctor",
+    "config/compose", "config/limits.py", "config/spec.py", "doctor",
     "metrics/caveats", "plants/servo_contact_stability.py", "plugins/discovery.py", "plugins/folder_code.py",
     "recordings", "reporting", "schema/model.py", "schema/plausibility.py", "schema/units.py",
     "simulation/provenance.py", "simulation/result.py", "statistics", "store", "studies", "study", "sweeps/batch.py",

@@ -1,0 +1,247 @@
+"""Checks across groups: payload, computation delay, controller wrappers and sensors."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from runner.base.errors import ConfigError, nearest
+from runner.config.robot import RobotConfig
+from runner.config.run import RunConfig
+from runner.controllers import Loop
+from runner.controllers.force.hybrid_force import HybridForceConfig
+from runner.plants import PLANTS, PlantConfig
+from runner.plants.computation import EXACT, ComputationConfig
+from runner.plants.decoupled import TorquePlantConfig
+from runner.plants.kinds import ComputesLate
+from runner.robots.mismatch import MismatchConfig
+from runner.sensing.endpoint import EndpointTicks
+
+
+def check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
+    """Check that controllers believe in no payload below nothing.
+
+    Raises:
+        ConfigError: where they do.
+    """
+    if mismatch.payload < -robot.payload.mass:
+        raise ConfigError(
+            [
+                f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
+                f"robot.payload.mass with {robot.payload.mass:g} kg; allowed: {-robot.payload.mass:g} or more"
+            ]
+        )
+
+
+def check_schedule(config: RunConfig) -> None:
+    """Check that a payload that changes on the way meets a plant that can take it up.
+
+    Raises:
+        ConfigError: where it does not.
+    """
+    if not config.loaded:
+        return
+    key = "robot.payload.schedule: the payload cannot change on the way"
+    if PLANTS.commands(config.plant.kind) == "position":
+        fit = " or plant=".join(kind for kind in PLANTS.names() if PLANTS.commands(kind) == "torque")
+        raise ConfigError([f"{key} of plant={config.plant.kind}, whose joints no mass moves; take plant={fit}, or []"])
+    if config.has_contact:
+        raise ConfigError(
+            [
+                f"{key} where the tip touches something or its sensor is read, which would have to tell the payload "
+                "from the touch; take environment=free and a controller that feels nothing, or []"
+            ]
+        )
+
+
+_MAX_TICKS = 10_000_000
+
+
+def computation_of(plant: PlantConfig) -> ComputationConfig:
+    """Return what happens between laws and joints; a plant whose config has no such key takes commands at once."""
+    return plant.computation if isinstance(plant, ComputesLate) else EXACT
+
+
+def count_late(plant: PlantConfig, loops: Sequence[Loop]) -> tuple[int, ...]:
+    """Return how late the commands of each loop act, in ticks of the fastest one, without jitter.
+
+    Raises:
+        ConfigError: for a mapping that names other loops, or a delay that is longer than any run.
+    """
+    late = computation_of(plant).by_loop([loop.name for loop in loops])
+    if max(late) > _MAX_TICKS:
+        raise ConfigError([f"plant.computation.delay: {max(late)} ticks found; allowed: up to {_MAX_TICKS}"])
+    return tuple(late)
+
+
+def check_computation(config: RunConfig) -> None:
+    """Check that commands that come unevenly are torques, and that a pattern of misses fits into the run.
+
+    Raises:
+        ConfigError: where they are not, or it does not.
+    """
+    computation, timing, key = computation_of(config.plant), config.timing, "plant.computation"
+    if computation.is_even:
+        return
+    problems = []
+    if config.commands != "torque":
+        problems.append(
+            f"{key}: {config.controller.kind} commands joint positions, which come all as late; take jitter=null and "
+            "miss=null, or a controller that gives torques"
+        )
+    for loop in config.loops if isinstance(computation.miss, list) else ():
+        own, pattern = timing.ticks // round(loop.period / timing.tick) + 1, computation.miss
+        assert isinstance(pattern, list)  # noqa: S101 - as above
+        if len(pattern) > own:
+            problems.append(
+                f"{key}.miss: a pattern of {len(pattern)} ticks, and the loop {loop.name} has {own} in the run; take a "
+                "shorter one, or a longer duration"
+            )
+    if problems:
+        raise ConfigError(problems)
+
+
+def check_observer(config: RunConfig) -> None:
+    """Check that an observer meets laws of torques, a plant that its model describes, and commands at its ticks.
+
+    Raises:
+        ConfigError: where it does not; names what it lacks.
+    """
+    if config.disturbance_observer.by_loop(config.loops) is None:
+        return
+    problem = None
+    if config.commands != "torque":
+        kind = config.controller.kind
+        problem = f"it corrects torques, and {kind} commands joint positions; take a controller that gives torques"
+    elif any(loop.uses_wrench for loop in config.loops):
+        kind = config.controller.kind
+        problem = f"it takes a touch for a disturbance, which {kind} is to feel; take a controller that feels nothing"
+    elif _parted(config):
+        problem = (
+            "its momenta are those of the whole arm, whose stages turn and feel each other; take "
+            "plant.dynamics=coupled and plant.wrist_rotation=real"
+        )
+    elif config.disturbance_observer.torque == "measured":
+        if config.joint_torques is not None or "joint_torque_sensor" in config.plugged:
+            return
+        raise ConfigError(
+            [
+                "disturbance_observer.torque: measured needs torque sensors in the joints, and joint_torque_sensor."
+                "noise is null; take joint_torque_sensor=ideal, or disturbance_observer.torque=commanded"
+            ]
+        )
+    else:
+        problem = _late(config)
+    if problem is not None:
+        raise ConfigError([f"disturbance_observer.bandwidth: {problem}, or disturbance_observer=none"])
+
+
+def _parted(config: RunConfig) -> bool:
+    """Tell whether the stages of the plant move each for itself."""
+    apart = isinstance(config.plant, TorquePlantConfig) and config.plant.dynamics == "decoupled"
+    return len(config.arm.stages) > 1 and (apart or config.ignore_base_rotation)
+
+
+def _late(config: RunConfig) -> str | None:
+    timing = config.timing
+    if not timing.even:
+        return (
+            "it has to know which torque acts, and plant.computation has commands come unevenly; take jitter=null and "
+            "miss=null, or disturbance_observer.torque=measured"
+        )
+    for loop, late in zip(config.loops, timing.late, strict=True):
+        every = round(loop.period / timing.tick)
+        if late % every:
+            return (
+                f"it has to know which torque acts between two ticks of the loop {loop.name}, {every} ticks of the "
+                f"fastest loop apart, and plant.computation.delay with {late} is no multiple of that; take {every}"
+            )
+    return None
+
+
+def check_notch(config: RunConfig) -> None:
+    """Check that a notch meets laws of torques that are fast enough for its frequencies.
+
+    Raises:
+        ConfigError: where it does not.
+    """
+    if config.notch is None:
+        return
+    if config.commands != "torque" or any(loop.uses_wrench for loop in config.loops):
+        kind, what = config.controller.kind, "commands joint positions" if config.commands != "torque" else "feels"
+        raise ConfigError(
+            [f"notch: {kind} {what}; take a controller that gives torques and feels nothing, or notch=none"]
+        )
+    frequency, problems = config.notch.by_joint(config.arm), []
+    for loop in config.loops:
+        highest = 0.5 / loop.period
+        of_loop = zip(config.arm.model.joint_names[loop.joints], frequency[loop.joints], strict=True)
+        seen = f"of a loop of {loop.period:g} s; allowed: below {highest:.4g} Hz, half its rate"
+        problems += [f"notch.frequency: {name} has {f:g} Hz, {seen}" for name, f in of_loop if highest <= f < np.inf]
+        if config.notch.width >= highest:
+            problems.append(f"notch.width: {config.notch.width:g} Hz, {seen}")
+    if problems:
+        raise ConfigError(dict.fromkeys(problems))
+
+
+def endpoint_ticks(config: RunConfig) -> Mapping[str, EndpointTicks]:
+    """Return when loops measure the tip, by loop; empty where there is no sensor.
+
+    Raises:
+        ConfigError: for names of no loop, for times that are no multiple of a loop's period, and for laws that do
+            not ask where the tip is or bases that do not turn as the encoders tell.
+    """
+    sensor, problems = config.endpoint_sensor, []
+    loops = {loop.name: loop for loop in config.loops}
+    problems = [
+        f"endpoint_sensor.read_by: no control loop is called '{name}'{nearest(name, loops)}; loops: {', '.join(loops)}"
+        for name in sensor.read_by
+        if name not in loops
+    ]
+    readers = [loops[name] for name in sensor.read_by if name in loops]
+    problems += [f"endpoint_sensor.read_by: {problem}" for loop in readers for problem in _refused_reader(config, loop)]
+    found = {}
+    for loop in readers:
+        period = loop.period if sensor.period is None else sensor.period
+        every, late = round(period / loop.period), round(sensor.delay / loop.period)
+        found[loop.name] = EndpointTicks(max(every, 1), late)
+        for key, value, ticks in (("period", period, every), ("delay", sensor.delay, late)):
+            if abs(value - ticks * loop.period) > 1e-9 * loop.period or (key == "period" and not ticks):
+                problems.append(
+                    f"endpoint_sensor.{key}: {value:g} s is no multiple of the period of the loop {loop.name}, "
+                    f"{loop.period:g} s; take {max(ticks, 1) * loop.period:g}"
+                )
+    if problems:
+        raise ConfigError(dict.fromkeys(problems))
+    return found
+
+
+def _refused_reader(config: RunConfig, loop: Loop) -> list[str]:
+    problems = []
+    if config.commands != "torque":
+        problems.append(f"{config.controller.kind} commands joint positions; take a controller that gives torques")
+    elif loop.follows_joints:
+        problems.append("the trajectory is one of joints, which ask for no tip; take one of the tip, or []")
+    elif loop.uses_wrench:
+        problems.append(f"{config.controller.kind} finds the wall by the encoders; take a law that feels no force")
+    if config.ignore_base_rotation:
+        problems.append(
+            "bases that keep the orientation of home turn otherwise than the encoders tell; take "
+            "plant.wrist_rotation=real"
+        )
+    return problems
+
+
+def check_reading(config: RunConfig) -> None:
+    """Check that joints have torque sensors where a law reads the force from them.
+
+    Raises:
+        ConfigError: where they have none.
+    """
+    law = config.controller
+    if isinstance(law, HybridForceConfig) and law.force_source == "joint_torque" and config.joint_torques is None:
+        raise ConfigError(
+            [
+                "controller.force_source: joint_torque needs torque sensors in the joints, and "
+                "joint_torque_sensor.noise is null; take joint_torque_sensor=ideal, or controller.force_source=wrist"
+            ]
+        )
