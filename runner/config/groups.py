@@ -1,7 +1,6 @@
 """Config groups of a run: the table of their models, and their validation group by group."""
 
 from collections.abc import Mapping
-from typing import Any
 
 from runner.base.errors import ConfigError, nearest
 from runner.config.caveats import CaveatsConfig
@@ -9,7 +8,7 @@ from runner.config.compose.problems import Problems
 from runner.config.input_shaper import InputShaperConfig
 from runner.config.limits import LimitsConfig, SweepConfig
 from runner.config.noise import NoiseConfig
-from runner.config.parsing import group_of, parse, parse_kind, parse_robot
+from runner.config.parsing import Parts, group_of, parse, parse_kind, parse_robot
 from runner.config.robot import OneArmConfig
 from runner.config.settings import PresetConfig, RunSettings
 from runner.config.spec import SpecConfig
@@ -23,15 +22,8 @@ from runner.plugins.registry import Kinds
 from runner.robots.mismatch import MISMATCHES, MismatchConfig
 from runner.robots.mismatch import NONE as NO_MISMATCH
 from runner.schema.model import StrictModel
-from runner.sensing import (
-    JOINT_TORQUE_SENSORS,
-    NOISES,
-    WRIST_SENSORS,
-    EndpointSensorConfig,
-    ForceTorqueConfig,
-    JointTorqueConfig,
-)
-from runner.sensing.force_torque import IDEAL
+from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, EndpointSensorConfig, JointTorqueConfig
+from runner.sensing.force_torque import IDEAL, ForceTorqueConfig
 from runner.trajectories import TRAJECTORIES
 
 GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
@@ -63,16 +55,13 @@ PLUGGED: Mapping[str, tuple[Kinds, StrictModel | None]] = {
     "joint_torque_sensor": (JOINT_TORQUE_SENSORS, JointTorqueConfig(noise=None, bias=0.0)),
     "mismatch": (MISMATCHES, NO_MISMATCH),
 }
-"""Groups that a plug-in replaces if they have a `kind`, each with the built-in config without effect.
-
-That of encoders depends on the robot.
-"""
+"""Groups that a plug-in replaces if they have a `kind`, each with a config of ours without effect, if there is one."""
 
 _OPTIONAL = ("input_shaper", "notch")
 _SETTINGS = tuple(RunSettings.model_fields)
 
 
-def read_groups(resolved: Mapping[str, object], problems: Problems) -> dict[str, Any]:
+def read_groups(resolved: Mapping[str, object], problems: Problems) -> Parts:
     """Return the valid groups of a config by name; a group that was read before, the same object, is not read again.
 
     Args:
@@ -84,7 +73,7 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> dict[str,
     """
     problems.attempt(_check_keys, resolved)
     settings = {key: resolved.get(key) for key in _SETTINGS}
-    found: dict[str, Any] = {"settings": problems.attempt(parse, "", RunSettings, settings), "plugged": {}}
+    found: Parts = {"settings": problems.attempt(parse, "", RunSettings, settings), "plugged": {}}
     for group in GROUPS:
         if group in resolved or group not in _OPTIONAL:
             keys = problems.attempt(group_of, group, resolved)

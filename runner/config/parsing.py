@@ -1,7 +1,7 @@
 """Validation of one config group against its model."""
 
 from collections.abc import Mapping
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
@@ -14,6 +14,8 @@ from runner.schema.model import StrictModel
 from runner.schema.plausibility import absurd
 
 M = TypeVar("M", bound=StrictModel)
+Parts = dict[str, Any]
+"""Valid groups of a config, and what is built from them, by name."""
 
 
 def group_of(group: str, resolved: Mapping[str, object]) -> Mapping[str, object]:

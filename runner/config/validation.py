@@ -3,7 +3,6 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -29,6 +28,7 @@ from runner.config.groups import read_groups
 from runner.config.input_shaper import shape
 from runner.config.limits import check_memory
 from runner.config.noise import NoiseConfig, exact_encoders
+from runner.config.parsing import Parts
 from runner.config.run import RunConfig
 from runner.config.timing import Steps, Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
@@ -82,10 +82,11 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     )
     for check in _CHECKS:
         check(config)
+    check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.has_contact)
     return config
 
 
-def _build(groups: Mapping[str, Any], arm: Robot, steps: Steps, problems: Problems) -> dict[str, Any]:
+def _build(groups: Parts, arm: Robot, steps: Steps, problems: Problems) -> Parts:
     """Return parts of a RunConfig that are built from valid groups; a user-supplied part may remember other runs.
 
     Raises:
@@ -113,7 +114,7 @@ def _build(groups: Mapping[str, Any], arm: Robot, steps: Steps, problems: Proble
     }
 
 
-def _shape(groups: Mapping[str, Any], arm: Robot, path: Trajectory, loops: tuple[Loop, ...]) -> Trajectory:
+def _shape(groups: Parts, arm: Robot, path: Trajectory, loops: tuple[Loop, ...]) -> Trajectory:
     """Return the desired motion as an input shaper leaves it, if any; it starts where the motion itself does."""
     shaper, controller, plant = groups.get("input_shaper"), groups["controller"], groups["plant"]
     if shaper is None:
@@ -125,15 +126,11 @@ def _shape(groups: Mapping[str, Any], arm: Robot, path: Trajectory, loops: tuple
     return shape(shaper, plant, arm, path, q, loops)
 
 
-def _check_memory(config: RunConfig) -> None:
-    check_memory(config.limits, config.arm, config.timing, config.settings.repetitions, config.has_contact)
-
-
 _PARTS = {field.name for field in fields(RunConfig)}
 # Checks of the whole config.
 _CHECKS: Sequence[Callable[[RunConfig], object]] = (
     check_schedule, check_computation, check_observer, check_notch, check_flexible_joints, check_flexible_links,
-    check_reading, endpoint_ticks, check_repeats, _check_memory,
+    check_reading, endpoint_ticks, check_repeats,
 )  # fmt: skip
 
 
