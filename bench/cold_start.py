@@ -50,7 +50,7 @@ _COMMANDS = (
     _Command("runner robot=macro, stored already", ("robot=macro",), 2.5),
     _Command("runner report nosuch", ("report", "nosuch"), 0.3),
     *(
-        _Command(f"TAB at `runner {line}`", ("-sc", "query=bash"), target, f"runner {line}", first)
+        _Command(f"TAB at `runner {line}`", (), target, f"runner {line}", first)
         for line, target, first in (
             ("rep", 0.2, False),
             ("list r", 0.2, False),
@@ -106,7 +106,10 @@ def _ratios(folder: Path) -> bool:
 
 
 def _environment(command: _Command, base: Mapping[str, str]) -> dict[str, str]:
-    return {**base, **({"COMP_LINE": command.line, "COMP_POINT": str(len(command.line))} if command.line else {})}
+    if not command.line:
+        return dict(base)
+    asked = {"_ARGCOMPLETE": "1", "_ARGCOMPLETE_STDOUT_FILENAME": os.devnull}
+    return {**base, **asked, "COMP_LINE": command.line, "COMP_POINT": str(len(command.line))}
 
 
 def _cpu(folder: Path, words: Sequence[str], environment: Mapping[str, str]) -> float:

@@ -5,13 +5,11 @@ page says what the code does; a test fails where it is stale.
 """
 
 import argparse
-import importlib
 import inspect
 import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 import yaml
 
@@ -19,7 +17,7 @@ from bench.allowed_values import describe
 from bench.compiled_table import compiled_section
 from runner.base.paths import conf_dir
 from runner.calibration.procedures import CALIBRATIONS
-from runner.cli.help import COMMANDS
+from runner.cli.commands import COMMANDS, COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
 from runner.config.compose.options import group_options
@@ -250,12 +248,11 @@ def _signature(function: Callable[..., Any]) -> str:
 
 
 def _commands() -> Iterator[str]:
-    yield (
-        "`runner OVERRIDES` or `runner run OVERRIDES` makes one run. `runner -m OVERRIDES` or `runner sweep OVERRIDES` "
-        "makes a sweep. `runner --help` shows both.\n\n"
-    )
-    for name in COMMANDS:
-        parser = _parser(name)
+    yield "Options of every command:\n\n| Argument | Meaning | Default |\n|---|---|---|\n"
+    yield from _arguments(COMMON)
+    yield "\n"
+    parsers = build_parser(name for name in COMMANDS if name != "sweep").commands
+    for name, parser in parsers.items():
         yield f"### runner {name}\n\n{inspect.cleandoc(parser.description or '')}\n\n"
         yield "| Argument | Meaning | Default |\n|---|---|---|\n"
         yield from _arguments(parser)
@@ -267,32 +264,12 @@ def _arguments(parser: argparse.ArgumentParser, before: str = "") -> Iterator[st
         if isinstance(action, argparse._SubParsersAction):
             for name, own in action.choices.items():
                 yield from _arguments(own, f"{name} ")
-        elif not isinstance(action, argparse._HelpAction):
+        elif not isinstance(action, argparse._HelpAction) and (parser is COMMON or action not in COMMON._actions):
             words = ", ".join(action.option_strings) or str(action.metavar or action.dest)
             value = f" {action.metavar}" if action.option_strings and action.metavar else ""
             shown = action.default not in (None, False, [], argparse.SUPPRESS)
             default = f"`{action.default}`" if shown else ""
             yield f"| `{before}{words}{value}` | {_cell(action.help or '')} | {default} |\n"
-
-
-class _MadeError(Exception):
-    """Carries the parser of a command out of it, before it does anything."""
-
-
-def _parser(command: str) -> argparse.ArgumentParser:
-    def stop(parser: argparse.ArgumentParser, *_: object) -> None:
-        raise _MadeError(parser)
-
-    with (
-        patch.object(argparse.ArgumentParser, "parse_args", stop),
-        patch.object(argparse.ArgumentParser, "parse_intermixed_args", stop),
-    ):
-        try:
-            importlib.import_module(f"runner.cli.{command}").main([])
-        except _MadeError as made:
-            parser: argparse.ArgumentParser = made.args[0]
-            return parser
-    raise AssertionError(f"runner {command} takes no arguments")
 
 
 if __name__ == "__main__":

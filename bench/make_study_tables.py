@@ -1,6 +1,6 @@
 """Writes the tables of docs/studies.md of results from what was reproduced: `python -m bench.make_study_tables FILE`.
 
-`runner reproduce all --json FILE` writes FILE, for all studies or for some. Each table is below a comment that names
+`runner reproduce all --json > FILE` writes FILE, for all studies or for some. Each table is below a comment that names
 the study and its claims. Their verdicts are stored in bench/studies.json, and a test compares the page with that file,
 because only whole runs have them. `--check` writes nothing, and exits with 1 if the page differs from FILE.
 """
@@ -23,7 +23,7 @@ Verdicts = Mapping[str, Sequence[Mapping[str, Any]]]
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write the tables and what they are made of, or check them; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m bench.make_study_tables", description=__doc__)
-    parser.add_argument("file", type=Path, help="what `runner reproduce all --json FILE` wrote")
+    parser.add_argument("file", type=Path, help="output of `runner reproduce all --json`")
     parser.add_argument("--check", action="store_true", help="change nothing; exit 1 where it differs")
     options = parser.parse_args(arguments)
     text, stored = PAGE.read_text(encoding="utf-8"), json.loads(STORED.read_text(encoding="utf-8"))

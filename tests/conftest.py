@@ -28,6 +28,7 @@ _FIXTURES = [
     "stored",
     "studies",
     "sweeps",
+    "tab",
     "tuning",
 ]
 pytest_plugins = ("support.engines", *(f"fixtures.{name}" for name in _FIXTURES))

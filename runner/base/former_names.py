@@ -46,19 +46,21 @@ FILES: dict[str, str] = {
 }
 """Present name of each former file of a study."""
 
-OPTIONS: dict[str, str] = {
-    "--at-most": "--max-failure-probability",
-    "--at-once": "--jobs",
-    "--check": "--finite-differences",
-    "--html": "--output",
-    "--learn": "--save-baseline",
-    "--metric": "--metrics",
-    "--of": "--parameters",
-    "--outputs": "--output",
-    "--reference": "--baseline",
-    "--write": "--output",
+OPTIONS: dict[str, tuple[str, ...]] = {
+    "--at-most": ("--max-failure-probability",),
+    "--at-once": ("--jobs",),
+    "--check": ("--finite-differences",),
+    "--html": ("--format html", "--output"),
+    "--learn": ("--save-baseline",),
+    "--markdown": ("--format markdown",),
+    "--metric": ("--metrics",),
+    "--of": ("--parameters",),
+    "--outputs": ("--output",),
+    "--pdf": ("--format pdf",),
+    "--reference": ("--baseline",),
+    "--write": ("--output",),
 }
-"""Present name of each former option of commands."""
+"""Present spellings of each former option of commands; a command has one of them."""
 
 
 def explain_key(key: str) -> str:

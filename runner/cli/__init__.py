@@ -1,1 +1,1 @@
-"""Command-line commands: one module each with `main(arguments) -> exit code`."""
+"""Command-line commands: one module each with `add_arguments(parser)` and `run(arguments) -> exit code`."""

@@ -1,6 +1,8 @@
-"""Argument parser and argument types shared by the commands."""
+"""Argument parser, argument types, and the options that mean the same in every command."""
 
 import argparse
+import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -10,67 +12,168 @@ from runner.store.latest import Kind, find_folder
 
 
 class Stored:
-    """The type of an argument that is the folder of something stored, or the word `latest`; see find_folder.
+    """Argument type: the folder of something stored, or the word `latest`; see find_folder.
 
     Args:
-        kinds: What it may be the folder of.
+        kinds: Kinds of stored things that the command accepts.
     """
 
-    def __init__(self, kinds: tuple[Kind, ...]) -> None:
+    def __init__(self, *kinds: Kind) -> None:
         self.kinds = kinds
 
     def __call__(self, text: str) -> Path:
-        """Return the folder that a text names."""
+        """Return the folder."""
         return find_folder(text, self.kinds)
 
 
-def stored_folder(*kinds: Kind) -> Stored:
-    """Return the type of an argument that is the folder of something stored, of one of some kinds."""
-    return Stored(kinds)
+class Names:
+    """Argument type: a list of names with commas.
+
+    Args:
+        allowed: The names that the option takes; empty for any.
+        most: Highest number of names.
+    """
+
+    def __init__(self, allowed: Sequence[str] = (), most: int | None = None) -> None:
+        self.allowed, self.most = allowed, most
+
+    def __call__(self, text: str) -> list[str]:
+        """Return the names."""
+        names = [name.strip() for name in text.split(",") if name.strip()]
+        for name in names if self.allowed else ():
+            if name not in self.allowed:
+                known = ", ".join(self.allowed)
+                raise argparse.ArgumentTypeError(f"no '{name}'{nearest(name, self.allowed)}; allowed: {known}")
+        if self.most is not None and len(names) > self.most:
+            raise argparse.ArgumentTypeError(f"takes at most {self.most}, found {len(names)}: {text}")
+        return names
 
 
-def name_list(text: str) -> list[str]:
-    """Return the names of a list with commas."""
-    return [name.strip() for name in text.split(",") if name.strip()]
+def count(text: str) -> int:
+    """Return a whole number of 1 or more."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"must be a whole number, 1 or more; found '{text}'")
+    return int(text)
+
+
+_SHARED: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
+    "output": (("-o", "--output"), {"type": Path, "metavar": "PATH"}),
+    "metrics": (("--metrics",), {"type": Names(), "metavar": "A,B"}),
+    "jobs": (("-j", "--jobs"), {"type": count, "metavar": "N"}),
+    "json": (("--json",), {"action": "store_true"}),
+    "baseline": (("--baseline",), {"type": Path, "metavar": "FILE"}),
+    "save_baseline": (("--save-baseline",), {"type": Path, "metavar": "FILE"}),
+    "by": (("--by",), {"type": Names(), "metavar": "A,B"}),
+    "where": (("--where",), {"action": "append", "default": [], "metavar": "KEY=VALUE"}),
+    "config_dir": (("--config-dir", "-cd"), {"type": Path, "action": "append", "default": [], "metavar": "DIR"}),
+    "plugin": (("--plugin",), {"action": "append", "default": [], "metavar": "GROUP=MODULE"}),
+    "quiet": (("-q", "--quiet"), {"action": "store_true"}),
+}
+_MEANINGS = {
+    "config_dir": "your own folder with YAML and URDFs; repeat for more",
+    "plugin": "your own controller, trajectory, plant, environment or metric, as controller=FILE.py; repeat for more",
+    "quiet": "print only the path of the result",
+}
 
 
 class UsageError(RunnerError):
-    """Arguments that a command does not take.
-
-    Attributes:
-        parser: The command's parser.
-    """
-
-    def __init__(self, message: str, parser: "Parser") -> None:
-        super().__init__(f"{message}; {' '.join(parser.format_usage().split())}")
-        self.parser = parser
+    """Arguments that a command does not take."""
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser whose errors leave as all others do.
+    """A parser without abbreviations; its errors are RunnerErrors.
 
-    Args:
-        command: Name of the command, such as "check".
-        description: What it does, its module's docstring.
+    Attributes:
+        commands: The parsers of the commands by name, if the parser is that of the whole line.
+        root: File of conf/ that the overrides of the command change.
     """
 
-    def __init__(self, command: str, description: str | None) -> None:
-        super().__init__(prog=f"runner {command}", description=description, allow_abbrev=False)
+    def __init__(self, **options: Any) -> None:
+        super().__init__(allow_abbrev=False, **options)
+        self.commands: dict[str, Parser] = {}
+        self.root, self._options_first = "config", False
 
-    def _check_value(self, action: argparse.Action, value: object) -> None:
-        """Reject a value, or one of a list, that is not among an argument's choices, and name the nearest of these."""
+    def add_shared(self, *names: str, **meanings: str) -> None:
+        """Add options that mean the same in every command.
+
+        Args:
+            names: Options with one meaning, such as "config_dir".
+            meanings: Options with their help in this command, as output="where to write".
+        """
+        for name, meaning in ({name: _MEANINGS[name] for name in names} | meanings).items():
+            flags, options = _SHARED[name]
+            self.add_argument(*flags, help=meaning, **options)
+
+    def add_formats(self, allowed: Sequence[str], meaning: str, most: int | None = None) -> None:
+        """Add `--format A,B`.
+
+        Args:
+            allowed: Names of the formats.
+            meaning: Its help.
+            most: Highest number of formats; None for any number.
+        """
+        self.add_argument("--format", type=Names(allowed, most), metavar="A,B", help=meaning)
+
+    def add_overrides(self, meaning: str, root: str = "config") -> None:
+        """Add a list of overrides; options may stand between them.
+
+        Args:
+            meaning: Its help.
+            root: File of conf/ that they change.
+        """
+        self.add_argument("overrides", nargs="*", metavar="OVERRIDE", help=meaning)
+        self.root, self._options_first = root, True
+
+    def parse_known_args(self, args: Iterable[str] | None = None, namespace: Any = None) -> Any:
+        """Parse arguments; where the parser takes overrides, options may stand between them."""
+        words = list(args or ())
+        return super().parse_known_args(self._sorted(words) if self._options_first else words, namespace)
+
+    def _sorted(self, words: Sequence[str]) -> list[str]:
+        """Return the words with the options first; an option whose value is missing is last."""
+        options: list[str] = []
+        others: list[str] = []
+        rest = iter(words)
+        for word in rest:
+            action = self._option_string_actions.get(word)
+            if action is not None and action.nargs != 0:
+                value = next(rest, None)
+                if value is None:
+                    return [*options, *others, word]
+                options += [word, value]
+            else:
+                (options if word.startswith("-") else others).append(word)
+        return [*options, *others]
+
+    def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
+        """Return the value of an argument; completion takes any word, so that it can go on behind a wrong one."""
+        return arg_string if "_ARGCOMPLETE" in os.environ else super()._get_value(action, arg_string)
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Check that a value is one of an argument's choices; the message names the nearest."""
         choices = [str(choice) for choice in action.choices or ()]
-        for one in value if isinstance(value, list) else [value]:
-            if choices and one not in choices:
-                name = "/".join(action.option_strings) or str(action.metavar)
-                raise RunnerError(f"{name}: no '{one}'{nearest(str(one), choices)}; allowed: {', '.join(choices)}")
+        if choices and value not in choices:
+            name = "/".join(action.option_strings) or str(action.metavar)
+            raise RunnerError(f"{name}: no '{value}'{nearest(str(value), choices)}; allowed: {', '.join(choices)}")
 
     def _parse_optional(self, arg_string: str) -> Any:
         """Reject the former name of one of the command's options, before any value is read."""
         name = arg_string.partition("=")[0]
-        if OPTIONS.get(name) in self._option_string_actions and name not in self._option_string_actions:
-            raise RunnerError(f"{name} is now called {OPTIONS[name]}.")
+        if name not in self._option_string_actions:
+            for present in OPTIONS.get(name, ()):
+                if present.split()[0] in self._option_string_actions:
+                    raise RunnerError(f"{name} is now called {present}.")
         return super()._parse_optional(arg_string)
+
+    def reject(self, unknown: Sequence[str]) -> NoReturn:
+        """Raise that the command does not take some arguments.
+
+        Raises:
+            UsageError: always, with the nearest option and the usage.
+        """
+        options = [name.removeprefix("--") for name in self._option_string_actions if name.startswith("--")]
+        near = nearest(unknown[0].removeprefix("--"), options).replace("mean ", "mean --")
+        self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
 
     def error(self, message: str) -> NoReturn:
         """Raise what is wrong with the arguments.
@@ -78,11 +181,4 @@ class Parser(argparse.ArgumentParser):
         Raises:
             UsageError: always, with the usage.
         """
-        raise UsageError(message, self)
-
-
-class ActionParser(Parser):
-    """The parser of one action of a command, such as `study new`."""
-
-    def __init__(self, prog: str, help: str = "", **_: object) -> None:
-        super().__init__(prog.removeprefix("runner "), help)
+        raise UsageError(f"{message.removeprefix('argument ')}; {' '.join(self.format_usage().split())}")

@@ -6,7 +6,7 @@ and the names in `symbols`.
 """
 
 import math
-from collections.abc import Sequence
+from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,9 +20,8 @@ if TYPE_CHECKING:
 _MOST = 100_000
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Compare the formulas of the files given; return 1 when one of them differs."""
-    parser = Parser("audit", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
     parser.add_argument(
         "urdf", metavar="URDF", help="a file, one of our URDFs such as xarm7.urdf, or a robot such as xarm7"
     )
@@ -36,7 +35,10 @@ def main(arguments: Sequence[str]) -> int:
         parser.add_argument(f"--{name}", type=Path, metavar="FILE", help=f"formulas of {words}")
     parser.add_argument("--samples", type=int, default=1000, help="how many random configurations (1000)")
     parser.add_argument("--tolerance", type=float, default=1e-6, help="largest error that is none, in SI units (1e-6)")
-    options = parser.parse_args(arguments)
+
+
+def run(options: Namespace) -> int:
+    """Compare the formulas of the files given; return 1 if one of them differs."""
     from runner.audit.model_truths import audited_arm
     from runner.audit.own_formulas import QUANTITIES, compare
 

@@ -7,13 +7,13 @@ computed on each arm, and the total time is estimated. Nothing is stored. Exit c
 
 import shlex
 from argparse import Namespace
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
-from runner.cli.arguments import ActionParser, Parser
+from runner.cli.arguments import Parser
 from runner.plugins.discovery import in_use, use_plugins
 
 if TYPE_CHECKING:
@@ -22,17 +22,16 @@ if TYPE_CHECKING:
 STUDY = "benchmark"
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Do one of them; there is one."""
-    parser = Parser("benchmark", __doc__)
-    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=ActionParser)
-    check = actions.add_parser("check", help="does a law of yours fit?")
-    check.add_argument("law", metavar="FILE", help="your law, a Python file")
+def add_arguments(parser: Parser) -> None:
+    """Add the action `check`."""
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
+    check = actions.add_parser("check", help="check if your controller fits")
+    check.add_argument("law", metavar="FILE", help="your controller, a Python file")
     check.add_argument("--profile", default="", metavar="P", help="a smaller or larger version of the benchmark")
-    return _check(parser.parse_args(arguments))
 
 
-def _check(options: Namespace) -> int:
+def run(options: Namespace) -> int:
+    """Print a line for each arm, the total time, and the command that simulates the benchmark."""
     quiet_environment()
     use_plugins([f"controller={options.law}"])
     from runner.study.plugins import read_user_plugins

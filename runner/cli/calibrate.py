@@ -1,8 +1,7 @@
 """`runner calibrate [OVERRIDES]`: simulate a tool or sensor calibration, compare it with the truth, store it."""
 
 import sys
-from collections.abc import Sequence
-from pathlib import Path
+from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from runner.base.environment_variables import quiet_environment
@@ -14,12 +13,14 @@ if TYPE_CHECKING:
     from runner.store import Calibration
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Carry out one calibration; print a table of its errors, and its folder as the last line."""
-    parser = Parser("calibrate", __doc__)
-    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as calibration=gravity, repetitions=10")
-    parser.add_argument("--config-dir", type=Path, action="append", default=[], metavar="DIR", help="folder of yours")
-    options = parser.parse_args(arguments)
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_overrides("such as calibration=gravity, repetitions=10", root="calibrate")
+    parser.add_shared("config_dir")
+
+
+def run(options: Namespace) -> int:
+    """Simulate one calibration; print a table of its errors, and its folder as the last line."""
     quiet_environment()
     from runner.sweeps.calibration_job import calibrate
 

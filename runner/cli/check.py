@@ -3,18 +3,17 @@
 Without a baseline, a run with a spec is checked by the spec. No repetition may break a bound. With
 `--max-failure-probability P` the whole 95 % interval of the probability of failing must be below P.
 
-`--save-baseline FILE` writes the baseline of a sweep. `--baseline FILE [--markdown]` then lists what changed.
+`--save-baseline FILE` writes the baseline of a sweep. `--baseline FILE [--format markdown]` then lists the changes.
 """
 
 import argparse
 import math
 from collections.abc import Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.environment_variables import quiet_environment
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, stored_folder
+from runner.cli.arguments import Parser, Stored
 from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
@@ -24,20 +23,13 @@ if TYPE_CHECKING:
 _MOVE_COLUMNS = ("cell", "metric", "was", "is", "moved", "beyond the seeds' spread")
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Check a run or sweep against a baseline, or save one."""
-    parser = Parser("check", __doc__)
-    parser.add_argument(
-        "folder",
-        type=stored_folder("run", "sweep", "tuning"),
-        metavar="DIR",
-        help="folder of a run or a sweep, or latest",
-    )
-    parser.add_argument(
-        "--baseline",
-        type=Path,
-        metavar="FILE",
-        help="bands or a saved sweep; default: the spec, or the baseline of the experiment",
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    stored = Stored("run", "sweep", "tuning")
+    parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a run or a sweep, or latest")
+    parser.add_shared(
+        baseline="bands or a saved sweep; default: the spec, or the baseline of the experiment",
+        save_baseline="write the baseline of a whole sweep",
     )
     parser.add_argument(
         "--max-failure-probability",
@@ -45,10 +37,13 @@ def main(arguments: Sequence[str]) -> int:
         metavar="P",
         help="highest allowed probability that a repetition breaks a bound of the spec",
     )
-    parser.add_argument("--save-baseline", type=Path, metavar="FILE", help="write the baseline of a whole sweep")
-    parser.add_argument("--markdown", action="store_true", help="print the changes as a Markdown table")
-    options = parser.parse_args(arguments)
+    parser.add_formats(("text", "markdown"), "how the changes are printed; default: text", most=1)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Check a run or sweep against a baseline, or save one."""
     quiet_environment()
+    markdown = options.format == ["markdown"]
     from runner import store
     from runner.store.baselines import Bands, cell_names, load_baseline, save_baseline
 
@@ -58,13 +53,13 @@ def main(arguments: Sequence[str]) -> int:
         return 0
     baseline = load_baseline(options.baseline) if options.baseline else None
     if not (baseline is None or isinstance(baseline, Bands)):
-        return _check_sweep(store.open_sweep(options.folder), baseline, options.markdown)
-    if options.markdown:
-        parser.error("--markdown needs the baseline of a sweep, made by --save-baseline")
+        return _check_sweep(store.open_sweep(options.folder), baseline, markdown)
+    if markdown:
+        options.parser.error("--format markdown needs the baseline of a sweep, made by --save-baseline")
     runs = store.open_runs(options.folder)
     judged = options.baseline is None and runs[0].spec is not None
     if options.max_failure_probability is not None and not judged:
-        parser.error(
+        options.parser.error(
             "--max-failure-probability needs a run with a spec, as by spec.metrics.settling_time.max=1.6, "
             "and no --baseline"
         )

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored, name_list
+from runner.cli.arguments import Names, Parser, Stored
 from runner.cli.columns import COMPARED, align_columns, answer_cells, number
 from runner.recordings import is_bag
 from runner.schema.units import read_quantity
@@ -40,30 +40,31 @@ class StoredOrRecording(Stored):
         return Path(text) if _is_recording(text) else super().__call__(text)
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Print the comparison."""
-    parser = Parser("compare", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
     parser.add_argument(
         "folders",
         nargs="+",
-        type=StoredOrRecording(("run", "sweep")),
+        type=StoredOrRecording("run", "sweep"),
         metavar="DIR",
         help="runs, or sweeps; or latest; or a run and a recording, a CSV file or a ROS bag",
     )
-    parser.add_argument("--metrics", type=name_list, metavar="A,B", help="compare only these metrics")
+    parser.add_shared(metrics="compare only these metrics", json="print the rows of runner.compare as JSON")
     parser.add_argument("--by", metavar="AXIS", help="of one sweep: compare the levels of this axis")
     parser.add_argument(
         "--within",
-        type=name_list,
+        type=Names(),
         metavar="AXIS,AXIS",
         help="within each level of these; default: over all others and within each",
     )
-    parser.add_argument("--json", action="store_true", help="print the rows of runner.compare as JSON")
     parser.add_argument("--columns", type=Path, metavar="FILE", help="of a recording: which signal each column holds")
     parser.add_argument(
         "--fill-gaps", type=_seconds, metavar="TIME", help="of a recording: fill gaps of up to this, such as 20ms"
     )
-    options = parser.parse_args(arguments)
+
+
+def run(options: Namespace) -> int:
+    """Print the comparison."""
     quiet_environment()
     recordings = [path for path in options.folders if _is_recording(path)]
     if recordings or options.columns or options.fill_gaps:

@@ -9,20 +9,19 @@ joint position commands. Exit codes: 0 it fits, 2 no config can be written of it
 
 import os
 import shlex
-from collections.abc import Sequence
+from argparse import Namespace
 from pathlib import Path
 
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, name_list
+from runner.cli.arguments import Parser
 
 _FORMATS = ("config", "html")
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Examine one file; print what was found, and the folders made as the last lines."""
-    parser = Parser("doctor", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
     parser.add_argument("file", type=Path, metavar="FILE", help="a URDF or an MJCF")
     parser.add_argument("--tip", metavar="FRAME", help="link that is the tip; default: where the arm ends")
     parser.add_argument("--name", metavar="NAME", help="name of the robot; default: that of the file or its folder")
@@ -30,17 +29,16 @@ def main(arguments: Sequence[str]) -> int:
         "--package-path", action="append", default=[], type=Path, metavar="DIR",
         help="folder with the ROS packages of its meshes; again for more",
     )  # fmt: skip
-    parser.add_argument("-o", "--output", type=Path, metavar="DIR", help="where to write; default: nothing is written")
-    parser.add_argument(
-        "--format",
-        type=name_list,
-        metavar="A,B",
-        choices=_FORMATS,
-        help="config: a config folder to start from (default); html: report.html, with the robot drawn",
+    parser.add_shared(output="where to write; default: nothing is written")
+    parser.add_formats(
+        _FORMATS, "config: a config folder to start from (default); html: report.html, with the robot drawn"
     )
-    options = parser.parse_args(arguments)
+
+
+def run(options: Namespace) -> int:
+    """Examine one file; print the findings, and the folders made as the last lines."""
     if options.format and options.output is None:
-        parser.error("--format needs --output DIR")
+        options.parser.error("--format needs --output DIR")
     if not options.file.is_file():
         raise RunnerError(f"no file {options.file}")
     quiet_environment()

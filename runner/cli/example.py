@@ -2,7 +2,7 @@
 
 import shutil
 import sys
-from collections.abc import Sequence
+from argparse import Namespace
 from pathlib import Path
 
 from runner.base.errors import RunnerError
@@ -11,11 +11,14 @@ from runner.cli.arguments import Parser
 from runner.store.atomic import write_atomically
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Copy them; print the folder as the last line."""
-    parser = Parser("example", __doc__)
-    parser.add_argument("folder", type=Path, metavar="DIR", help="a folder that is not there yet, or empty")
-    folder: Path = parser.parse_args(arguments).folder
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_argument("folder", type=Path, metavar="DIR", help="a new folder, or an empty one")
+
+
+def run(options: Namespace) -> int:
+    """Copy the examples; print the folder as the last line."""
+    folder: Path = options.folder
     copied = copy_examples(folder)
     print(f"runner: {len(copied)} files copied; {folder / 'own_robot' / 'README.md'} is a start", file=sys.stderr)
     print(folder)

@@ -5,7 +5,7 @@ DIR is a run, a sweep, a tuning, or a study from `runner reproduce`: its name, o
 
 import math
 import sys
-from collections.abc import Sequence
+from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,21 +31,17 @@ class _Drawn(Stored):
         return path if _study_of(path) else super().__call__(text)
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Write the figures; print their folder as the last line."""
-    parser = Parser("figures", __doc__)
-    parser.add_argument(
-        "folder",
-        type=_Drawn(("run", "sweep", "tuning")),
-        metavar="DIR",
-        help="a run, sweep or tuning; a study; or latest",
-    )
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="DIR", help="where to write; default: figures/ in the report's folder"
-    )
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    drawn = _Drawn("run", "sweep", "tuning")
+    parser.add_argument("folder", type=drawn, metavar="DIR", help="a run, sweep or tuning; a study; or latest")
+    parser.add_shared(output="where to write; default: figures/ in the report's folder")
     parser.add_argument("--width", default="single", metavar="W", help="single (88 mm), double (180 mm) or millimetres")
     parser.add_argument("--only", metavar="NAME", help="one figure, or those whose names begin so")
-    options = parser.parse_args(arguments)
+
+
+def run(options: Namespace) -> int:
+    """Write the figures; print their folder as the last line."""
     width = _millimetres(options.width)
     quiet_environment()
     from runner.reporting.charts.sheet import column

@@ -1,6 +1,7 @@
 """`runner list [TOPIC]`: list the available robots, controllers, metrics and other options."""
 
 import re
+from argparse import Namespace
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,16 +37,15 @@ _GROUPS = {
 }
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Print one topic with descriptions, or an overview of all."""
-    parser = Parser("list", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
     parser.add_argument("topic", nargs="?", metavar="TOPIC", help=", ".join(TOPICS))
-    parser.add_argument("--config-dir", type=Path, metavar="DIR", help="a config folder of yours, listed too")
-    options = parser.parse_args(arguments)
-    own = [] if options.config_dir is None else [options.config_dir]
-    for folder in own:
-        if not folder.is_dir():
-            raise RunnerError(f"--config-dir: no folder {folder}")
+    parser.add_shared("config_dir")
+
+
+def run(options: Namespace) -> int:
+    """Print one topic with descriptions, or an overview of all."""
+    own = options.config_dir
     if options.topic is None:
         _print_overview(own)
     elif options.topic in TOPICS:

@@ -1,27 +1,32 @@
 """Command-line entry point: dispatch to a command, and exit codes.
 
-Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 130 interrupted, 143 terminated. This module
-imports little, so that help and completion start fast.
+Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 3 internal error, 130 interrupted, 143
+terminated. This module imports little, so that help and completion start fast.
 """
 
-import importlib
+import contextlib
+import io
 import os
 import shlex
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import NoReturn
 
 from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, nearest, user_place
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import show_progress
 from runner.base.sanitize import one_line
-from runner.cli.completion import answer, is_asked
-from runner.cli.help import COMMANDS, GUIDE, HELP, SPELLED_OUT
+from runner.cli.commands import COMMANDS, COMMON, GUIDE, OVERRIDES, build_parser, help_text
 
 
 def main() -> None:
     """Run the command line and leave the process with its exit code."""
+    if "_ARGCOMPLETE" in os.environ:
+        from runner.cli.completion.complete import complete
+
+        complete()
     _open_outputs()
     signal.signal(signal.SIGTERM, _terminate)
     try:
@@ -30,7 +35,7 @@ def main() -> None:
     except OSError as error:
         # What is still buffered must not complain again when the interpreter flushes it at the very end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = 0  # nobody reads on, as in `runner list | head -1`
+        code = 0  # the reader has closed the pipe, as in `runner list | head -1`
         if not isinstance(error, BrokenPipeError):
             print(f"runner: {describe_write_error(error) if error.errno in DISK_FULL else error}", file=sys.stderr)
             code = 2
@@ -38,16 +43,16 @@ def main() -> None:
 
 
 class TerminatedError(KeyboardInterrupt):
-    """The process was asked to end (SIGTERM); it ends as when it is interrupted."""
+    """The process received SIGTERM; it ends as on an interrupt."""
 
 
 def _terminate(*_: object) -> NoReturn:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # what ends must not be ended once more
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a second signal must not interrupt the ending
     raise TerminatedError
 
 
 def _open_outputs() -> None:
-    """Send an output that the caller closed to nowhere; else a file of ours would take its number, and its prints."""
+    """Open an output that the caller closed on the null device; else the next file that is opened gets its number."""
     for number, name in ((1, "stdout"), (2, "stderr")):
         if getattr(sys, name) is None:
             nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -57,13 +62,18 @@ def _open_outputs() -> None:
             setattr(sys, name, os.fdopen(number, "w"))
 
 
-def dispatch(arguments: Sequence[str]) -> int:
+def dispatch(words: Sequence[str]) -> int:
     """Run one command line and return its exit code."""
     try:
-        if is_asked(arguments):
-            return answer(arguments, os.environ)
+        common, others = COMMON.parse_known_args(words)
+        if common.plugin:
+            from runner.plugins.discovery import use_plugins
+
+            use_plugins(common.plugin)
+        if common.quiet:
+            return _print_path(lambda: _choose(others))
         with show_progress():
-            return _choose(_take_plugins(arguments))
+            return _choose(others)
     except RunnerError as error:
         print(f"runner: {error}", file=sys.stderr)
         return 2
@@ -71,71 +81,100 @@ def dispatch(arguments: Sequence[str]) -> int:
         print(f"runner: not enough memory: {error}; shorten the run or ask for fewer repetitions", file=sys.stderr)
         return 2
     except Exception as error:
-        from runner.plugins.discovery import has_users_parts
-
-        if not (user_place(error) and has_users_parts()):  # a fault of ours: its whole trace is of use
-            raise
-        print(one_line(f"runner: your plug-in failed: {describe_part_error(error)}"), file=sys.stderr)
-        return 2
+        return _explain(error)
     except KeyboardInterrupt as error:
         ended, code = ("terminated", 143) if isinstance(error, TerminatedError) else ("interrupted", 130)
         print(f"runner: {ended}; finished runs are stored; the same command continues", file=sys.stderr)
         return code
 
 
-def _take_plugins(arguments: Sequence[str]) -> list[str]:
-    """Add the parts that `--plugin GROUP=MODULE` names, in any command, and return the other arguments."""
-    named, others = [], []
-    words = iter(arguments)
-    for word in words:
-        if word == "--plugin":
-            named.append(next(words, ""))
-        elif word.startswith("--plugin="):
-            named.append(word.removeprefix("--plugin="))
-        else:
-            others.append(word)
-    if named:
-        from runner.plugins.discovery import use_plugins
+def _explain(error: Exception) -> int:
+    """Print an unexpected error; return the exit code.
 
-        use_plugins(named)
-    return others
+    Raises:
+        OSError: if the error is one and no plug-in caused it.
+    """
+    from runner.plugins.discovery import has_users_parts
+
+    if user_place(error) and has_users_parts():
+        print(one_line(f"runner: your plug-in failed: {describe_part_error(error)}"), file=sys.stderr)
+        return 2
+    if isinstance(error, OSError):
+        raise error
+    import traceback
+
+    traceback.print_exception(error)
+    text = f"{type(error).__name__}: {error}"
+    print(one_line(f"runner: internal error: {text}. Report it with the command and the trace above."), file=sys.stderr)
+    return 3
 
 
-def _choose(arguments: Sequence[str]) -> int:
-    if not arguments:
+def _print_path(run: Callable[[], int]) -> int:
+    """Run a command; print only the path of the result, and the messages if it fails."""
+    out, messages = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(messages):
+        code = run()
+    if code:
+        sys.stderr.write(messages.getvalue())
+    for line in out.getvalue().splitlines()[-1:]:
+        if Path(line).exists():
+            print(line)
+    return code
+
+
+def _choose(words: Sequence[str]) -> int:
+    first, *rest = words or [""]
+    if not words:
         print(GUIDE, end="")
-        return 0
-    first = arguments[0]
-    if first in ("-h", "--help", "help"):
-        print(HELP, end="")
-        return 0
-    if first == "--version":
+    elif first in ("-h", "--help", "help"):
+        print(help_text(), end="")
+    elif first == "--version":
         from importlib.metadata import version
 
         print(version("arm-control-runner"))
-        return 0
-    if first in COMMANDS:
-        return _command(first, arguments[1:])
-    if first in SPELLED_OUT:
-        return _run([*SPELLED_OUT[first], *arguments[1:]])
+    elif any(word in ("-sc", "--shell-completion") for word in words):
+        from runner.cli.completion.complete import shell_code
+
+        print(shell_code(words))
+    elif first in COMMANDS and first not in OVERRIDES:
+        return _run_command(first, rest)
+    else:
+        return _run_overrides(words)
+    return 0
+
+
+def _run_command(name: str, words: Sequence[str]) -> int:
+    arguments, unknown = build_parser([name]).parse_known_args([name, *words])
+    if unknown:
+        arguments.parser.reject(unknown)
+    for folder in getattr(arguments, "config_dir", ()):
+        if not folder.is_dir():
+            raise RunnerError(f"--config-dir: no folder {folder}")
+    arguments.words = words
+    code: int = arguments.run(arguments)
+    return code
+
+
+def _run_overrides(words: Sequence[str]) -> int:
+    """Simulate the run or the sweep of a line.
+
+    Raises:
+        RunnerError: if the line begins with a word that is neither a command nor an override.
+    """
+    first = words[0]
     if first in FORMER_COMMANDS:
         raise RunnerError(f"{first} is now called {FORMER_COMMANDS[first]}.")
-    if len(arguments) > 1 and arguments[1].startswith("=") and "=" not in first:
-        given = "".join(arguments[1:3]) if arguments[1] == "=" else arguments[1]
-        raise RunnerError(f"an override has no spaces beside its '=': `runner {shlex.join([first + given])}`")
-    if first and first[0].isalpha() and "=" not in first:
+    if len(words) > 1 and words[1].startswith("=") and "=" not in first:
+        given = "".join(words[1:3]) if words[1] == "=" else words[1]
+        raise RunnerError(f"an override has no spaces around its '=': `runner {shlex.join([first + given])}`")
+    if first not in OVERRIDES and first and first[0].isalpha() and "=" not in first:
         raise RunnerError(
-            f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a "
-            "run is started by overrides such as robot=macro"
+            f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a run starts with "
+            "overrides such as robot=macro"
         )
-    return _run(arguments)
+    if {"-h", "--help"} & {*words}:
+        build_parser(["run"]).parse_args(["run", "--help"])
+    from runner.cli.overrides import run_line
 
-
-def _run(arguments: Sequence[str]) -> int:
-    code: int = importlib.import_module("runner.cli.run").main(arguments)
-    return code
-
-
-def _command(name: str, arguments: Sequence[str]) -> int:
-    code: int = importlib.import_module(f"runner.cli.{name}").main(list(arguments))
-    return code
+    many = ["-m"] if first == "sweep" else []
+    return run_line([*many, *words[first in OVERRIDES :]])

@@ -9,6 +9,7 @@ study that takes them.
 import json
 import shlex
 import sys
+from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -58,38 +59,48 @@ class _Reproduced:
     calibrations: "Mapping[str, Calibration]" = field(default_factory=dict)
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Reproduce one study or all; print the report's folder as the last line."""
-    studies = (*study_names(), AUDIT)
-    parser = Parser("reproduce", __doc__)
-    parser.add_argument(
-        "study", nargs="?", default="all", metavar="NAME", help=f"{', '.join(studies)}, all or a folder"
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    studies = ", ".join((*study_names(), AUDIT, "all"))
+    parser.add_argument("study", nargs="?", default="all", metavar="NAME", help=f"{studies} or a folder")
+    parser.add_overrides("such as sweep.time_limit=60")
+    parser.add_shared(
+        output="where to write runs and reports",
+        jobs="number of processes, as hydra.sweeper.workers=N",
+        json="print verdicts, findings, caveats and numbers as JSON; folders of reports go to standard error",
     )
-    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="such as hydra.sweeper.workers=1")
-    parser.add_argument(
-        "-o", "--output", type=Path, default=outputs_dir(), metavar="DIR", help="where to write runs and reports"
-    )
-    parser.add_argument("--check", action="store_true", help="exit 1 where a finding fell or a caveat is unexpected")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write verdicts, findings, caveats, numbers")
+    parser.set_defaults(output=outputs_dir())
+    parser.add_argument("--check", action="store_true", help="exit 1 if a finding fails or a caveat is unexpected")
     parser.add_argument(
         "--profile", default="", metavar="P", help="a smaller or larger version, by its name in study.yaml"
     )
     parser.add_argument("--code", action="store_true", help="run the Python of FOLDER")
-    options = parser.parse_intermixed_args(arguments)
+
+
+def run(options: Namespace) -> int:
+    """Reproduce one study or all; print the report's folder as the last line."""
     others = [text for text in options.overrides if not text.startswith(_FREE) or text.startswith("sweep.trace")]
+    if others and options.json and "=" not in others[0]:
+        raise RunnerError(f"reproduce: {others[0]}: --json prints; write a file by `--json > {others[0]}`")
     if others:
         raise RunnerError(
             f"reproduce: {others[0]}: the study decides what it simulates; you may set {', '.join(_FREE)}"
         )
     if options.study not in (AUDIT, "all"):
-        find_study(options.study, (AUDIT, "all"))  # one that is not there is told at once
+        find_study(options.study, (AUDIT, "all"))  # rejects an unknown name before anything is read
     quiet_environment()
     plugins = [word for text in named_parts() for word in ("--plugin", text)]
-    command = shlex.join(["runner", *plugins, "reproduce", *arguments])
-    way = _Way(options.output, options.overrides, command, options.profile, options.code, _parts(options.study))
-    made = dict(_reproduce(study, way) for study in _chosen(options.study, way))
-    if options.json is not None:
-        _write_conclusions(made, options.json)
+    command = shlex.join(["runner", *plugins, "reproduce", *options.words])
+    workers = [] if options.jobs is None else [f"hydra.sweeper.workers={options.jobs}"]
+    way = _Way(
+        options.output, [*options.overrides, *workers], command, options.profile, options.code, _parts(options.study)
+    )
+    made = {}
+    for study in _chosen(options.study, way):
+        name, made[name] = _reproduce(study, way)
+        print(way.outputs / "reports" / name, file=sys.stderr if options.json else None)
+    if options.json:
+        print(_conclusions(made), end="")
     fallen = _tell_fallen(made) if options.check else False
     return 1 if fallen or any(each.missing for each in made.values()) else 0
 
@@ -124,6 +135,7 @@ def _chosen(text: str, way: _Way) -> "list[Study | None]":
 def _reproduce(study: "Study | None", way: _Way) -> "tuple[str, _Reproduced]":
     from runner import store
     from runner.reporting.render import write_report
+    from runner.store.atomic import write_atomically
     from runner.study.gains import write_gains
 
     name = AUDIT if study is None else study.name
@@ -135,11 +147,10 @@ def _reproduce(study: "Study | None", way: _Way) -> "tuple[str, _Reproduced]":
     write_report(made.document, folder)
     if study is not None and study.tuned:
         write_gains(folder, study.tuned)
-    _write_conclusions({name: made}, folder / FILE)
+    write_atomically(folder / FILE, _conclusions({name: made}).encode())
     note(folder)
     for run, why in made.missing.items():
         print(f"runner: {name}: {run} is missing in the report: {why}", file=sys.stderr)
-    print(folder)
     return name, made
 
 
@@ -158,14 +169,14 @@ def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
     return bool(lines)
 
 
-def _write_conclusions(made: Mapping[str, _Reproduced], path: Path) -> None:
-    from runner.store.atomic import write_atomically
+def _conclusions(made: Mapping[str, _Reproduced]) -> str:
+    """Return the conclusions of some studies as JSON."""
     from runner.study.conclusions import conclusions
 
     content = {
         study: conclusions(each.document, each.runs, each.calibrations, each.expected) for study, each in made.items()
     }
-    write_atomically(path, (json.dumps(content, indent=1, ensure_ascii=False) + "\n").encode())
+    return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
 def _reproduce_study(study: "Study", way: _Way) -> _Reproduced:

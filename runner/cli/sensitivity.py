@@ -5,14 +5,14 @@ with the keys that take its value, and masses, armature and lengths of links. Th
 control steps are fixed. A run on bullet or mujoco has the derivatives of the same run on rk4.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from argparse import Namespace
+from collections.abc import Iterator, Mapping
+from math import isnan
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from runner.base import progress
 from runner.base.environment_variables import quiet_environment
-from runner.cli.arguments import Parser, name_list, stored_folder
+from runner.cli.arguments import Names, Parser, Stored
 from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
@@ -30,33 +30,30 @@ _GROUPS = (
 )  # fmt: skip
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Print a table for each metric; return 1 where differences disagree."""
-    parser = Parser("sensitivity", __doc__)
-    parser.add_argument("run", type=stored_folder("run"), metavar="RUN", help="folder of a run, or latest")
-    parser.add_argument("--metrics", type=name_list, metavar="A,B", help="which metrics; default: the main ones")
-    parser.add_argument(
-        "--parameters",
-        type=name_list,
-        metavar="A,B",
-        choices=_GROUPS,
-        help=f"groups of parameters: {', '.join(_GROUPS)}; default: all",
-    )
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_argument("folder", type=Stored("run"), metavar="RUN", help="folder of a run, or latest")
+    parser.add_shared(metrics="which metrics; default: the main ones")
+    groups = f"groups of parameters: {', '.join(_GROUPS)}; default: all"
+    parser.add_argument("--parameters", type=Names(_GROUPS), metavar="A,B", help=groups)
     parser.add_argument("--repetition", type=int, default=0, metavar="N", help="which repetition (0)")
     parser.add_argument("--finite-differences", action="store_true", help="compare with central differences")
-    options = parser.parse_args(arguments)
+
+
+def run(options: Namespace) -> int:
+    """Print a table for each metric; return 1 if differences disagree."""
     quiet_environment()
     from runner import store
     from runner.analysis.sensitivity import check_smooth, differences, of_run
 
-    run = store.open_run(options.run)
+    stored = store.open_run(options.folder)
     progress.begin("differentiating", unit="parameters")
-    found = of_run(run, options.parameters or _GROUPS, options.repetition)
+    found = of_run(stored, options.parameters or _GROUPS, options.repetition)
     names = options.metrics or [name for name in _SHOWN if name in found.metrics]
     for name in names:
         check_smooth(name, found.metrics)
     compared = differences(found, names) if options.finite_differences else {}
-    print(_about(run, found))
+    print(_about(stored, found))
     for name in names:
         print(f"\n{name}: {number(found.metrics[name])} {_unit(name)}")
         print(align_columns(_rows(found, name, compared.get(name))))
@@ -104,7 +101,7 @@ def _rows(found: "Sensitivity", name: str, compared: "Differences | None") -> li
         rows.append(
             [
                 *(parameter.name, number(parameter.value), parameter.unit, number(derivative), by),
-                "-" if np.isnan(elasticity) else number(elasticity),
+                "-" if isnan(elasticity) else number(elasticity),
             ]
         )
         if compared is not None:

@@ -1,19 +1,19 @@
 """`runner status DIR`: show the progress of a sweep from its stored runs."""
 
 import sys
-from collections.abc import Sequence
+from argparse import Namespace
 
 from runner.base.environment_variables import quiet_environment
-from runner.cli.arguments import Parser, stored_folder
+from runner.cli.arguments import Parser, Stored
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Print how many runs are done, failed or have caveats, what is left and for how long, and how to go on."""
-    parser = Parser("status", __doc__)
-    parser.add_argument(
-        "folder", type=stored_folder("sweep", "tuning"), metavar="DIR", help="folder of a sweep, or latest"
-    )
-    options = parser.parse_args(arguments)
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_argument("folder", type=Stored("sweep", "tuning"), metavar="DIR", help="folder of a sweep, or latest")
+
+
+def run(options: Namespace) -> int:
+    """Print the numbers of runs that are done, failed, left or have caveats, and the command that continues."""
     quiet_environment()
     from runner.base.quantities import format_duration
     from runner.store import open_sweep

@@ -2,7 +2,7 @@
 
 new writes a template of a study into a folder: it runs at once, and you change it. check simulates the missing runs
 and checks the study: every expression, every condition tested both ways, literal numbers in findings, unexpected
-caveats. diff prints the changes between two versions; OLD and NEW are files that `runner reproduce --json` wrote, or
+caveats. diff prints the changes between two versions; OLD and NEW are what `runner reproduce --json` printed, or
 folders of reports on studies.
 """
 
@@ -11,35 +11,37 @@ import shlex
 import sys
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
 from runner.base.environment_variables import quiet_environment
 from runner.base.sanitize import one_line
-from runner.cli.arguments import ActionParser, Parser
+from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
 from runner.study.changes import KINDS, Change, Value, changes, read_conclusions
 
 _TOLD = 20  # changes of a kind that are printed without --all
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Do one of them."""
-    parser = Parser("study", __doc__)
-    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=ActionParser)
+def add_arguments(parser: Parser) -> None:
+    """Add the actions."""
+    actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     new = actions.add_parser("new", help="write a first study into a folder")
-    new.add_argument("folder", type=Path, metavar="DIR", help="a folder that is not there yet, or empty")
-    check = actions.add_parser("check", help="look through a study")
+    new.add_argument("folder", type=Path, metavar="DIR", help="a new folder, or an empty one")
+    check = actions.add_parser("check", help="check a study")
     check.add_argument("study", metavar="DIR", help="the study's folder, or the name of an installed one")
-    check.add_argument("-o", "--output", type=Path, default=outputs_dir(), metavar="DIR", help="where to write runs")
+    check.add_shared(output="where to write runs")
+    check.set_defaults(output=outputs_dir())
     check.add_argument("--code", action="store_true", help="run the Python of DIR")
-    diff = actions.add_parser("diff", help="what changed between two versions")
+    diff = actions.add_parser("diff", help="print the changes between two versions")
     diff.add_argument("old", type=Path, metavar="OLD", help="file or folder of the earlier version")
     diff.add_argument("new", type=Path, metavar="NEW", help="file or folder of the later one")
     diff.add_argument("--all", action="store_true", help=f"print all changes, not {_TOLD} of a kind")
-    diff.add_argument("--json", type=Path, metavar="FILE", help="write them to a file, too")
-    options = parser.parse_args(arguments)
+    diff.add_shared(json="print all changes as JSON")
+
+
+def run(options: Namespace) -> int:
+    """Carry out one action."""
     return {"new": _new, "check": _check, "diff": _diff}[options.action](options)
 
 
@@ -56,7 +58,7 @@ def _check(options: Namespace) -> int:
     """Print what is wrong with a study, a line each; exit 1 where something is."""
     from runner.study.names import find_study
 
-    find_study(options.study)  # one that is not there is told at once
+    find_study(options.study)  # rejects an unknown name before anything is read
     quiet_environment()
     from runner.study.check import problems
     from runner.study.execute import make_all
@@ -72,8 +74,11 @@ def _check(options: Namespace) -> int:
 
 
 def _diff(options: Namespace) -> int:
-    """Print what moved, a line each, those that matter most first."""
+    """Print the changes, a line each, those that matter most first."""
     found = changes(read_conclusions(options.old), read_conclusions(options.new))
+    if options.json:
+        print(json.dumps([asdict(change) for change in found], indent=1, ensure_ascii=False))
+        return 0
     counts = Counter(change.kind for change in found)
     for kind in KINDS:
         of_kind = [change for change in found if change.kind == kind]
@@ -83,11 +88,6 @@ def _diff(options: Namespace) -> int:
         if len(shown) < len(of_kind):
             print(f"{kind}: {len(of_kind) - len(shown)} more; --all prints them")
     print("; ".join(f"{kind}: {counts[kind]} changed" for kind in KINDS if counts[kind]) or "nothing changed")
-    if options.json is not None:
-        from runner.store.atomic import write_atomically
-
-        text = json.dumps([asdict(change) for change in found], indent=1, ensure_ascii=False)
-        write_atomically(options.json, f"{text}\n".encode())
     return 0
 
 

@@ -4,18 +4,16 @@ Without options, all cells of a sweep are written to table.parquet and table.csv
 """
 
 import sys
-from collections.abc import Sequence
+from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError, StoreError
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, name_list, stored_folder
+from runner.cli.arguments import Parser, Stored
 
 if TYPE_CHECKING:
-    from argparse import Namespace
-
     from runner.reporting.export.paper_table import PaperTable
     from runner.store import Sweep
     from runner.sweeps.measurements import Measurements
@@ -24,24 +22,21 @@ _ENDINGS = {".csv": "csv", ".parquet": "parquet", ".md": "markdown", ".tex": "la
 FORMATS = tuple(_ENDINGS.values())
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Write the whole table into the sweep's folder, and print that as the last line; or what the options ask for."""
-    parser = Parser("table", __doc__)
-    parser.add_argument(
-        "folder",
-        type=stored_folder("sweep", "run", "tuning"),
-        metavar="DIR",
-        help="folder of a sweep or run, or latest",
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    stored = Stored("sweep", "run", "tuning")
+    parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a sweep or run, or latest")
+    parser.add_formats(FORMATS, ", ".join(FORMATS), most=1)
+    parser.add_shared(
+        metrics="which metrics",
+        by="a row for each combination of these axes",
+        where="only the cells with this value; repeat for more",
+        output="write to a file instead of standard output",
     )
-    parser.add_argument("--format", metavar="FORMAT", choices=FORMATS, help=", ".join(FORMATS))
-    parser.add_argument("--metrics", type=name_list, metavar="A,B", help="which metrics")
-    parser.add_argument("--by", type=name_list, metavar="A,B", help="a row for each combination of these axes")
-    parser.add_argument(
-        "--where", action="append", default=[], metavar="KEY=VALUE", help="only the cells with this value; again for "
-        "the next"
-    )  # fmt: skip
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="write to a file instead of standard output")
-    options = parser.parse_args(arguments)
+
+
+def run(options: Namespace) -> int:
+    """Write the whole table into the sweep's folder, and print the folder; or the table that the options choose."""
     chosen = _format(options)
     quiet_environment()
     from runner import store
@@ -63,13 +58,13 @@ def main(arguments: Sequence[str]) -> int:
     return _put(as_parquet(frame, measurements) if chosen == "parquet" else as_csv(frame), options.output)
 
 
-def _format(options: "Namespace") -> str:
+def _format(options: Namespace) -> str:
     """Return the format asked for, by name or by the ending of the file; nothing where none is.
 
     Raises:
         RunnerError: If there is no such format, or Parquet would go to a terminal.
     """
-    chosen: str = options.format or ""
+    chosen: str = (options.format or [""])[0]
     if not chosen and options.output is not None:
         chosen = _ENDINGS.get(options.output.suffix.lower(), "")
         if not chosen:
@@ -114,7 +109,7 @@ def _whole(folder: Path, measurements: "Measurements") -> int:
     return 0
 
 
-def _of_run(options: "Namespace", chosen: str) -> int:
+def _of_run(options: Namespace, chosen: str) -> int:
     """Print or write the table of a run, a row for each metric; without options, in Markdown and with its folder."""
     from runner import store
 

@@ -8,16 +8,14 @@ interrupted command to continue it; with more --trials it adds to the stored one
 import argparse
 import shlex
 import sys
-from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base import progress
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
 from runner.cli import report
-from runner.cli.arguments import Parser
+from runner.cli.arguments import Parser, count
 
 if TYPE_CHECKING:
     from runner.sweeps.tuning.study import Tuning
@@ -26,10 +24,9 @@ _TRIALS = 100
 _JOBS = 4
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Make the trials that are missing and write the report; print its folder as the last line."""
-    parser = Parser("tune", __doc__)
-    parser.add_argument("overrides", nargs="*", metavar="OVERRIDE", help="as for a run; a range where a key is tuned")
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_overrides("as for a run; a range if the key is tuned")
     for direction in ("minimize", "maximize"):
         parser.add_argument(
             f"--{direction}",
@@ -39,25 +36,20 @@ def main(arguments: Sequence[str]) -> int:
             type=partial(_objective, direction),
             help="of several objectives the report shows the Pareto front",
         )
-    parser.add_argument("--trials", type=_count, default=_TRIALS, metavar="N", help=f"in all; default {_TRIALS}")
-    parser.add_argument(
-        "-j",
-        "--jobs",
-        type=_count,
-        default=_JOBS,
-        metavar="N",
-        help=f"number of trials that run at once, at least as many as processes; default {_JOBS}",
+    parser.add_argument("--trials", type=count, default=_TRIALS, metavar="N", help=f"in all; default {_TRIALS}")
+    parser.add_shared(
+        "config_dir", jobs=f"number of trials that run at once, at least as many as processes; default {_JOBS}"
     )
-    parser.add_argument("--config-dir", type=Path, action="append", default=[], metavar="DIR", help="of your own YAML")
-    options = parser.parse_intermixed_args(arguments)
+    parser.set_defaults(jobs=_JOBS)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Simulate the missing trials and write the report; print its folder as the last line."""
     objectives = dict.fromkeys(options.objectives or ())
     if not objectives:
-        parser.error("name a metric to --minimize or --maximize")
+        options.parser.error("name a metric to --minimize or --maximize")
     if len({metric for _, metric in objectives}) < len(objectives):
         raise RunnerError("a metric cannot be minimized and maximized at once")
-    for folder in options.config_dir:
-        if not folder.is_dir():
-            raise RunnerError(f"--config-dir: no folder {folder}")
     quiet_environment()
     from runner.sweeps.tuning.objective import Objective
     from runner.sweeps.tuning.run import tune
@@ -67,7 +59,7 @@ def main(arguments: Sequence[str]) -> int:
         [Objective(metric, direction) for direction, metric in objectives],
         options.trials,
         options.jobs,
-        shlex.join(["runner", "tune", *arguments]),
+        shlex.join(["runner", "tune", *options.words]),
         options.config_dir,
     )
     return _tell(tuning)
@@ -75,6 +67,7 @@ def main(arguments: Sequence[str]) -> int:
 
 def _tell(tuning: "Tuning") -> int:
     from runner.reporting.answers import CHOSEN
+    from runner.reporting.stored import write
     from runner.sweeps.tuning.objective import best
     from runner.sweeps.tuning.study import at_ends
 
@@ -90,15 +83,9 @@ def _tell(tuning: "Tuning") -> int:
     for sentence in (*at_ends(tuning), *([CHOSEN] if failed < len(trials) else [])):
         print(f"runner: {sentence}", file=sys.stderr)
     progress.begin("preparing the report")
-    report.main([str(tuning.folder)])
+    print(write([tuning.folder], (), report.FORMATS))
     return 0 if failed < len(trials) else 1
 
 
 def _objective(direction: str, metric: str) -> tuple[str, str]:
     return direction, metric
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number, 1 or more; found '{text}'")
-    return int(text)

@@ -4,6 +4,7 @@ A checksum detects corruption, such as a flipped bit or half a file; it does not
 from stored data and have no checksums; baselines and claims are edited by people.
 """
 
+from argparse import Namespace
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -35,13 +36,15 @@ class Found:
     problem: str = ""
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Print what is stored, and what of it is damaged; return 1 where anything is."""
-    parser = Parser("verify", __doc__)
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
     parser.add_argument(
         "outputs", nargs="?", type=Path, default=outputs_dir(), metavar="DIR", help="an outputs folder (./outputs)"
     )
-    options = parser.parse_args(arguments)
+
+
+def run(options: Namespace) -> int:
+    """Print the numbers of stored results, and those that are damaged; return 1 if there are any."""
     if not options.outputs.is_dir():
         raise RunnerError(f"no folder {options.outputs}; name an outputs folder, as in `runner verify outputs`")
     quiet_environment()

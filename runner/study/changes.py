@@ -43,7 +43,7 @@ class Change:
 
 
 def read_conclusions(path: Path) -> Mapping[str, Any]:
-    """Return what `runner reproduce --json` wrote, from the file itself or from the folder of a report.
+    """Return the output of `runner reproduce --json`, from a file or from the folder of a report.
 
     Raises:
         RunnerError: if it cannot be read, or is something else.
@@ -52,11 +52,13 @@ def read_conclusions(path: Path) -> Mapping[str, Any]:
     try:
         content = json.loads(read_text(file, RECORD))
     except (OSError, ValueError) as error:
-        raise RunnerError(f"cannot read {file}: {error}; `runner reproduce NAME --json FILE` writes one") from None
+        raise RunnerError(f"cannot read {file}: {error}; `runner reproduce NAME --json > FILE` writes one") from None
     if not isinstance(content, dict) or not all(
         isinstance(study, dict) and "title" in study for study in content.values()
     ):
-        raise RunnerError(f"{file} does not hold the conclusions of studies; `runner reproduce NAME --json FILE` does")
+        raise RunnerError(
+            f"{file} does not hold the conclusions of studies; `runner reproduce NAME --json > FILE` does"
+        )
     return content
 
 

@@ -1,58 +1,203 @@
-"""Completion of the last word of a partly typed command line."""
+"""Completion by argcomplete: candidates for the word under the cursor, from the parsers of the commands.
 
-import re
-from collections.abc import Iterator
+The shell function that `runner -sc install=bash` prints calls `runner` with the typed line in COMP_LINE. A TAB imports
+no plug-in and runs no code of a config folder.
+"""
 
-from runner.cli.completion.arguments import argument_words, files
-from runner.cli.completion.line import Line
-from runner.cli.completion.overrides import override_words
-from runner.cli.help import COMMANDS, HELP, SPELLED_OUT
+import argparse
+import contextlib
+import os
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TextIO
 
-_ROOTS = {"calibrate": "calibrate"}  # commands whose config hangs on another file of conf/ than that of a run
-_FLAG = re.compile(r"^  runner (--?[\w-]+)(?: ([a-z]+)(?= ))?", re.MULTILINE)  # in HELP, as `--cfg job`
+from argcomplete.completers import BaseCompleter
+from argcomplete.finders import CompletionFinder
+from argcomplete.lexers import split_line
+from argcomplete.shell_integration import shellcode
+
+from runner.base.errors import RunnerError, nearest
+from runner.cli.arguments import Names, Parser, Stored
+from runner.cli.commands import COMMANDS, build_parser
+from runner.cli.completion.keys import metric_names
+from runner.cli.completion.overrides import Typed, override_words
+from runner.store.latest import WORD, Kind, folder_of
+
+_MOST = 1000  # words
+_FEW = 50  # stored folders
+_SHELLS = ("bash", "zsh", "fish")
+_FILES = ("DIR", "FILE", "URDF", "PATH")
 
 
-def complete(line: Line) -> Iterator[str]:
-    """Yield the words that complete a line; each begins with what is typed."""
-    for word in _words(line):
-        if word.startswith(line.word):
+def complete(output: TextIO | None = None, leave: Callable[[int], object] = os._exit) -> None:
+    """Print the words that complete the line in COMP_LINE, and nothing else; then leave the process.
+
+    Args:
+        output: Where the words go; None for the file descriptor that the shell function reads.
+        leave: Leaves the process with an exit code.
+    """
+    with contextlib.suppress(Exception):
+        *_, words, _ = split_line(os.environ["COMP_LINE"], int(os.environ["COMP_POINT"]))
+        name = next(_without_plugins(words[int(os.environ["_ARGCOMPLETE"]) :]), "")
+        parser = build_parser([name]) if name in COMMANDS else build_parser(["run"]).commands["run"]
+        _Finder()(
+            parser,
+            always_complete_options=False,
+            default_completer=_Values(),
+            exit_method=leave,
+            output_stream=output,
+        )
+    leave(0)
+
+
+def shell_code(words: Sequence[str]) -> str:
+    """Return the lines of a shell that turn on completion, for `-sc install=SHELL`.
+
+    Raises:
+        RunnerError: for anything but `install=` and a known shell.
+    """
+    asked = [word.removeprefix("install=") for word in words if word.startswith("install=")]
+    if len(asked) != 1 or asked[0] not in _SHELLS:
+        wrong = ", ".join(word for word in words if "=" in word) or "nothing"
+        near = nearest(asked[0], _SHELLS) if asked else ""
+        raise RunnerError(
+            f"-sc: found {wrong}{near}. Allowed: install= and one of {', '.join(_SHELLS)}, as in "
+            'eval "$(runner -sc install=bash)"'
+        )
+    # A key that ends with a dot goes on, so the shell must not put a space behind it.
+    return shellcode(["runner"], shell=asked[0]).replace("[=/:]", "[=/:.]")
+
+
+def _without_plugins(words: Iterable[str]) -> Iterator[str]:
+    rest = iter(words)
+    for word in rest:
+        if word == "--plugin":
+            next(rest, None)
+        elif not word.startswith(("--plugin=", "-q")):
             yield word
 
 
-def _words(line: Line) -> Iterator[str]:
-    if line.naming_plugin:
-        yield from _plugin_words(line.word)
-    elif line.words and line.words[0] in COMMANDS:
-        yield from argument_words(line, _ROOTS.get(line.words[0], "config"))
-    else:
-        yield from _run_words(line)
+class _Finder(CompletionFinder):
+    """Argcomplete's finder, with a bounded number of words."""
+
+    def _init_debug_stream(self) -> None:
+        """Leave file descriptor 9 alone."""
+
+    def filter_completions(self, completions: list[str]) -> list[str]:
+        """Return the words without repetitions, sorted; at most a thousand."""
+        return sorted({*completions})[:_MOST]
 
 
-def _run_words(line: Line) -> Iterator[str]:
-    """Yield what a run or a sweep takes, and the commands where nothing stands before."""
-    flags = dict(_FLAG.findall(HELP))
-    before = line.words[-1] if line.words else ""
-    if not line.words:
-        yield from (*COMMANDS, *SPELLED_OUT, "--help", "--version")
-    if flags.get(before):
-        yield flags[before]
-    elif before == "--config-dir":
-        yield from files(line.word, folders_only=True)
-    elif line.word.startswith("--config-dir="):
-        yield from files(line.word, "--config-dir=", folders_only=True)
-    elif line.word.startswith("-"):
-        yield from flags
+class _Values(BaseCompleter):
+    """Completes the values of an argument: by its type, its metavar or its name."""
+
+    def __call__(
+        self, *, prefix: str, action: argparse.Action, parser: argparse.ArgumentParser, parsed_args: argparse.Namespace
+    ) -> Iterable[str]:
+        """Return the words; none if an error occurs."""
+        assert isinstance(parser, Parser)  # noqa: S101 - all parsers of the command line are
+        with contextlib.suppress(Exception):
+            return [*_values(prefix, action, parser, parsed_args)]
+        return []
+
+
+def _values(prefix: str, action: argparse.Action, parser: Parser, parsed_args: argparse.Namespace) -> Iterator[str]:
+    if action.metavar == "OVERRIDE":
+        given = vars(parsed_args)
+        folders = [folder for folder in map(Path, given.get("config_dir") or []) if folder.is_dir()]
+        typed = Typed(given.get("overrides") or [], folders, given.get("plugin") or [])
+        yield from override_words(typed, prefix, parser.root)
+        if parser.prog == "runner run" and not typed.overrides:
+            yield from COMMANDS
+    elif action.metavar == "GROUP=MODULE":
+        yield from _plugin_words(prefix)
+    elif isinstance(action.type, Stored):
+        yield from _stored_folders(prefix, action.type.kinds)
+    elif isinstance(action.type, Names) and action.type.allowed:
+        yield from _listed(prefix, action.type.allowed)
     else:
-        yield from override_words(line, "config")
+        for name, words in _NAMED.items():
+            if action.dest.startswith(name):
+                yield from _listed(prefix, words(parser))
+    if action.dest == "study" or (action.metavar in _FILES and not isinstance(action.type, Stored)):
+        yield from _files(prefix, folders_only=action.metavar not in ("FILE", "URDF", "PATH"))
+
+
+def _listed(word: str, names: Iterable[str]) -> Iterator[str]:
+    """Yield names behind the names of a list with commas that are typed already."""
+    head = word[: word.rfind(",") + 1]
+    taken = {*head.split(",")}
+    yield from (f"{head}{name}" for name in names if name not in taken)
+
+
+def _topics(_: Parser) -> Iterable[str]:
+    from runner.cli.list import TOPICS
+
+    return TOPICS
+
+
+def _studies(parser: Parser) -> Iterable[str]:
+    from runner.study.names import study_names
+
+    return (*study_names(), *(("audit", "all") if parser.prog == "runner reproduce" else ()))
+
+
+# By the beginning of the attribute that an argument is kept in.
+_NAMED: Mapping[str, Callable[[Parser], Iterable[str]]] = {
+    "topic": _topics,
+    "metric": lambda _: metric_names(),
+    "objectives": lambda _: metric_names(),
+    "study": _studies,
+}
 
 
 def _plugin_words(word: str) -> Iterator[str]:
-    """Yield groups, and the files of modules after them."""
+    """Yield groups, and the files of modules behind them."""
     from runner.plugins.discovery import GROUPS  # takes as long as all the rest
 
-    flag = "--plugin=" if word.startswith("--plugin=") else ""
-    group, given, _ = word.removeprefix(flag).partition("=")
+    group, given, module = word.partition("=")
     if given:
-        yield from files(word, f"{flag}{group}=", suffix=".py")
+        yield from (f"{group}={path}" for path in _files(module, suffix=".py"))
     else:
-        yield from (f"{flag}{name}=" for name in GROUPS)
+        yield from (f"{name}=" for name in GROUPS)
+
+
+def _stored_folders(word: str, kinds: Sequence[Kind]) -> Iterator[str]:
+    """Yield the folders in ./outputs with some kinds of stored things, and the word `latest`.
+
+    Of many, only the folder above them is yielded until it is typed.
+    """
+    yield WORD
+    for kind in kinds:
+        above = f"outputs/{folder_of(kind)}/"
+        found = [entry.name for entry in _entries(above) if entry.is_dir() and not entry.name.startswith(".")]
+        if len(found) <= _FEW or word.startswith(above):
+            yield from (above + name for name in found)
+        else:
+            yield above
+    if "/" in word:
+        yield from _files(word, folders_only=True)
+
+
+def _files(word: str, suffix: str = "", folders_only: bool = False) -> Iterator[str]:
+    """Yield the paths that complete one, folders with a slash at their end.
+
+    Args:
+        word: The typed word.
+        suffix: The end that the name of a file must have.
+        folders_only: Whether files are left out.
+    """
+    name = word.rpartition("/")[2]
+    parent = word.removesuffix(name)
+    for entry in _entries(parent or "."):
+        if entry.name.startswith(".") and not name.startswith("."):
+            continue
+        if entry.is_dir():
+            yield f"{parent}{entry.name}/"
+        elif not folders_only and entry.name.endswith(suffix):
+            yield f"{parent}{entry.name}"
+
+
+def _entries(folder: str) -> Iterator[os.DirEntry[str]]:
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        yield from entries

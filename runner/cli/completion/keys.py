@@ -1,23 +1,27 @@
-"""Completion of config keys; Hydra composes the config once for each line."""
+"""Keys of a config and names of metrics, for completion; both are kept in the cache."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from runner.cli.completion.basis import basis
-from runner.cli.completion.line import Line
 from runner.symbolic import cache
 
 
-def keys(line: Line, word: str, root: str) -> Iterator[str]:
+def keys(overrides: Sequence[str], config_dirs: Sequence[Path], word: str, root: str) -> Iterator[str]:
     """Yield the keys that complete a word up to the next dot, and the value of a whole key: `controller.period=0.01`.
 
     Args:
-        line: The line; its overrides choose what there are keys of.
+        overrides: The overrides typed before; Hydra composes the config that they give.
+        config_dirs: The user's config folders.
         word: The typed word, without a sign before the key.
-        root: Name of the file in conf/ that the config hangs on.
+        root: File of conf/ that the overrides change.
     """
     key, given, _ = word.partition("=")
-    values = _values(line, root)
+    whole = [each for each in overrides if "=" in each]
+    values: Mapping[str, str | None] = _cached(
+        ["keys of", root, *whole], config_dirs, lambda: dict(_compose(whole, config_dirs, root))
+    )
     if given:
         if values.get(key) is not None:
             yield f"{key}={values[key]}"
@@ -29,33 +33,43 @@ def keys(line: Line, word: str, root: str) -> Iterator[str]:
             yield f"{key[:place]}{name}{dot or '='}"
 
 
-def _values(line: Line, root: str) -> Mapping[str, str | None]:
-    """Return the value of each key as text by its dotted name; None for one without a value that can be typed."""
-    overrides = [each for each in line.words if "=" in each and not each.startswith("-")]
-    known = basis(["keys of", root, *overrides], line.config_dirs)
-    kept = None if known is None else cache.read_answer(known)
-    if not isinstance(kept, dict):
-        kept = dict(_compose(line, overrides, root))
-        if known is not None:
-            cache.write_answer(known, kept)
-    values: Mapping[str, str | None] = kept
-    return values
+def metric_names() -> Iterable[str]:
+    """Return the names of the built-in metrics."""
+
+    def read() -> list[str]:
+        from runner.cli.list import TOPICS
+
+        return [*TOPICS["metrics"]([])]
+
+    names: list[str] = _cached(["metrics"], [], read)
+    return names
 
 
-def _compose(line: Line, overrides: Sequence[str], root: str) -> Iterator[tuple[str, str | None]]:
+def _cached(question: Sequence[str], config_dirs: Sequence[Path], answer: Callable[[], Any]) -> Any:
+    """Return the answer to a question from the cache; it is computed and kept if the cache lacks it."""
+    key = basis(question, config_dirs)
+    found = None if key is None else cache.read_answer(key)
+    if found is None:
+        found = answer()
+        if key is not None:
+            cache.write_answer(key, found)
+    return found
+
+
+def _compose(overrides: Sequence[str], config_dirs: Sequence[Path], root: str) -> Iterator[tuple[str, str | None]]:
     from omegaconf import OmegaConf
     from omegaconf.errors import OmegaConfBaseException
 
     from runner.config.compose.hydra_config import hydra_config
     from runner.config.compose.overrides import force
 
-    config = hydra_config(force(overrides), line.config_dirs, root)
+    config = hydra_config(force(overrides), config_dirs, root)
     ours: Any = OmegaConf.to_container(config, resolve=False)
     del ours["hydra"]
     for key, value in _leaves(ours, ""):
         try:
             yield key, _typed(OmegaConf.select(config, key) if "${" in str(value) else value)
-        except OmegaConfBaseException:  # it refers to what is not chosen yet
+        except OmegaConfBaseException:  # it refers to a key that does not exist yet
             yield key, None
 
 

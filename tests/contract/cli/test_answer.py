@@ -1,4 +1,4 @@
-"""Answers to a shell at TAB: words alone, for any typed line."""
+"""Output at TAB: words and nothing else, for any typed line."""
 
 import os
 import shutil
@@ -6,8 +6,6 @@ import subprocess
 import sys
 
 import pytest
-
-from runner.cli.completion import answer, is_asked
 
 LINES = (
     "", "r", "robot", "robot=", "robot=macro,", "robot=nosuch ", "robot=nosuch controller.", "controller..", ".", "=",
@@ -25,100 +23,112 @@ LINES = (
 )  # fmt: skip
 
 
-def tab(line, monkeypatch, arguments=("-sc", "query=bash")):
-    from runner.cli.main import dispatch
-
-    monkeypatch.setenv("COMP_LINE", f"runner {line}")
-    return dispatch(arguments)
-
-
 @pytest.fixture(autouse=True)
-def own_place(tmp_path, tmp_path_factory, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    place = tmp_path_factory.mktemp("cache")
-    monkeypatch.setattr("runner.symbolic.cache.folder", lambda: place)
+def bad_folder(tmp_path):
     robots = tmp_path / "bad" / "robot"
     robots.mkdir(parents=True)
     (robots / "broken.yaml").write_text("a: [1\nb: }")
     (robots / "code.yaml").write_text("# @package _global_\nhydra: {callbacks: {a: {_target_: os.abort}}}\n")
 
 
-def test_nothing_but_words_is_printed(monkeypatch, capfd):
+def test_nothing_but_words_is_printed(tab, capfd):
     wrong = []
     for line in LINES:
-        code = tab(line, monkeypatch)
+        words = tab(line)
         out, err = capfd.readouterr()
-        last = line.rpartition(" ")[2]
-        if (code, err, out.count("\n")) != (0, "", 1) or not all(word.startswith(last) for word in out.split()):
-            wrong.append((line, code, out, err))
+        last = line.rpartition(" ")[2].replace("'", "").replace('"', "")
+        if (out, err) != ("", "") or not all(word.strip("\"'").startswith(last) for word in words):
+            wrong.append((line, words, out, err))
     assert wrong == []
 
 
-def test_names_that_a_shell_would_carry_out_are_left_out(tmp_path, monkeypatch, capsys):
-    for name in ("$(touch gone)", "`touch gone`", "two words", "a;b", "plain"):
-        (tmp_path / "outputs" / "runs" / name).mkdir(parents=True)
-    tab("report outputs/runs/", monkeypatch)
-    assert capsys.readouterr().out.split() == ["outputs/runs/plain", "outputs/runs/plain/"]
-
-
-def test_fish_takes_a_word_a_line(monkeypatch, capsys):
-    tab("list rob", monkeypatch, ("-sc", "query=fish"))
-    assert capsys.readouterr().out == "robots\n"
-    tab("list p", monkeypatch, ("-sc", "query=fish"))
-    assert capsys.readouterr().out == "plants\npresets\n"
-
-
-def test_a_fault_of_ours_is_no_words(monkeypatch, capfd):
-    def fail(_):
-        print("out")
-        print("err", file=sys.stderr)
+def test_a_fault_of_ours_is_no_words(tab, monkeypatch):
+    def fail(*_):
         raise KeyError
 
-    monkeypatch.setattr("runner.cli.completion.complete.complete", fail)
-    assert tab("rob", monkeypatch) == 0
-    assert capfd.readouterr() == ("\n", "")
-
-
-def test_only_a_query_is_answered():
-    assert is_asked(["-sc", "query=bash"])
-    assert is_asked(["--shell-completion", "query=zsh"])
-    assert not is_asked(["-sc", "install=bash"])
-    assert not is_asked(["query=bash"])
+    monkeypatch.setattr("runner.cli.completion.complete.override_words", fail)
+    assert tab("rob") == []
 
 
 def test_only_words_that_stand_for_configs_import_hydra(tmp_path):
     heavy = "{'hydra', 'omegaconf', 'numpy', 'pydantic', 'yaml', 'importlib.metadata'}"
     for line in ("", "rep", "list ", "robot=m", "experiment=thesis/", "report ", "table --", "tune --min", "study c"):
         lines = (
-            f"import sys; from runner.cli.main import dispatch; dispatch(['-sc', 'query=bash']); "
+            "import sys; from runner.cli.completion.complete import complete; complete(sys.stdout, lambda _: None); "
             f"assert not {heavy} & {{*sys.modules}}, {heavy} & {{*sys.modules}}"
         )
-        environment = {**os.environ, "COMP_LINE": f"runner {line}"}
+        typed = f"runner {line}"
+        environment = {**os.environ, "COMP_LINE": typed, "COMP_POINT": str(len(typed)), "_ARGCOMPLETE": "1"}
         subprocess.run([sys.executable, "-c", lines], check=True, stdout=-1, env=environment, cwd=tmp_path)
 
 
-@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
-def test_the_function_that_is_installed_in_bash(tmp_path):
+BASH = """
+    PATH="$PWD:$PATH"
+    eval "$(runner -sc install=bash)"
+    tab() {
+        COMP_LINE="$1" COMP_POINT=${#1} COMP_TYPE=9
+        COMPREPLY=(); _python_argcomplete runner 2> /dev/null; (IFS=' '; echo "${COMPREPLY[*]}")
+    }
+"""
+
+
+@pytest.fixture
+def bash(tmp_path):
+    """Run lines in bash after those that turn on completion; `tab LINE` prints the words for it."""
+    if shutil.which("bash") is None:
+        pytest.skip("needs bash")
     command = tmp_path / "runner"
     command.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m runner "$@"\n')
     command.chmod(0o755)
-    script = """
-        PATH="$PWD:$PATH"
-        eval "$(runner -sc install=bash)"
-        tab() {
-            COMP_LINE="$1" COMP_POINT=${#1}
-            COMP_WORDS=($1); [ "${1: -1}" = " " ] && COMP_WORDS+=("")
-            COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
-            COMPREPLY=(); hydra_bash_completion; echo "${COMPREPLY[@]}"
-        }
+
+    def run(lines):
+        ending = subprocess.run(["bash", "-c", BASH + lines], cwd=tmp_path, capture_output=True, text=True, check=True)
+        assert ending.stderr == ""
+        return ending.stdout.splitlines()
+
+    return run
+
+
+def test_the_function_that_is_installed_in_bash(bash):
+    lines = """
         tab 'runner rep'; tab 'runner list rob'
         tab 'runner -m robot=macro,mini,xarm7_'; tab 'runner robot=x controller.'
     """
-    ending = subprocess.run(["bash", "-c", script], cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert ending.stderr == ""
-    assert ending.stdout.splitlines() == ["repetitions= report reproduce", "robots", "robot=macro,mini,xarm7_mini", ""]
+    # Bash completes the part of a word behind a word break such as "=".
+    assert [line.strip() for line in bash(lines)] == [
+        "repetitions= report reproduce",
+        "robots",
+        "macro,mini,xarm7_mini",
+        "",
+    ]
 
 
-def test_without_a_shell_it_says_how_to_install_it():
-    with pytest.raises(Exception, match="install=bash"):
-        answer(["-sc", "query=bash"], {})
+def test_names_that_a_shell_would_carry_out_are_quoted(bash, tmp_path):
+    names = ("$(touch gone)", "`touch gone`", "two words", "a;b", "plain", "*")
+    for name in names:
+        (tmp_path / "outputs" / "runs" / name).mkdir(parents=True)
+    (found,) = bash("tab 'runner report outputs/runs/'")
+    assert "outputs/runs/plain" in found
+    assert not (tmp_path / "gone").exists()
+    typed = bash("tab 'runner report outputs/runs/' > found; eval \"printf '%s\\n' $(cat found)\"")
+    assert not (tmp_path / "gone").exists()
+    assert {f"outputs/runs/{name}" for name in names} <= set(typed)
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_the_lines_for_each_shell(cli, shell):
+    ending = cli("-sc", f"install={shell}")
+    assert (ending.code, ending.err) == (0, "")
+    assert "_ARGCOMPLETE" in ending.out
+
+
+@pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
+def test_a_key_that_goes_on_gets_no_space(cli):
+    assert cli("-sc", "install=bash").out.count("[=/:.]") == 2
+
+
+@pytest.mark.parametrize("word", ["install=bsh", "query=bash", "uninstall=bash", ""])
+def test_what_cannot_be_installed_is_rejected(cli, word):
+    ending = cli("-sc", word)
+    assert (ending.code, ending.out) == (2, "")
+    assert 'Allowed: install= and one of bash, zsh, fish, as in eval "$(runner -sc install=bash)"' in ending.err

@@ -35,7 +35,7 @@ def change(path, cell, metric, **values):
 
 def test_a_sweep_is_good_against_what_it_taught(cli, learned):
     folder, path = learned
-    for flags in ((), ("--markdown",)):
+    for flags in ((), ("--format", "markdown"), ("--format", "text")):
         ending = cli("check", folder, "--baseline", path, *flags)
         assert (ending.code, ending.err) == (0, "")
         assert f"{_count(path)} metrics of 2 cells: 0 moved, 0 beyond the seeds' spread" in ending.out
@@ -58,7 +58,7 @@ def test_what_moved_is_told_with_direction_and_spread(cli, learned):
     peak, energy = (cells[cell][name]["median"] for name in ("peak_torque", "energy"))
     change(path, cell, "peak_torque", median=peak / 2, min=peak / 2, max=peak / 2)
     change(path, cell, "energy", median=energy * 2, min=energy / 2, max=energy * 3)
-    ending = cli("check", folder, "--baseline", path, "--markdown")
+    ending = cli("check", folder, "--baseline", path, "--format", "markdown")
     assert ending.code == 1
     head, blank, titles, rule, *rows = ending.out.splitlines()
     assert head.endswith("2 moved, 1 beyond the seeds' spread**")
@@ -119,6 +119,6 @@ def test_a_damaged_reference_is_said(cli, learned, content, message):
 def test_markdown_is_for_sweeps(cli, learned):
     folder, path = learned
     path.write_text("schema: 1\nmetrics: {peak_torque: {min: 0.0, reason: no sign}}\n")
-    ending = cli("check", folder, "--baseline", path, "--markdown")
+    ending = cli("check", folder, "--baseline", path, "--format", "markdown")
     assert ending.code == 2
-    assert "--markdown needs the baseline of a sweep, made by --save-baseline" in ending.err
+    assert "--format markdown needs the baseline of a sweep, made by --save-baseline" in ending.err

@@ -13,8 +13,8 @@ import yaml
 from support.engines import ASKED
 from support.printed import without_caveats
 
-from runner.cli.help import COMMANDS, GUIDE, HELP
-from runner.config.compose.options import group_options
+from runner.cli.commands import COMMANDS, GROUPS, GUIDE, build_parser
+from runner.config.compose.options import groups
 from runner.store import open_sweep
 from runner.sweeps import job
 
@@ -26,8 +26,34 @@ IN_PROCESS = ("hydra.sweeper.workers=0",)
 @pytest.mark.parametrize("flag", ["-h", "--help", "help"])
 def test_help_names_every_command(cli, flag):
     ending = cli(flag)
-    assert (ending.code, ending.out) == (0, HELP)
-    assert all(f"runner {command}" in HELP for command in COMMANDS)
+    assert ending.code == 0
+    lines = ending.out.splitlines()
+    listed = [line[2:].partition("  ")[0].split(", ") for line in lines if re.match(r"  [a-z]", line)]
+    assert tuple(name for names in listed for name in names) == COMMANDS
+    assert all(group in lines for group in GROUPS)
+    for name in ("--plugin GROUP=MODULE", "-q, --quiet", *groups(), "3 internal error"):
+        assert name in ending.out
+    assert max(map(len, lines)) <= 120
+
+
+def test_every_command_has_a_parser_a_sentence_and_the_common_options():
+    parsers = build_parser().commands
+    assert tuple(parsers) == COMMANDS
+    for name, parser in parsers.items():
+        text = parser.format_help()
+        assert f"runner {name}" in text
+        assert "`: " in (parser.description or "").partition("\n\n")[0], name
+        assert "--plugin GROUP=MODULE" in text
+        assert "--quiet" in text
+
+
+@pytest.mark.parametrize("command", ["run", "sweep", "report"])
+def test_help_of_a_command_is_its_own(cli, capsys, command):
+    with pytest.raises(SystemExit) as ended:
+        cli(command, "--help")
+    assert ended.value.code == 0
+    printed = capsys.readouterr().out
+    assert printed.startswith(f"usage: runner {'run' if command == 'sweep' else command} [-h]")
 
 
 def test_version(cli):
@@ -37,7 +63,7 @@ def test_version(cli):
 def test_unknown_command_names_the_nearest(cli):
     ending = cli("chek", "outputs")
     assert ending.code == 2
-    assert ending.err.startswith("runner: no command 'chek' (did you mean check?); commands: reproduce, report,")
+    assert ending.err.startswith("runner: no command 'chek' (did you mean check?); commands: run, sweep,")
 
 
 def test_a_bare_call_guides_and_makes_nothing(cli, tmp_path):
@@ -59,8 +85,8 @@ def test_the_guide_s_commands_work(cli):
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
-        (["robot", "=", "macro"], "an override has no spaces beside its '=': `runner robot=macro`"),
-        (["robot", "=macro"], "an override has no spaces beside its '=': `runner robot=macro`"),
+        (["robot", "=", "macro"], "an override has no spaces around its '=': `runner robot=macro`"),
+        (["robot", "=macro"], "an override has no spaces around its '=': `runner robot=macro`"),
     ],
 )
 def test_what_looks_like_a_command_is_one_line(cli, tmp_path, arguments, told):
@@ -217,13 +243,46 @@ def test_a_diverging_simulation_is_a_stored_result(cli):
     assert cli("robot=macro", *overrides, "repetitions=2") == ending  # found stored, it is told again
 
 
-def test_an_error_of_ours_is_no_problem_of_the_config(cli, monkeypatch):
+def test_an_internal_error_ends_with_3_and_its_trace(cli, monkeypatch):
     def break_down(*_):
         raise ValueError("a bug")
 
     monkeypatch.setattr(job, "simulate", break_down)
-    with pytest.raises(ValueError, match="a bug"):
-        cli(*SHORT)
+    ending = cli(*SHORT)
+    assert (ending.code, ending.out) == (3, "")
+    assert "Traceback (most recent call last):" in ending.err
+    assert "in break_down" in ending.err
+    assert ending.err.splitlines()[-1] == (
+        "runner: internal error: ValueError: a bug. Report it with the command and the trace above."
+    )
+
+
+def test_quiet_prints_the_folder_and_nothing_else(cli):
+    loud = cli(*SHORT)
+    quiet = cli("-q", *SHORT, "seed=1")
+    assert (quiet.code, quiet.err, quiet.out) == (0, "", f"{quiet.folder.relative_to(Path.cwd())}\n")
+    assert cli(*SHORT, "--quiet").out == loud.out
+    checked = cli("check", quiet.folder, "-q")
+    assert (checked.out, "no baseline" in checked.err) == ("", True)
+
+
+def test_quiet_shows_the_messages_of_a_failure(cli):
+    overrides = ("plant=rk4", "controller.period=0.06", "controller.singularity_damping=0", "trajectory=quintic")
+    ending = cli("robot=macro", *overrides, "-q")
+    assert ending.code == 1
+    assert "failed in repetition 0 at t = 0.6 s (q1)" in ending.err
+    assert ending.out.count("\n") == 1
+    assert "unknown key" not in cli("-q", "robot=makro").out
+
+
+def test_output_and_jobs_of_runs_and_sweeps(cli, tmp_path):
+    run = cli("run", *SHORT, "-o", tmp_path / "else where")
+    assert run.folder.parent == tmp_path / "else where" / "runs"
+    sweep = cli("sweep", *SHORT, "seed=0,1", "-j", "1", f"--output={tmp_path / 'other'}")
+    assert (sweep.code, sweep.folder.parent) == (0, tmp_path / "other" / "sweeps")
+    assert "hydra.sweeper.workers=1" in open_sweep(sweep.folder).command
+    assert cli(*SHORT, "-j", "2").err == "runner: --jobs: one run uses one process. Add -m for a sweep.\n"
+    assert "-j/--jobs: must be a whole number, 1 or more; found '0'" in cli("sweep", *SHORT, "-j", "0").err
 
 
 def test_too_little_memory_is_said(cli, monkeypatch):
@@ -236,22 +295,6 @@ def test_too_little_memory_is_said(cli, monkeypatch):
     assert ending.err == (
         "runner: not enough memory: unable to allocate 2 TiB; shorten the run or ask for fewer repetitions\n"
     )
-
-
-ROBOTS_WITH_M = " ".join(f"robot={name}" for name in group_options("robot") if name.startswith("m"))
-
-
-@pytest.mark.parametrize(("line", "expected"), [("robot=m", ROBOTS_WITH_M), ("dura", "duration=")], ids=str)
-def test_completion(cli, monkeypatch, line, expected):
-    monkeypatch.setenv("COMP_LINE", f"runner {line}")
-    assert cli("-sc", "query=bash").out.split() == expected.split()
-
-
-def test_completion_without_a_shell_is_told(cli, monkeypatch):
-    monkeypatch.delenv("COMP_LINE", raising=False)
-    ending = cli("-sc", "query=bash")
-    assert ending.code == 2
-    assert 'eval "$(runner -sc install=bash)"' in ending.err
 
 
 def test_hydra_s_own_help(cli, tmp_path, capsys):

@@ -17,7 +17,7 @@ def test_from_a_stranger_s_urdf_to_a_report_in_three_commands(cli, tmp_path):
     ran = cli("--config-dir", "mine", "robot=lbr_iiwa", "duration=0.2")
     assert ran.code == 0
     assert runner.open_run(ran.folder).metrics["max_tracking_error"].median < 1e-4
-    assert cli("report", ran.folder, "--html").code == 0
+    assert cli("report", ran.folder, "--format", "html").code == 0
 
 
 FILES = [path for path in sorted(strangers.DATA.rglob("*.urdf")) if not {"random_urdfs", "lego"} & set(path.parts)]

@@ -12,7 +12,7 @@ def test_the_figures_of_a_run_lie_beside_its_report(cli, copy_run):
     ending = cli("figures", made)
     assert ending.code == 0
     assert ending.folder.name == "figures"
-    assert ending.folder.parent == cli("report", made, "--html").folder
+    assert ending.folder.parent == cli("report", made, "--format", "html").folder
     listed = ending.out.splitlines()[:-1]
     assert names(ending.folder) >= {f"{name}.{kind}" for name in listed for kind in ("svg", "pdf", "csv")}
 

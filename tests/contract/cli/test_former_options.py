@@ -5,8 +5,7 @@ import pytest
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.former_names import FILES, OPTIONS
 from runner.base.former_names import TOPICS as FORMER_TOPICS
-from runner.cli.completion.arguments import parser_of
-from runner.cli.help import COMMANDS
+from runner.cli.commands import COMMANDS, OVERRIDES, build_parser
 from runner.cli.list import TOPICS
 
 
@@ -18,13 +17,17 @@ def test_a_former_command_is_rejected_with_the_new_name(cli, former, new):
     assert former not in COMMANDS
 
 
-@pytest.mark.parametrize(("former", "new"), OPTIONS.items())
+@pytest.mark.parametrize(("former", "new"), [(former, new) for former, names in OPTIONS.items() for new in names])
 @pytest.mark.parametrize("value", [" x", "=x", ""])
 def test_a_former_option_is_rejected_with_the_new_name(cli, former, new, value):
-    options = {command: parser_of(command)._option_string_actions for command in COMMANDS}
-    taking = [command for command, own in options.items() if new in own and former not in own]
-    assert taking
+    parsers = build_parser(set(COMMANDS) - set(OVERRIDES)).commands
+    options = {command: parser._option_string_actions for command, parser in parsers.items()}
+    taking = [command for command, own in options.items() if new.split()[0] in own and former not in own]
+    assert taking or former == "--html"
     for command in taking:
+        first = next(name for name in OPTIONS[former] if name.split()[0] in options[command])
+        if first != new:
+            continue
         ending = cli(command, *f"{former}{value}".split())
         assert (ending.code, ending.out, ending.err) == (2, "", f"runner: {former} is now called {new}.\n")
 

@@ -22,9 +22,9 @@ def sweep(copy_sweep):
     ("flags", "files"),
     [
         ([], ["report.html", "report.pdf"]),
-        (["--html"], ["report.html"]),
-        (["--pdf"], ["report.pdf"]),
-        (["--pdf", "--html"], ["report.html", "report.pdf"]),
+        (["--format", "html"], ["report.html"]),
+        (["--format", "pdf"], ["report.pdf"]),
+        (["--format", "pdf,html"], ["report.html", "report.pdf"]),
     ],
 )
 def test_a_run_is_reported_in_the_formats_chosen(cli, stored, flags, files):
@@ -35,28 +35,28 @@ def test_a_run_is_reported_in_the_formats_chosen(cli, stored, flags, files):
 
 
 def test_a_report_can_be_made_from_a_copied_run(cli, stored, tmp_path):
-    here = cli("report", stored, "--html").folder.joinpath("report.html").read_bytes()
+    here = cli("report", stored, "--format", "html").folder.joinpath("report.html").read_bytes()
     copy = tmp_path / "elsewhere" / "runs" / stored.name
     shutil.copytree(stored, copy)
     shutil.rmtree(tmp_path / "outputs")
-    ending = cli("report", copy, "--html")
+    ending = cli("report", copy, "--format", "html")
     assert ending.code == 0
     assert ending.folder.joinpath("report.html").read_bytes() == here
 
 
 def test_a_sweep_has_a_report_of_its_own_with_links_to_its_runs(cli, sweep):
-    ending = cli("report", sweep, "--html")
+    ending = cli("report", sweep, "--format", "html")
     page = ending.folder.joinpath("report.html").read_text()
     assert "Sweep over seed" in page
     assert "2 cells over seed (2), all of them finished; repetitions in each: 1." in page
     links = re.findall(r'"folders": (\[.*?\])', page)
     assert [(ending.folder / link / "metrics.json").exists() for link in json.loads(links[0])] == [True, True]
-    assert ending.folder != cli("report", sweep, "--html", "--metrics", "peak_torque").folder
+    assert ending.folder != cli("report", sweep, "--format", "html", "--metrics", "peak_torque").folder
 
 
 def test_several_runs_are_reported_run_by_run(cli, copy_run, stored):
     other = copy_run("other seed")
-    page = cli("report", other, stored, "--html").folder.joinpath("report.html").read_text()
+    page = cli("report", other, stored, "--format", "html").folder.joinpath("report.html").read_text()
     assert "Overview" in page
     assert "2 runs, all of them finished." in page
 
@@ -66,11 +66,11 @@ def test_several_sweeps_are_compared(cli):
         cli("-m", "hydra.sweeper.workers=0", *SHORT, "gravity=9.81,9.7", f"torque_limits.max={limit}").folder
         for limit in (30, 31)
     ]
-    ending = cli("report", *folders, "--html")
+    ending = cli("report", *folders, "--format", "html")
     page = ending.folder.joinpath("report.html").read_text()
     assert "2 sweeps compared" in page
     assert "A and B differ in torque_limits.max alone: 30 against 31." in page
-    chosen = cli("report", *folders, "--html", "--metrics", "energy").folder
+    chosen = cli("report", *folders, "--format", "html", "--metrics", "energy").folder
     assert chosen != ending.folder
     assert "rms torque" not in chosen.joinpath("report.html").read_text()
     refused = cli("report", *folders, "--metrics", "enrgy")
@@ -79,7 +79,7 @@ def test_several_sweeps_are_compared(cli):
 
 
 def test_runs_and_sweeps_have_no_report_together(cli, sweep, stored):
-    ending = cli("report", sweep, stored, "--html")
+    ending = cli("report", sweep, stored, "--format", "html")
     assert (ending.code, ending.out) == (2, "")
     assert (
         ending.err == "runner: runs and sweeps have no report together; give runs alone, sweeps alone, or one folder\n"

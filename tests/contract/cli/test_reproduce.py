@@ -180,11 +180,25 @@ def test_check_lists_the_findings_that_no_longer_hold(cli, one_finding):
 
 
 def test_conclusions_are_written_for_programs(cli, one_finding, tmp_path):
-    assert cli("reproduce", "thesis", "--json", tmp_path / "thesis.json").code == 0
-    small, other = json.loads((tmp_path / "thesis.json").read_text())["thesis"]["findings"]
+    ending = cli("reproduce", "thesis", "--json")
+    assert (ending.code, ending.err.splitlines()[-1]) == (0, "outputs/reports/thesis")
+    small, other = json.loads(ending.out)["thesis"]["findings"]
     assert (small["section"], small["title"], small["text"]) == ("1", "Small", "It is 2 mm.")
     assert (small["holds"], other["holds"]) == (False, True)
     assert small["conditions"][0]["text"] == "tip error < 1 mm"
+
+
+def test_a_file_behind_json_is_rejected_with_the_redirection(cli):
+    ending = cli("reproduce", "thesis", "--json", "thesis.json")
+    assert (ending.code, ending.out) == (2, "")
+    assert "--json prints; write a file by `--json > thesis.json`" in ending.err
+
+
+def test_jobs_are_the_processes_of_the_sweep(cli, small_study, monkeypatch):
+    given = []
+    monkeypatch.setattr("runner.study.execute.make_all", lambda *arguments: given.append(arguments[2]) or 1 / 0)
+    assert cli("reproduce", "small", "--jobs", "3", "sweep.time_limit=9").code == 3
+    assert given == [["sweep.time_limit=9", "hydra.sweeper.workers=3"]]
 
 
 def test_check_lists_the_caveats_that_a_study_does_not_expect(cli, monkeypatch):

@@ -92,10 +92,10 @@ def test_a_tuning_in_which_every_trial_failed_has_a_report_too(cli):
         (["tune", *SHORT, RANGE, "--minimize", "peak_torqe"], "no metric 'peak_torqe' (did you mean peak_torque?)"),
         (["tune", *SHORT, RANGE, "--minimize", "macro_overshoot"], "these runs have no 'macro_overshoot'"),
         (["tune", *SHORT, RANGE, "--minimize", "energy", "--maximize", "energy"], "minimized and maximized at once"),
-        (["tune", *SHORT, RANGE, "--minimize", "energy", "--trials", "0"], "argument --trials: must be a whole number"),
+        (["tune", *SHORT, RANGE, "--minimize", "energy", "--trials", "0"], "--trials: must be a whole number"),
         (
             ["tune", *SHORT, RANGE, "--minimize", "energy", "--jobs", "x"],
-            "argument -j/--jobs: must be a whole number",
+            "-j/--jobs: must be a whole number",
         ),
         (["tune", *SHORT, "--minimize", "energy"], "nothing to tune; give a key a range"),
         (["tune", *SHORT, RANGE, "--minimize", "energy", "--config-dir", "none"], "--config-dir: no folder none"),

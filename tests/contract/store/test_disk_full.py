@@ -53,10 +53,10 @@ def test_what_was_stored_stays_and_the_same_command_goes_on(cli, arguments):
 
 def test_a_report_stays_as_it_was(cli):
     run = cli(*CASE).folder
-    page = cli("report", run, "--html").folder / "report.html"
+    page = cli("report", run, "--format", "html").folder / "report.html"
     before = page.read_bytes()
     with largest_file(100_000):
-        ending = cli("report", run, "--html")
+        ending = cli("report", run, "--format", "html")
     assert ending.code == 2
     assert ending.err == f"runner: cannot write {page}: File too large; free space on its disk\n"
     assert page.read_bytes() == before

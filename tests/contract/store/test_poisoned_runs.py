@@ -134,7 +134,7 @@ def test_a_comparison_is_made_safe(cli, pair):
 
 
 def test_a_page_shows_them_as_text(cli, pair):
-    page = (cli("report", pair[0], "--html").folder / "report.html").read_text()
+    page = (cli("report", pair[0], "--format", "html").folder / "report.html").read_text()
     assert "&lt;script&gt;alert(1)" in page
     assert "<script>alert" not in page
     assert 'href="javascript' not in page

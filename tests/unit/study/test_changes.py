@@ -112,5 +112,5 @@ def test_what_is_none_is_refused(tmp_path, text):
     file = tmp_path / "other.json"
     if text is not None:
         file.write_text(text)
-    with pytest.raises(RunnerError, match=r"`runner reproduce NAME --json FILE`"):
+    with pytest.raises(RunnerError, match=r"`runner reproduce NAME --json > FILE`"):
         read_conclusions(file)
