@@ -1,10 +1,13 @@
-"""The commands: their groups, the tree of their parsers, and the help that follows from both."""
+"""The commands: their groups, the tree of their parsers, the help, and the choice of the command of a line."""
 
 import importlib
+import shlex
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from runner.base.errors import RunnerError, nearest
+from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.cli.arguments import Parser
 from runner.config.compose.options import groups
 
@@ -75,6 +78,65 @@ def help_text() -> str:
     shared = COMMON.format_help().partition("options:\n")[2]
     groups_text = textwrap.fill(f"Groups of config: {', '.join(groups())}.", _WIDTH)
     return "\n".join([*lines, "", "Options of every command", shared, _NOTES, groups_text, _EXITS])
+
+
+def run_line(words: Sequence[str]) -> int:
+    """Run the command of a line, without the common options; return its exit code."""
+    first, *rest = words or [""]
+    if not words:
+        print(GUIDE, end="")
+    elif first in ("-h", "--help", "help"):
+        print(help_text(), end="")
+    elif first == "--version":
+        from importlib.metadata import version
+
+        print(version("arm-control-runner"))
+    elif any(word in ("-sc", "--shell-completion") for word in words):
+        from runner.cli.completion.complete import shell_code
+
+        print(shell_code(words))
+    elif first in COMMANDS and first not in OVERRIDES:
+        return _run_command(first, rest)
+    else:
+        return _run_overrides(words)
+    return 0
+
+
+def _run_command(name: str, words: Sequence[str]) -> int:
+    arguments, unknown = build_parser([name]).parse_known_args([name, *words])
+    if unknown:
+        arguments.parser.reject(unknown)
+    for folder in getattr(arguments, "config_dir", ()):
+        if not folder.is_dir():
+            raise RunnerError(f"--config-dir: no folder {folder}")
+    arguments.words = words
+    code: int = arguments.run(arguments)
+    return code
+
+
+def _run_overrides(words: Sequence[str]) -> int:
+    """Simulate the run or the sweep of a line.
+
+    Raises:
+        RunnerError: if the line begins with a word that is neither a command nor an override.
+    """
+    first = words[0]
+    if first in FORMER_COMMANDS:
+        raise RunnerError(f"{first} is now called {FORMER_COMMANDS[first]}.")
+    if len(words) > 1 and words[1].startswith("=") and "=" not in first:
+        given = "".join(words[1:3]) if words[1] == "=" else words[1]
+        raise RunnerError(f"an override has no spaces around its '=': `runner {shlex.join([first + given])}`")
+    if first not in OVERRIDES and first and first[0].isalpha() and "=" not in first:
+        raise RunnerError(
+            f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a run starts with "
+            "overrides such as robot=macro"
+        )
+    if {"-h", "--help"} & {*words}:
+        build_parser(["run"]).parse_args(["run", "--help"])
+    from runner.cli.overrides import simulate
+
+    many = ["-m"] if first == "sweep" else []
+    return simulate([*many, *words[first in OVERRIDES :]])
 
 
 def _module(name: str) -> str:

@@ -7,18 +7,16 @@ terminated. This module imports little, so that help and completion start fast.
 import contextlib
 import io
 import os
-import shlex
 import signal
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, nearest, user_place
-from runner.base.former_names import COMMANDS as FORMER_COMMANDS
+from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, user_place
 from runner.base.progress import show_progress
 from runner.base.sanitize import one_line
-from runner.cli.commands import COMMANDS, COMMON, GUIDE, OVERRIDES, build_parser, help_text
+from runner.cli.commands import COMMON, run_line
 
 
 def main() -> None:
@@ -71,9 +69,9 @@ def dispatch(words: Sequence[str]) -> int:
 
             use_plugins(common.plugin)
         if common.quiet:
-            return _print_path(lambda: _choose(others))
+            return _print_path(lambda: run_line(others))
         with show_progress():
-            return _choose(others)
+            return run_line(others)
     except RunnerError as error:
         print(f"runner: {error}", file=sys.stderr)
         return 2
@@ -120,61 +118,3 @@ def _print_path(run: Callable[[], int]) -> int:
         if Path(line).exists():
             print(line)
     return code
-
-
-def _choose(words: Sequence[str]) -> int:
-    first, *rest = words or [""]
-    if not words:
-        print(GUIDE, end="")
-    elif first in ("-h", "--help", "help"):
-        print(help_text(), end="")
-    elif first == "--version":
-        from importlib.metadata import version
-
-        print(version("arm-control-runner"))
-    elif any(word in ("-sc", "--shell-completion") for word in words):
-        from runner.cli.completion.complete import shell_code
-
-        print(shell_code(words))
-    elif first in COMMANDS and first not in OVERRIDES:
-        return _run_command(first, rest)
-    else:
-        return _run_overrides(words)
-    return 0
-
-
-def _run_command(name: str, words: Sequence[str]) -> int:
-    arguments, unknown = build_parser([name]).parse_known_args([name, *words])
-    if unknown:
-        arguments.parser.reject(unknown)
-    for folder in getattr(arguments, "config_dir", ()):
-        if not folder.is_dir():
-            raise RunnerError(f"--config-dir: no folder {folder}")
-    arguments.words = words
-    code: int = arguments.run(arguments)
-    return code
-
-
-def _run_overrides(words: Sequence[str]) -> int:
-    """Simulate the run or the sweep of a line.
-
-    Raises:
-        RunnerError: if the line begins with a word that is neither a command nor an override.
-    """
-    first = words[0]
-    if first in FORMER_COMMANDS:
-        raise RunnerError(f"{first} is now called {FORMER_COMMANDS[first]}.")
-    if len(words) > 1 and words[1].startswith("=") and "=" not in first:
-        given = "".join(words[1:3]) if words[1] == "=" else words[1]
-        raise RunnerError(f"an override has no spaces around its '=': `runner {shlex.join([first + given])}`")
-    if first not in OVERRIDES and first and first[0].isalpha() and "=" not in first:
-        raise RunnerError(
-            f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a run starts with "
-            "overrides such as robot=macro"
-        )
-    if {"-h", "--help"} & {*words}:
-        build_parser(["run"]).parse_args(["run", "--help"])
-    from runner.cli.overrides import run_line
-
-    many = ["-m"] if first == "sweep" else []
-    return run_line([*many, *words[first in OVERRIDES :]])

@@ -14,7 +14,7 @@ _MANY = ("-m", "--multirun")
 
 
 def add_arguments(parser: Parser) -> None:
-    """Add the arguments, for help and completion; `run_line` takes the words as they are typed."""
+    """Add the arguments, for help and completion; `simulate` takes the words as they are typed."""
     parser.add_overrides("such as robot=macro; a sweep takes lists, as seed=0,1")
     parser.add_argument(*_MANY, action="store_true", help="simulate a sweep over every combination")
     _add_own(parser)
@@ -30,10 +30,10 @@ def _add_own(parser: Parser) -> None:
 
 def run(arguments: Namespace) -> int:
     """Simulate the run or the sweep of a parsed line."""
-    return run_line(arguments.words)
+    return simulate(arguments.words)
 
 
-def run_line(words: Sequence[str]) -> int:
+def simulate(words: Sequence[str]) -> int:
     """Simulate the run or the sweep of a line; print the folder as the last line."""
     own = Parser(prog="runner run", add_help=False)
     _add_own(own)

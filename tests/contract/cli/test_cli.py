@@ -263,7 +263,7 @@ def test_quiet_prints_the_folder_and_nothing_else(cli):
     assert (quiet.code, quiet.err, quiet.out) == (0, "", f"{quiet.folder.relative_to(Path.cwd())}\n")
     assert cli(*SHORT, "--quiet").out == loud.out
     checked = cli("check", quiet.folder, "-q")
-    assert (checked.out, "no baseline" in checked.err) == ("", True)
+    assert (checked.out, "no bundled baseline" in checked.err) == ("", True)
 
 
 def test_quiet_shows_the_messages_of_a_failure(cli):
