@@ -11,6 +11,7 @@ from runner.base.engine_output import quiet_stderr
 from runner.plants.bullet_servers import SERVERS
 from runner.plants.compiled_motion import compile_links_torque
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_wrapper import flexible_around
 from runner.plants.plant import Plant
@@ -246,11 +247,3 @@ def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) 
         return flexible_around(*parts, lambda links: Bullet(robot.urdf, links, step, 1))
     tick = step * steps_per_tick
     return assemble_plant(config, robot, tick, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))
-
-
-def default_step(tick: float, stages: int) -> float:
-    """Return the step taken when the config names none, in s.
-
-    It is a tenth of the fastest controller period, and a quarter where a fast arm rides on a slow one.
-    """
-    return tick / (10.0 if stages == 1 else 4.0)

@@ -151,6 +151,14 @@ def assemble_plant(
     return whole
 
 
+def default_step(tick: float, stages: int) -> float:
+    """Return the step of an engine of first order if the config gives none, in s.
+
+    It is a tenth of the fastest controller period, or a quarter if the robot has several stages.
+    """
+    return tick / (10.0 if stages == 1 else 4.0)
+
+
 class Decoupled:
     """Arms that ride on each other without feeling it.
 

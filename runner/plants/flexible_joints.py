@@ -1,5 +1,6 @@
 """Flexible-joint plant: springs between motors and links, integrated by the Runge-Kutta scheme."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.plants.compiled_flexible import compile_flexible
 from runner.robots.model import RobotModel
+from runner.robots.modes import largest_rate
 
 
 @dataclass(frozen=True)
@@ -54,14 +56,30 @@ class Flexibility:
         inertia[:nq, :nq] = M
         K = picks.T @ np.diag(self.stiffness[on]) @ picks
         D = picks.T @ np.diag(self.damping[on]) @ picks
-        slopes = np.linalg.solve(inertia, np.hstack([-K, -D]))
-        n = len(inertia)
-        return float(np.abs(np.linalg.eigvals(np.vstack([np.eye(n, 2 * n, n), slopes]))).max())
+        return largest_rate(inertia, D, K)
 
 
 def links_of(model: RobotModel, flexible: np.ndarray) -> RobotModel:
     """Return the model of an arm's links, without the armature of flexible joints, which turns with their motors."""
     return model.with_armature(np.where(flexible, 0.0, model.armature))
+
+
+def runge_kutta(slope: Callable[[FloatArray], FloatArray], x: FloatArray, h: float, steps: int) -> FloatArray:
+    """Return a state after some steps of the classical Runge-Kutta scheme.
+
+    Args:
+        slope: Derivative of a state with respect to time.
+        x: The state.
+        h: Step, in s.
+        steps: Number of steps.
+    """
+    for _ in range(steps):
+        k1 = slope(x)
+        k2 = slope(x + 0.5 * h * k1)
+        k3 = slope(x + 0.5 * h * k2)
+        k4 = slope(x + h * k3)
+        x = x + (h / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+    return x
 
 
 class FlexibleJoints:
@@ -120,22 +138,11 @@ class FlexibleJoints:
         if self._compiled is not None:
             x = self._compiled.advance(x, tau, self.load, self._free, self._steps_per_tick)
         else:
-            x = self._moved(x, tau)
+            x = runge_kutta(lambda at: self._slope(at, tau), x, self._step, self._steps_per_tick)
         places, speeds = x[: len(x) // 2], x[len(x) // 2 :]
         self.q[:], self.dq[:] = places[:nq], speeds[:nq]
         self.theta[:], self.dtheta[:] = self.q, self.dq
         self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]
-
-    def _moved(self, x: FloatArray, tau: FloatArray) -> FloatArray:
-        """Return positions and velocities after a tick, by Pinocchio."""
-        h = self._step
-        for _ in range(self._steps_per_tick):
-            k1 = self._slope(x, tau)
-            k2 = self._slope(x + 0.5 * h * k1, tau)
-            k3 = self._slope(x + 0.5 * h * k2, tau)
-            k4 = self._slope(x + h * k3, tau)
-            x = x + (h / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        return x
 
     def _brake(self, on: np.ndarray) -> None:
         """Stop the motors whose brakes close in the tick that begins."""

@@ -7,6 +7,7 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
+from runner.plants.flexible_joints import runge_kutta
 from runner.robots.chain import Chain
 
 _MOST_STEPS = 50
@@ -92,12 +93,7 @@ class FlexibleLinks:
         acting = np.zeros(n)
         acting[self._driven] = tau
         x = np.concatenate([self.places, self.speeds])
-        for _ in range(self._steps_per_tick):
-            k1 = self._slope(x, acting)
-            k2 = self._slope(x + 0.5 * h * k1, acting)
-            k3 = self._slope(x + 0.5 * h * k2, acting)
-            k4 = self._slope(x + h * k3, acting)
-            x = x + (h / 6.0) * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        x = runge_kutta(lambda at: self._slope(at, acting), x, h, self._steps_per_tick)
         self.places[:], self.speeds[:] = x[:n], x[n:]
         self._time += self._steps_per_tick * h
         if np.abs(self.places[self._springs]).max() > _FARTHEST:  # of what is not finite others tell

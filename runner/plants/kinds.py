@@ -98,11 +98,12 @@ class IsFallback(Protocol):
     in_place_of: str | None
 
 
+@runtime_checkable
 class ChoosesStep(Protocol):
-    """The part of a plant's module that chooses the integration step where the config names none."""
+    """A module that chooses the integration step if the config gives none; the default is the control tick."""
 
     def default_step(self, tick: float, stages: int) -> float:
-        """Return it for a control tick, in s, and a number of stages, in s."""
+        """Return the step for a control tick, in s, and a number of stages, in s."""
         ...
 
 
@@ -160,9 +161,9 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         return super().module(kind)
 
     def default_step(self, kind: str, tick: float, stages: int) -> float:
-        """Return the step that a kind takes when its config names none, in s."""
-        chooser: ChoosesStep = self.module(kind)
-        return chooser.default_step(tick, stages)
+        """Return the step of a kind if its config gives none, in s; see ChoosesStep."""
+        module = self.module(kind)
+        return module.default_step(tick, stages) if isinstance(module, ChoosesStep) else tick
 
     def motion(self, config: PlantConfig, robot: Robot) -> Motion | None:
         """Return what a plant moves; None where it is not known to be moved by the Runge-Kutta scheme.

@@ -80,8 +80,3 @@ CONFIG = KinematicConfig
 def build(config: KinematicConfig, robot: Robot, tick: float, ticks_per_command: int) -> Plant:
     """Make the plant that a config describes."""
     return Kinematic(robot.model, tick, ticks_per_command)
-
-
-def default_step(tick: float, stages: int) -> float:
-    """Return the tick itself, in s: nothing is integrated within it."""
-    return tick

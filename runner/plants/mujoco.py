@@ -10,6 +10,7 @@ from pydantic import Field
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_wrapper import flexible_around
 from runner.plants.mujoco_model import FORCE, MOMENT, WALL, compiled, read_spec
@@ -179,11 +180,3 @@ def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) 
 def moves_exactly(config: MujocoConfig) -> bool:
     """Tell whether the integrator is the Runge-Kutta scheme; see MovesExactly."""
     return config.integrator == "rk4"
-
-
-def default_step(tick: float, stages: int) -> float:
-    """Return the step taken when the config names none, in s: that of PyBullet, to be compared with it.
-
-    It is a tenth of the fastest controller period, and a quarter where a fast arm rides on a slow one.
-    """
-    return tick / (10.0 if stages == 1 else 4.0)

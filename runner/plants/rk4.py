@@ -114,8 +114,3 @@ def motion(config: Rk4Config, robot: Robot) -> Motion | None:
 def moves_exactly(config: Rk4Config) -> bool:
     """Tell that the scheme is of fourth order; see MovesExactly."""
     return True
-
-
-def default_step(tick: float, stages: int) -> float:
-    """Return the step taken when the config names none, in s: the fastest controller period itself."""
-    return tick

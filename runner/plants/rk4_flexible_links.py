@@ -158,8 +158,3 @@ def modes(config: Rk4FlexibleLinksConfig, robot: Robot, q: FloatArray) -> list[M
 def moves_exactly(config: Rk4FlexibleLinksConfig) -> bool:
     """Tell that the scheme is of fourth order; see MovesExactly."""
     return True
-
-
-def default_step(tick: float, stages: int) -> float:
-    """Return the step taken when the config names none, in s: the fastest controller period itself."""
-    return tick

@@ -6,7 +6,8 @@ from scipy.integrate import solve_ivp
 from support.arms import model_of, urdf_of
 from support.physics import assert_order
 
-from runner.plants.rk4 import Rk4, build, default_step
+from runner.plants import PLANTS
+from runner.plants.rk4 import Rk4, build
 from runner.robots import RobotModel
 
 ARMS = [("macro", 1.0), ("mini", 0.1)]  # name, and by what all lengths, masses and times are scaled
@@ -72,4 +73,4 @@ def test_build_and_default_step(checked_config, macro_urdf, one_stage, dynamics,
     plant = build(config, one_stage(macro_urdf, RobotModel(macro_urdf, "tip")), 0.01, 1)
     assert isinstance(plant, Rk4)
     plant.close()
-    assert default_step(0.01, 1) == default_step(0.01, 2) == 0.01
+    assert PLANTS.default_step("rk4", 0.01, 1) == PLANTS.default_step("rk4", 0.01, 2) == 0.01
