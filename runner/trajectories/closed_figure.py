@@ -7,6 +7,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.trajectories.blend import quintic_blend
+from runner.trajectories.trajectory import TrackedMotion
 
 TimeScaling = Literal["quintic", "none"]
 
@@ -29,7 +30,7 @@ class ClosedCurve(Protocol):
 
 
 @dataclass(frozen=True)
-class ClosedFigure:
+class ClosedFigure(TrackedMotion):
     r"""A closed curve c(u) with u taken from time; see Trajectory for the attributes.
 
     With easing "quintic", u = s(t / t_f) goes once from 0 to 1, from rest to rest (thesis eq. 3.39), and the motion
@@ -46,7 +47,6 @@ class ClosedFigure:
     curve: ClosedCurve
     duration: float
     easing: TimeScaling
-    tracked: bool = True
 
     @property
     def start(self) -> FloatArray:

@@ -15,7 +15,7 @@ from runner.trajectories.interpolation import Interpolated, Interpolation, inter
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.table import parts_of, wrong_columns
-from runner.trajectories.trajectory import Trajectory
+from runner.trajectories.trajectory import TrackedMotion, Trajectory
 
 
 def _check_interpolation(value: Any) -> Any:
@@ -75,7 +75,7 @@ class FromFileConfig(StrictModel):
 
 
 @dataclass(frozen=True)
-class TipMotion:
+class TipMotion(TrackedMotion):
     """A motion of the tip through rows; see Trajectory for the attributes.
 
     Attributes:
@@ -83,7 +83,6 @@ class TipMotion:
     """
 
     rows: Interpolated
-    tracked: bool = True
 
     @property
     def start(self) -> FloatArray:
@@ -101,11 +100,6 @@ class TipMotion:
     def duration(self) -> float:
         """Time t_f of the last row, in s."""
         return self.rows.duration
-
-    @property
-    def run_duration(self) -> float:
-        """One second more than the motion, so that the arm's rest is seen."""
-        return self.duration + 1.0
 
     def sample(self, times: FloatArray) -> FloatArray:
         """Return the motion, at rest in the last row after t_f."""

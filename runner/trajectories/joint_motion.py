@@ -15,6 +15,7 @@ from runner.robots.robot import Robot, StageBase
 from runner.schema.per_joint import expand
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.sampled_curve import SampledCurve
+from runner.trajectories.trajectory import TrackedMotion
 
 
 def _configuration(value: Any) -> float | list[float]:
@@ -60,7 +61,7 @@ class JointMotion(Protocol):
 
 
 @dataclass(frozen=True)
-class TipOfJoints:
+class TipOfJoints(TrackedMotion):
     r"""The motion of the tip that follows from one of the joints; see Trajectory for the attributes.
 
     .. math:: x = f(q), \qquad \dot x = J \dot q, \qquad \ddot x = J \ddot q + \dot J \dot q
@@ -74,7 +75,6 @@ class TipOfJoints:
     robot: Robot
     joints: JointMotion
     ignore_base_rotation: bool
-    tracked: bool = True
 
     @property
     def q_start(self) -> FloatArray:
@@ -98,11 +98,6 @@ class TipOfJoints:
     def duration(self) -> float:
         """Time t_f of the joints' motion, in s."""
         return self.joints.duration
-
-    @property
-    def run_duration(self) -> float:
-        """One second more than the motion, so that the arm's rest is seen."""
-        return self.duration + 1.0
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
         """Return the motion of the joints; see JointMotion."""

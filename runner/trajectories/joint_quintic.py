@@ -3,14 +3,13 @@
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import JointPosition, Seconds
-from runner.trajectories.blend import quintic_blend
+from runner.trajectories.blend import quintic_motion
 from runner.trajectories.joint_motion import Configuration, JointMotion, configuration_of, start_of
 
 _SAMPLES = 512
@@ -55,11 +54,7 @@ class JointQuintic:
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
         """Return the motion, at rest at the goal after t_f."""
-        blend, rate = quintic_blend(times / self.duration), 1.0 / self.duration
-        D = self.goal - self.start
-        motion = np.stack([np.outer(s * rate**order, D) for order, s in enumerate(blend)], axis=1)
-        motion[:, 0] += self.start
-        return motion
+        return quintic_motion(self.start, self.goal, self.duration, times)
 
 
 CONFIG = JointQuinticConfig

@@ -13,7 +13,7 @@ from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import JointPosition, Seconds
 from runner.trajectories.joint_motion import Configuration, JointMotion, configuration_of, start_of
-from runner.trajectories.waypoints import check_time_shares, least_jerk_spline
+from runner.trajectories.waypoints import check_time_shares, least_jerk_spline, passing_times
 
 _SAMPLES = 256  # between two configurations
 _CLOSEST = 1e-9  # share of all joint motion, below which two configurations are one
@@ -94,6 +94,5 @@ def joint_motion(config: JointWaypointsConfig, robot: Robot) -> JointMotion:
         raise ConfigError(
             [f"trajectory.configurations.{index}: is the same as {before}; two in succession must differ. Take one out"]
         )
-    shares = np.cumsum(lengths) / lengths.sum() if config.time_shares is None else np.array(config.time_shares)
-    times = config.duration * np.concatenate([[0.0], shares[:-1], [1.0]])
+    times = passing_times(lengths, config.time_shares, config.duration)
     return JointWaypoints(least_jerk_spline(configurations, times), config.duration, _SAMPLES * len(given))

@@ -11,7 +11,7 @@ from runner.base.errors import ConfigError
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
 from runner.trajectories.nearest import distance_to_segment
-from runner.trajectories.trajectory import Trajectory
+from runner.trajectories.trajectory import TrackedMotion, Trajectory
 from runner.trajectories.vectors import Point
 
 
@@ -32,7 +32,7 @@ class LineConfig(StrictModel):
 
 
 @dataclass(frozen=True)
-class Line:
+class Line(TrackedMotion):
     r"""The periodic line of the xArm7 report, between its points P_A and P_B; see Trajectory for the attributes.
 
     The report ("Trajectory planning") slows the tip down towards both ends by "a sinusoidal function" of its
@@ -52,7 +52,6 @@ class Line:
     end: FloatArray
     duration: float
     goal: None = None
-    tracked: bool = True
 
     @property
     def run_duration(self) -> float:

@@ -9,9 +9,9 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
-from runner.trajectories.blend import quintic_blend
+from runner.trajectories.blend import quintic_motion
 from runner.trajectories.nearest import distance_to_segment
-from runner.trajectories.trajectory import Trajectory
+from runner.trajectories.trajectory import TrackedMotion, Trajectory
 from runner.trajectories.vectors import Point
 
 
@@ -32,7 +32,7 @@ class QuinticConfig(StrictModel):
 
 
 @dataclass(frozen=True)
-class Quintic:
+class Quintic(TrackedMotion):
     r"""The rest-to-rest quintic (thesis eq. 3.39 with its six end conditions); see Trajectory for the attributes.
 
     The conditions leave one solution, with D = goal - start and u = t / t_f:
@@ -45,23 +45,10 @@ class Quintic:
     start: FloatArray
     goal: FloatArray
     duration: float
-    tracked: bool = True
-
-    @property
-    def run_duration(self) -> float:
-        """One second more than the motion, so that the arm's rest is seen."""
-        return self.duration + 1.0
 
     def sample(self, times: FloatArray) -> FloatArray:
         """Return the motion, at rest at the goal after t_f."""
-        s, s_prime, s_second = quintic_blend(times / self.duration)
-        D = self.goal - self.start
-        rate = 1.0 / self.duration
-        motion = np.empty((len(times), 3, 3))
-        motion[:, 0] = self.start + np.outer(s, D)
-        motion[:, 1] = np.outer(s_prime * rate, D)
-        motion[:, 2] = np.outer(s_second * rate**2, D)
-        return motion
+        return quintic_motion(self.start, self.goal, self.duration, times)
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
         """Return the distance to the straight segment from start to goal."""

@@ -11,7 +11,7 @@ from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.nearest import distance_to_segment
-from runner.trajectories.trajectory import Trajectory
+from runner.trajectories.trajectory import TrackedMotion, Trajectory
 from runner.trajectories.vectors import Direction, InPlane, Point, plane_axes
 
 
@@ -36,7 +36,7 @@ class SquareConfig(StrictModel):
 
 
 @dataclass(frozen=True)
-class Square:
+class Square(TrackedMotion):
     """A square, gone round once, each edge from rest to rest by the quintic; see Trajectory for the attributes.
 
     The corners are met exactly, and the motion is twice continuously differentiable. Peak speed is 1.875 times an
@@ -48,7 +48,6 @@ class Square:
 
     corners: FloatArray
     duration: float
-    tracked: bool = True
 
     @property
     def start(self) -> FloatArray:
@@ -59,11 +58,6 @@ class Square:
     def goal(self) -> FloatArray:
         """The first corner again."""
         return self.start
-
-    @property
-    def run_duration(self) -> float:
-        """One second more than the motion, so that the arm's rest is seen."""
-        return self.duration + 1.0
 
     def sample(self, times: FloatArray) -> FloatArray:
         """Return the motion, at rest in the first corner after t_f."""

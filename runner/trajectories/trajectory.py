@@ -45,6 +45,22 @@ class Trajectory(Protocol):
         ...
 
 
+class _HasDuration(Protocol):
+    @property
+    def duration(self) -> float: ...
+
+
+class TrackedMotion:
+    """Defaults of a motion of the tip that comes to rest; see Trajectory."""
+
+    tracked = True
+
+    @property
+    def run_duration(self: _HasDuration) -> float:
+        """One second more than the motion, so that the rest of the arm is visible."""
+        return self.duration + 1.0
+
+
 @runtime_checkable
 class LeadsJoints(Protocol):
     """A trajectory of the tip that follows from a desired motion of the joints."""

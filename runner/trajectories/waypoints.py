@@ -13,7 +13,7 @@ from runner.base.errors import ConfigError
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
 from runner.trajectories.nearest import distance_to_curve
-from runner.trajectories.trajectory import Trajectory
+from runner.trajectories.trajectory import TrackedMotion, Trajectory
 from runner.trajectories.vectors import Point
 
 _SAMPLES = 64  # between two way-points, from which the nearest point is refined
@@ -70,7 +70,7 @@ class WaypointsConfig(StrictModel):
 
 
 @dataclass(frozen=True)
-class Waypoints:
+class Waypoints(TrackedMotion):
     """The motion of least jerk through points at given times; see Trajectory for the attributes.
 
     Of all motions that pass the way-points at their times, from rest to rest, the one with the smallest integral of
@@ -86,7 +86,6 @@ class Waypoints:
     points: FloatArray
     times: FloatArray
     spline: BSpline
-    tracked: bool = True
 
     @property
     def start(self) -> FloatArray:
@@ -103,11 +102,6 @@ class Waypoints:
         """Time t_f of the last way-point, in s."""
         return float(self.times[-1])
 
-    @property
-    def run_duration(self) -> float:
-        """One second more than the motion, so that the arm's rest is seen."""
-        return self.duration + 1.0
-
     def sample(self, times: FloatArray) -> FloatArray:
         """Return the motion, at rest in the last way-point after t_f."""
         within = np.clip(times, 0.0, self.duration)
@@ -122,6 +116,13 @@ class Waypoints:
 def minimum_jerk(points: FloatArray, times: FloatArray) -> Waypoints:
     """Return the motion of least jerk through points at times; see Waypoints for both."""
     return Waypoints(points, times, least_jerk_spline(points, times))
+
+
+def passing_times(lengths: FloatArray, shares: list[float] | None, duration: float) -> FloatArray:
+    """Return the times of N + 1 way-points in s, from the N lengths between them or the given shares."""
+    ends = np.cumsum(lengths) / lengths.sum() if shares is None else np.array(shares)
+    times: FloatArray = duration * np.concatenate([[0.0], ends[:-1], [1.0]])
+    return times
 
 
 def least_jerk_spline(points: FloatArray, times: FloatArray) -> BSpline:
@@ -151,6 +152,4 @@ def build(config: WaypointsConfig, start: FloatArray) -> Trajectory:
                 "succession must differ. Take one out"
             ]
         )
-    shares = np.cumsum(lengths) / lengths.sum() if config.time_shares is None else np.array(config.time_shares)
-    times = config.duration * np.concatenate([[0.0], shares[:-1], [1.0]])
-    return minimum_jerk(points, times)
+    return minimum_jerk(points, passing_times(lengths, config.time_shares, config.duration))
