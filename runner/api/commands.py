@@ -11,7 +11,6 @@ from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
 from runner.base.errors import ConfigError
-from runner.config.compose.overrides import force
 from runner.plugins.discovery import named_parts, use_plugins
 
 Folders = Sequence[str | Path] | str | Path
@@ -73,16 +72,16 @@ def sweep(
     Raises:
         RunnerError: for a config that cannot be run, before any run is made; if another sweep is at work there.
     """
+    from runner.config.compose.composer import Composer
     from runner.sweeps.finer_step import work_out_sweep
-    from runner.sweeps.loading import Loader
     from runner.sweeps.plan import Grid
     from runner.sweeps.run import Engine, run_sweep
 
     use_plugins(plugins)
     folders, texts = config_folders(config_dirs), sweep_overrides(overrides, values)
     _refuse_hydra(texts)
-    engine, loader = Engine(workers, address), Loader(folders)
-    brought = loader.sweeper(force(texts)).params or {}  # axes that an experiment brings along
+    engine, loader = Engine(workers, address), Composer(folders)
+    brought = loader.sweeper(texts).params or {}  # axes that an experiment brings along
     plan = Grid([*(f"{key}={value}" for key, value in brought.items()), *texts], loader)
     with workers_only_work():
         ended = run_sweep(plan, engine, _command(["-m"], folders, texts))

@@ -34,11 +34,11 @@ def run(options: Namespace) -> int:
     """Print a line for each arm, the total time, and the command that simulates the benchmark."""
     quiet_environment()
     use_plugins([f"controller={options.law}"])
+    from runner.config.compose.composer import Composer
     from runner.study.plugins import read_user_plugins
-    from runner.sweeps.loading import Loader
 
     (part,) = read_user_plugins(in_use()[-1:])
-    workers = Loader().sweeper([]).workers
+    workers = Composer().sweeper([]).workers
     for line in check_law(STUDY, options.profile, part, workers):
         print(one_line(line))
     profile = ("--profile", options.profile) if options.profile else ()

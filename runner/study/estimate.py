@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runner.config.compose.composer import Composer
 from runner.study.gains import named, without_gains
 from runner.study.grid import Overrides
 from runner.study.items import Way, listed
@@ -16,7 +17,6 @@ from runner.study.tune import ROUNDS
 from runner.study.tunings import Tuning
 from runner.sweeps.check import check
 from runner.sweeps.estimate import START_UP, Estimate, estimate
-from runner.sweeps.loading import Loader
 from runner.sweeps.plan import Item, Listed, Plan
 
 Counts = tuple[int, int, int]
@@ -81,7 +81,7 @@ def counted(study: Study, tunings: Sequence[Tuning], chosen: Collection[str]) ->
 def planned(cells: Iterable[Overrides], way: Way) -> Listed:
     """Return runs as a plan, those with the same overrides once."""
     items = {shlex.join(own): Item(own) for own in cells}
-    return listed(items, way, Loader(way.config_dirs), "never")
+    return listed(items, way, Composer(way.config_dirs), "never")
 
 
 def estimate_all(plan: Plan, counts: Sequence[Counts]) -> dict[str, Amount]:

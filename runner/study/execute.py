@@ -7,6 +7,7 @@ from pathlib import Path
 
 from runner import store
 from runner.base import progress
+from runner.config.compose.composer import Composer
 from runner.simulation.provenance import portable_overrides
 from runner.store import Calibration, Run
 from runner.study.estimate import counted, estimate_all, planned, told
@@ -17,7 +18,6 @@ from runner.study.tune import find_gains
 from runner.study.tunings import Tuning
 from runner.sweeps.calibration_job import CALIBRATION
 from runner.sweeps.check import check
-from runner.sweeps.loading import Loader
 from runner.sweeps.plan import Item
 
 
@@ -67,7 +67,7 @@ def _tell_estimate(study: Study, tunings: Sequence[Tuning], way: Way) -> None:
     counts = counted(study, tunings, {override for each in tunings for override in each.chosen})
     amounts = estimate_all(planned(counts, way), [*counts.values()])
     laws = list(dict.fromkeys(each.law for each in tunings))
-    workers = Loader(way.config_dirs).sweeper([text for text in way.overrides if text.startswith("hydra.")]).workers
+    workers = Composer(way.config_dirs).sweeper([text for text in way.overrides if text.startswith("hydra.")]).workers
     print(f"runner: {told(laws, amounts, workers)}, less where they are stored", file=sys.stderr)
 
 
@@ -77,7 +77,7 @@ def _command(study: Study, overrides: Sequence[str], run: Run) -> str:
 
 def count_missing(study: Study, outputs: Path) -> int:
     """Return how many runs and calibrations of a study are not stored."""
-    names = check(listed(_items(study), Way(outputs), Loader(study.config_dirs))).names
+    names = check(listed(_items(study), Way(outputs), Composer(study.config_dirs))).names
     in_shards = store.Finished(outputs).places_of(names) >= 0
     left = {name for name, there in zip(names, in_shards.tolist(), strict=True) if not there}
     kept = ("runs/{}/metrics.json", "calibrations/{}/result.json")

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+from runner.config.compose.composer import Composer
 from runner.store import Outcome
-from runner.sweeps.loading import Loader
 from runner.sweeps.plan import Item, Listed
 from runner.sweeps.run import Engine, run_sweep
 
@@ -61,7 +61,7 @@ def make_items(items: Mapping[str, Item], way: Way, trace: Literal["all", "never
         StoreError: if the disk does not take them.
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
-    loader = Loader(way.config_dirs)
+    loader = Composer(way.config_dirs)
     sweeper = loader.sweeper([text for text in way.overrides if text.startswith("hydra.")])
     plan = listed(items, way, loader, trace)
     ended = run_sweep(plan, Engine(sweeper.workers, sweeper.address), way.command, accept_cut_short=False)
@@ -69,7 +69,7 @@ def make_items(items: Mapping[str, Item], way: Way, trace: Literal["all", "never
     return {name: MadeItem(place, ended.ends.get(place)) for name, place in places}
 
 
-def listed(items: Mapping[str, Item], way: Way, loader: Loader, trace: str = "all") -> Listed:
+def listed(items: Mapping[str, Item], way: Way, loader: Composer, trace: str = "all") -> Listed:
     """Return the plan of some runs and calibrations."""
     shared = [text for text in way.overrides if not text.startswith("hydra.")]
     return Listed(items, [*shared, f"sweep.trace={trace}", f"outputs={way.outputs}"], loader)

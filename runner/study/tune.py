@@ -7,13 +7,14 @@ from itertools import islice, takewhile
 from typing import Any
 
 from runner import store
+from runner.base.dotted_keys import get
 from runner.base.errors import RunnerError
+from runner.config.compose.composer import Composer
 from runner.store import Run
 from runner.study.gains import Gains
 from runner.study.grid import Overrides
 from runner.study.items import Way, make_items
 from runner.study.tunings import Tuning, key_of
-from runner.sweeps.loading import Loader
 from runner.sweeps.plan import Grid, Item
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective, Trial, best
@@ -116,7 +117,7 @@ def find_gains(tunings: Sequence[Tuning], way: Way) -> Gains:
     Raises:
         RunnerError: if a key has no value for a factor, or as make_items does.
     """
-    loader = Loader(way.config_dirs)
+    loader = Composer(way.config_dirs)
     searches = [search for tuning in tunings for search in _searches(tuning, loader)]
     for number in range(ROUNDS if searches else 0):
         print(f"{len(searches)} tunings, round {number + 1} of {ROUNDS} ...", file=sys.stderr)
@@ -175,13 +176,13 @@ def _growth(run: Run | None) -> str:
     return _GROWS if last is None or any(last > _GROWN * each for each in earlier) else ""
 
 
-def _searches(tuning: Tuning, loader: Loader) -> list[_Search]:
+def _searches(tuning: Tuning, loader: Composer) -> list[_Search]:
     start = _start(tuning, loader)
     keys = [key_of(name, start[name], own) for name, own in tuning.ranges.items()]
     return [_Search(tuning, seed, keys, start) for seed in range(1, 1 + tuning.times)]
 
 
-def _start(tuning: Tuning, loader: Loader) -> dict[str, float]:
+def _start(tuning: Tuning, loader: Composer) -> dict[str, float]:
     """Return the values of a tuning's keys in the config that its trials share."""
     if not tuning.ranges:
         return {}
@@ -195,9 +196,7 @@ def read_number(tuning: Tuning, key: str, resolved: Mapping[str, Any]) -> float:
     Raises:
         RunnerError: if it is no number, or 0.
     """
-    value: Any = resolved
-    for part in key.split("."):
-        value = value.get(part) if isinstance(value, Mapping) else None
+    value = get(resolved, key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not value:
         raise RunnerError(
             f"tuning {tuning.name}: {key} is {value!r}; a range of factors needs a number other than 0 to begin with"

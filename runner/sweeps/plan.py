@@ -10,12 +10,11 @@ from typing import Any
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import Composed
-from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.composer import Composer
 from runner.config.compose.options import groups
-from runner.config.compose.overrides import force
+from runner.config.compose.overrides import prepare
 from runner.schema.plausibility import LARGEST_WHOLE
 from runner.store.axes import Axes, digits, is_simulated
-from runner.sweeps.loading import ConfigSource, Loader
 from runner.sweeps.swept import SweptKey, parse_sweep
 from runner.sweeps.template import Template
 
@@ -68,7 +67,7 @@ class Plan(ABC):
         source: Composes the configs.
     """
 
-    def __init__(self, source: ConfigSource) -> None:
+    def __init__(self, source: Composer) -> None:
         self._source = source
         self._templates: dict[Hashable, Template | ConfigError] = {}
 
@@ -123,8 +122,6 @@ class Plan(ABC):
         own = self._source.config_dirs
         try:
             return Template(self._source.load(options, root), root, own, keys)
-        except COMPOSITION_ERRORS as error:
-            return explain(error, own)
         except ConfigError as error:
             return error
 
@@ -140,9 +137,9 @@ class Grid(Plan):
         ConfigError: for what is no override, and for a key that is swept over no value.
     """
 
-    def __init__(self, arguments: Sequence[str], source: ConfigSource) -> None:
+    def __init__(self, arguments: Sequence[str], source: Composer) -> None:
         super().__init__(source)
-        self._keys = parse_sweep(force(arguments), groups(source.config_dirs), source.hydra)
+        self._keys = parse_sweep(prepare(arguments), groups(source.config_dirs), source.hydra)
         self._sizes = [len(key.values) for key in self._keys]
         self._axes = Axes([key.entry() for key in self._keys if len(key.values) > 1 or is_simulated(key.name)])
 
@@ -187,7 +184,7 @@ class Grid(Plan):
         for first, own in together.items():
             if self._seeds_stand_alone(first, place):
                 numbers = [cell // stride % len(key.values) for cell in own]
-                texts = [key.override(number).removeprefix("++") for number in numbers]
+                texts = [key.override(number) for number in numbers]
                 yield own, Alike(self.composed(own[0]), [key.values[number] for number in numbers], texts, before)
             else:
                 yield from super().alike(own)
@@ -241,7 +238,7 @@ class Listed(Plan):
         ConfigError: for what is no override.
     """
 
-    def __init__(self, items: Mapping[str, Item], shared: Sequence[str], loader: Loader) -> None:
+    def __init__(self, items: Mapping[str, Item], shared: Sequence[str], loader: Composer) -> None:
         super().__init__(loader)
         self._items = tuple(items.values())
         known = groups(loader.config_dirs)
@@ -249,7 +246,7 @@ class Listed(Plan):
         self._places: list[tuple[Hashable, int]] = []
         for item in self._items:
             taken = [text for text in shared if item.root == "config" or text.startswith("outputs=")]
-            keys = parse_sweep(force([*item.overrides, *taken]), known, loader.hydra)
+            keys = parse_sweep(prepare([*item.overrides, *taken]), known, loader.hydra)
             options, values = [[key for key in keys if key.option is which] for which in (True, False)]
             group = item.root, tuple(key.override(0) for key in options), tuple(key.start for key in values)
             together = self._cells.setdefault(group, [])
@@ -289,4 +286,4 @@ def _may_be_seeds(key: SweptKey) -> bool:
 
 def plan_sweep(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Grid:
     """Plan what `runner -m OVERRIDES` makes, from Python; see Grid."""
-    return Grid(overrides, Loader(config_dirs))
+    return Grid(overrides, Composer(config_dirs))

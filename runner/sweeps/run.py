@@ -18,6 +18,7 @@ from omegaconf import DictConfig
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError, StoreError
+from runner.config.compose.composer import Composer
 from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
 from runner.plugins.discovery import has_users_parts, in_use
 from runner.store.atomic import remove_leftovers
@@ -28,7 +29,6 @@ from runner.sweeps.check import Checked, check
 from runner.sweeps.differing import Resolved
 from runner.sweeps.engine import in_process, local_client, on_cluster, remote_client
 from runner.sweeps.estimate import START_UP, Estimate, Pace, estimate
-from runner.sweeps.loading import ConfigSource
 from runner.sweeps.outcomes import Ends
 from runner.sweeps.plan import Grid, Plan
 from runner.sweeps.queue import Queue
@@ -83,12 +83,12 @@ class Ended:
 
 
 def sweep_typed(
-    arguments: Sequence[str], sweeper: DictConfig | Mapping[str, Any], source: ConfigSource, command: str
+    arguments: Sequence[str], sweeper: DictConfig | Mapping[str, Any], source: Composer, command: str
 ) -> Ended:
     """Make the runs of a command line that are missing.
 
     Args:
-        arguments: Overrides as `force` leaves them, Hydra's own left out.
+        arguments: Overrides as typed, Hydra's own left out.
         sweeper: Values of hydra.sweeper: workers, address, and params, the values by key that a file gives; those of
             the command line come after and win.
         source: Composes the configs.

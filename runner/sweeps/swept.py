@@ -24,7 +24,7 @@ class SweptKey:
         name: The key, such as "noise.position".
         values: Its values; quantities, such as 1mrad, as numbers in SI units.
         option: Whether they choose an option of a config group, or delete a key: what needs composing anew.
-        start: How its overrides begin for Hydra, such as "++noise.position".
+        start: How its overrides begin for Hydra, such as "noise.position".
         typed: The override as typed; empty for a key that is swept.
     """
 
@@ -41,15 +41,15 @@ class SweptKey:
     def entry(self) -> SweepAxis | str:
         """Return the key as an entry of a sweep's axes."""
         if len(self.values) == 1:
-            return self.override(0).removeprefix("++")
-        return SweepAxis(self.start.removeprefix("++"), self.values)
+            return self.override(0)
+        return SweepAxis(self.start, self.values)
 
 
 def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigLoader) -> list[SweptKey]:
     """Return the keys of a sweep in order; of a key that stands twice the last values count, in the first place.
 
     Args:
-        arguments: Overrides, such as "robot=macro,mini" and "++noise.position=1e-4,1e-3".
+        arguments: Overrides, such as "robot=macro,mini" and "noise.position=1e-4,1e-3".
         groups: Names of the config groups.
         loader: Hydra's loader, which knows what `glob(*)` stands for.
 

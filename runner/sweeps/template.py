@@ -10,11 +10,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from hydra._internal.config_loader_impl import ConfigLoaderImpl
-from hydra.core.override_parser.overrides_parser import OverridesParser
 from omegaconf import DictConfig, OmegaConf
 
+from runner.base.dotted_keys import get
 from runner.config.compose.compose import Composed, from_hydra
+from runner.config.compose.composer import put_values
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.sweeps.swept import SweptKey
 
@@ -100,7 +100,7 @@ class Template:
         texts = [key.override(number) for key, number in zip(self._keys, cell, strict=True)]
         config = copy.deepcopy(self._config)
         try:
-            ConfigLoaderImpl._apply_overrides_to_config(OverridesParser.create().parse_overrides(texts), config)
+            put_values(config, texts)
         except COMPOSITION_ERRORS as error:
             raise explain(error, self._config_dirs) from None
         return from_hydra(config, self._chosen, texts, self._config_dirs)
@@ -136,7 +136,7 @@ class Template:
             return [{}] * len(key.values)
         places = change(other)
         if all(
-            repr(value) == repr(key.values[other]) and repr(_at(self._first, place)) == repr(first)
+            repr(value) == repr(key.values[other]) and repr(get(self._first, place)) == repr(first)
             for place, value in places.items()
         ):
             return _Same(list(places), key.values)
@@ -182,12 +182,6 @@ def _difference(first: Any, other: Any, place: Place = ()) -> Iterator[tuple[Pla
             yield (*place, key), other[key]
         else:
             yield from _difference(first[key], other[key], (*place, key))
-
-
-def _at(config: Any, place: Place) -> Any:
-    for key in place:
-        config = config.get(key) if isinstance(config, Mapping) else None
-    return config
 
 
 def _put(config: dict[str, Any], place: Place, value: Any) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from runner.base.dotted_keys import dotted, leaves
 from runner.cli.completion.basis import basis
 from runner.symbolic import cache
 
@@ -60,25 +61,16 @@ def _compose(overrides: Sequence[str], config_dirs: Sequence[Path], root: str) -
     from omegaconf import OmegaConf
     from omegaconf.errors import OmegaConfBaseException
 
-    from runner.config.compose.hydra_config import hydra_config
-    from runner.config.compose.overrides import force
+    from runner.config.compose.composer import Composer
 
-    config = hydra_config(force(overrides), config_dirs, root)
+    config = Composer(config_dirs, root).load(overrides)
     ours: Any = OmegaConf.to_container(config, resolve=False)
     del ours["hydra"]
-    for key, value in _leaves(ours, ""):
+    for key, value in ((dotted(place), value) for place, value in leaves(ours)):
         try:
             yield key, _typed(OmegaConf.select(config, key) if "${" in str(value) else value)
         except OmegaConfBaseException:  # it refers to a key that does not exist yet
             yield key, None
-
-
-def _leaves(value: Any, key: str) -> Iterator[tuple[str, Any]]:
-    inner = value if isinstance(value, Mapping) else dict(enumerate(value)) if isinstance(value, list) else {}
-    for name, each in inner.items():
-        yield from _leaves(each, f"{key}.{name}" if key else str(name))
-    if not inner:
-        yield key, value
 
 
 def _typed(value: Any) -> str | None:

@@ -1,4 +1,4 @@
-"""Config composition with Hydra, from the groups in conf/ and a list of overrides."""
+"""Config composition from the groups in conf/ and a list of overrides, as plain data in SI units."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,10 +9,9 @@ from omegaconf import DictConfig, OmegaConf
 
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
+from runner.config.compose.composer import Composer
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.data_files import take_data_file
-from runner.config.compose.hydra_config import hydra_config
-from runner.config.compose.overrides import force
 from runner.config.compose.stage_defaults import complete_stage_arms, complete_stages
 from runner.config.compose.units import to_si
 
@@ -41,17 +40,15 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: st
 
     Args:
         overrides: Hydra overrides, such as "robot=macro" and "noise.position=1e-3".
-        config_dirs: Config folders of the user's, searched before ours.
+        config_dirs: Config folders of the user, searched with ours.
         root: Name of the file in conf/ that the groups hang on.
 
     Raises:
-        ConfigError: for an option or key that does not exist, a value that cannot be parsed, a file that is no YAML.
+        ConfigError: for an option or key that does not exist, a value that cannot be parsed, a file that is not YAML.
     """
-    try:
-        config = hydra_config(force(overrides), config_dirs, root)
-        return from_hydra(config, config.hydra.runtime.choices, overrides, config_dirs, root)
-    except COMPOSITION_ERRORS as error:
-        raise explain(error, config_dirs) from None
+    composer = Composer(config_dirs, root)
+    config = composer.load(overrides)
+    return from_hydra(config, config.hydra.runtime.choices, overrides, composer.config_dirs, root)
 
 
 def from_hydra(

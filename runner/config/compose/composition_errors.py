@@ -24,6 +24,8 @@ COMPOSITION_ERRORS = (HydraException, OmegaConfBaseException, yaml.YAMLError, Va
 
 def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
     """Return the message for what Hydra, OmegaConf or YAML say of a config."""
+    if isinstance(error, HydraException) and not str(error) and isinstance(error.__cause__, OmegaConfBaseException):
+        error = error.__cause__  # Hydra adds nothing to it
     if isinstance(error, yaml.YAMLError):
         return ConfigError([explain_yaml(error)])
     if isinstance(error, MissingConfigException) and error.missing_cfg_file:
@@ -34,7 +36,7 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
         if known:
             return ConfigError([f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}"])
     if isinstance(error, OverrideParseException):
-        found = one_line(f"'{error.override.removeprefix('++')}'", VALUE)
+        found = one_line(f"'{error.override}'", VALUE)
         return ConfigError([f"{found} is no override: {one_line(explain_parser(str(error).splitlines()[0]), VALUE)}"])
     missing = _LACKING.match(str(error))
     if isinstance(error, InterpolationKeyError) and error.full_key and missing is not None:
@@ -45,11 +47,9 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
         return ConfigError([f"{error.full_key}: {str(error).splitlines()[0]}"])
     if isinstance(error, RecursionError):
         return ConfigError(["the config is nested too deeply, or a value refers to itself"])
-    several = _AMBIGUOUS.match(str(error))
+    text = str(error).replace("++", "")  # see `force`
+    several = _AMBIGUOUS.match(text)
     if several is not None:
-        text = several[1].removeprefix("++")
-        return ConfigError(
-            [f"{quoted(text)} gives several values; `runner -m` sweeps over them; a list stands in brackets: KEY=[A,B]"]
-        )
-    text = str(error).replace("++", "").split("\nSee https")[0].split("\nTo append")[0]
-    return ConfigError([" ".join(text.split())])
+        given = f"{quoted(several[1])} gives several values"
+        return ConfigError([f"{given}; `runner -m` sweeps over them; a list stands in brackets: KEY=[A,B]"])
+    return ConfigError([" ".join(text.split("\nSee https")[0].split("\nTo append")[0].split())])

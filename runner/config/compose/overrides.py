@@ -17,11 +17,10 @@ _MAY_BE_TYPED = re.compile(r"[+]*hydra\.sweeper\.(workers|address|params(\.[^@:]
 _LOOKS_LIKE_A_VALUE = re.compile(r"(?i)(null|true|false|[-+.\d][-+.\de]*)$")
 
 
-def force(overrides: Sequence[str]) -> list[str]:
-    """Let overrides of unknown keys compose, so that validation finds them all at once and names the nearest key.
+def prepare(overrides: Sequence[str]) -> list[str]:
+    """Check overrides; return them with ranges in SI units, and with each option of a group as a name.
 
-    Hydra alone stops at the first, and suggests to add the key, which no part of the runner would read. The option
-    of a group is quoted where Hydra would take it for a number or null and not name the group.
+    Hydra would take an option such as `noise=1` for a number, and its message would not contain the group.
 
     Raises:
         ConfigError: for overrides that are too long, nested too deeply or malformed, choose an option of Hydra's own,
@@ -31,16 +30,26 @@ def force(overrides: Sequence[str]) -> list[str]:
     problems = [problem for override in overrides if (problem := _problem(override, names))]
     if problems:
         raise ConfigError(problems)
-    return [_forced(with_numbers(override), names) for override in overrides]
+    return [_named(with_numbers(override), names) for override in overrides]
 
 
-def _forced(override: str, names: set[str]) -> str:
-    match = re.match(r"([A-Za-z_][\w.]*)=(.*)", override)
-    if match is None:
-        return override
-    if match[1] in names and _LOOKS_LIKE_A_VALUE.match(match[2]):
-        return f"{match[1]}='{match[2]}'"  # the name of an option, though it looks like a value
-    return override if match[1] in names or match[1].startswith("hydra") else f"++{override}"
+def _named(override: str, names: set[str]) -> str:
+    key, _, value = override.partition("=")
+    return f"{key}='{value}'" if key in names and _LOOKS_LIKE_A_VALUE.match(value) else override
+
+
+def force(overrides: Sequence[str]) -> list[str]:
+    """Return prepared overrides in a form in which Hydra composes unknown keys.
+
+    Validation then reports all of them, with the nearest keys. Hydra would stop at the first and suggest to add the
+    key, which no part of the runner would read.
+
+    Raises:
+        ConfigError: as `prepare`.
+    """
+    names = "|".join(map(re.escape, groups()))
+    unknown = re.compile(rf"(?!hydra|(?:{names})=)[A-Za-z_][\w.]*=")
+    return [f"++{line}" if unknown.match(line) else line for line in prepare(overrides)]
 
 
 def _problem(override: str, names: set[str]) -> str | None:

@@ -26,13 +26,17 @@ def refuse_settings(given: Iterable[str], path: Path) -> None:
         ConfigError: for `outputs` and all of `hydra`, but the axes of a sweep; names the line.
     """
     for text in given:
-        key = text.partition("=")[0]
-        if SAYS_HOW.search(key.removeprefix(f"{_AXES}.")):
-            from runner.base.bounded_yaml import line_with
+        if SAYS_HOW.search(text.partition("=")[0].removeprefix(f"{_AXES}.")):
+            raise settings_error(text, path)
 
-            where = f"set it on the command line or in {settings_path()}; allowed here: keys of {_AXES}"
-            found = f"{line_with(text, path)}: {quoted(text)}"
-            raise ConfigError([f"{found} says how or where runs are made, which no file may; {where}"])
+
+def settings_error(text: str, path: Path) -> ConfigError:
+    """Return the error for a key or an override in a file from outside that says how or where runs are made."""
+    from runner.base.bounded_yaml import line_with
+
+    where = f"set it on the command line or in {settings_path()}; allowed here: keys of {_AXES}"
+    found = f"{line_with(text, path)}: {quoted(text)}"
+    return ConfigError([f"{found} says how or where runs are made, which no file may; {where}"])
 
 
 def settings_path() -> Path:

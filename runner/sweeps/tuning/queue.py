@@ -9,8 +9,8 @@ import numpy as np
 from runner import store
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import Composed
+from runner.config.compose.composer import Composer
 from runner.config.validation import validate
-from runner.sweeps.loading import Loader
 from runner.sweeps.plan import Grid
 from runner.sweeps.queue import Queue
 from runner.sweeps.tuning.journal import Journal
@@ -45,7 +45,7 @@ class TrialQueue(Queue):
         seed: Seed of the search.
     """
 
-    def __init__(self, study: Study, journal: Journal, loader: Loader, rules: Rules, trials: int, seed: int) -> None:
+    def __init__(self, study: Study, journal: Journal, loader: Composer, rules: Rules, trials: int, seed: int) -> None:
         self._runs: list[str] = []
         self._costs_of_runs: list[int] = []
         self._cell_of: dict[str, int] = {}

@@ -3,23 +3,24 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 
 from runner import store
+from runner.base.dotted_keys import get
 from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.base.limits import TRIALS
+from runner.config.compose.composer import Composer
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.options import groups
-from runner.config.compose.overrides import force
+from runner.config.compose.overrides import prepare
 from runner.store.axes import is_simulated
 from runner.store.latest import note
 from runner.store.names import Names
 from runner.sweeps.check import Checked, check
-from runner.sweeps.loading import Loader
 from runner.sweeps.plan import Grid, Plan
 from runner.sweeps.run import Engine, clean, make_jobs, make_rules
 from runner.sweeps.status import at_work
@@ -57,8 +58,8 @@ def tune(
     if excess := TRIALS.excess(trials):
         raise RunnerError(f"the tuning {excess}; take fewer")
     fixed, keys = _read(overrides, config_dirs)
-    loader = Loader(config_dirs)
-    sweeper = loader.sweeper(force(fixed))
+    loader = Composer(config_dirs)
+    sweeper = loader.sweeper(fixed)
     engine = Engine(sweeper.workers, sweeper.address)
     shared = [text for text in fixed if not text.startswith("hydra.")]
     _check_numbers(Grid(shared, loader), keys)
@@ -97,7 +98,7 @@ def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, e
 def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[str], list[Key]]:
     """Return the overrides that all trials share, as typed, and the keys to tune."""
     try:
-        parsed = OverridesParser.create().parse_overrides(force(overrides))
+        parsed = OverridesParser.create().parse_overrides(prepare(overrides))
     except COMPOSITION_ERRORS as error:
         raise explain(error) from None
     fixed: list[str] = []
@@ -134,9 +135,7 @@ def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
     resolved = plan.composed(0).resolved
     problems = []
     for key in keys:
-        found: Any = resolved
-        for part in key.name.split("."):
-            found = found.get(part) if isinstance(found, dict) else None
+        found = get(resolved, key.name)
         if isinstance(found, dict):
             problems.append(f"{key.name}: is a group of keys ({', '.join(map(str, found))}); tune one of them")
         elif isinstance(found, bool | str | list):
@@ -145,7 +144,7 @@ def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
         raise ConfigError(problems)
 
 
-def _check_ranges(loader: Loader, shared: Sequence[str], keys: Sequence[Key]) -> tuple[Plan, Checked]:
+def _check_ranges(loader: Composer, shared: Sequence[str], keys: Sequence[Key]) -> tuple[Plan, Checked]:
     """Check the configs at both ends and inside of the ranges; return the plan of the last one and what they gave."""
     problems: dict[str, None] = {}
     names: list[str] = []

@@ -140,7 +140,7 @@ def test_keys_are_those_of_the_typed_choice(tab):
 
 def test_keys_are_composed_once_for_a_line(monkeypatch, tab):
     first = tab("robot=mini controller.")
-    monkeypatch.setattr("runner.config.compose.hydra_config.hydra_config", None)
+    monkeypatch.setattr("runner.config.compose.composer.Composer", None)
     assert tab("robot=mini controller.") == first
     assert tab("robot=macro controller.") == []
 

@@ -4,8 +4,8 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
+from runner.config.compose.composer import Composer
 from runner.config.compose.options import group_options
-from runner.sweeps.loading import Loader
 
 EXPERIMENT = "# @package _global_\n# One.\ndefaults:\n  - override /robot: macro\n  - override /trajectory: goal\n"
 
@@ -22,7 +22,7 @@ def test_an_experiment_of_a_study_is_found_under_the_study_name(paper):
     (paper / "study.yaml").touch()
     assert group_options("experiment", [paper])["paper/one"] == "One."
     assert compose(["experiment=paper/one"], [paper]).choices["experiment"] == "paper/one"
-    assert Loader([paper]).load(["experiment=paper/one"]).robot.name == "macro"
+    assert Composer([paper]).load(["experiment=paper/one"]).robot.name == "macro"
     with pytest.raises(ConfigError, match=r"no 'paper/on' \(did you mean paper/one\?\)"):
         compose(["experiment=paper/on"], [paper])
 

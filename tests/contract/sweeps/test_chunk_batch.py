@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from runner import store
+from runner.config.compose.composer import Composer
 from runner.simulation import batch
 from runner.store.json_texts import JsonTexts
 from runner.sweeps import work
 from runner.sweeps.batch import _rows
 from runner.sweeps.check import check
-from runner.sweeps.loading import Loader
 from runner.sweeps.plan import Item, Listed, plan_sweep
 from runner.sweeps.queue import Queue
 from runner.sweeps.run import make_rules
@@ -122,7 +122,7 @@ def test_a_failure_stops_the_sweep_after_the_runs_that_were_made_with_it(sweep, 
 def test_a_chunk_holds_calibrations_too(tmp_path, batches):
     items = {f"run {n}": Item((*SHORT, f"seed={n}")) for n in range(5)}
     items["tool"] = Item(("calibration=tool_direction", "repetitions=2"), "calibrate")
-    chunk = whole_chunk(Listed(items, ["sweep.trace=never", f"outputs={tmp_path}"], Loader()))
+    chunk = whole_chunk(Listed(items, ["sweep.trace=never", f"outputs={tmp_path}"], Composer()))
     report = work.work(chunk)
     assert [end.failure for end in report.outcomes] == [""] * 6
     assert batches == [5]

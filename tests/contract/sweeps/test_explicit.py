@@ -4,8 +4,8 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
+from runner.config.compose.composer import Composer
 from runner.sweeps.check import check
-from runner.sweeps.loading import Loader
 from runner.sweeps.plan import Item, Listed
 
 ITEMS = {
@@ -23,7 +23,7 @@ ITEMS = {
 }
 
 
-class CountingLoader(Loader):
+class CountingLoader(Composer):
     """Notes what it loads."""
 
     def __init__(self):
@@ -72,7 +72,7 @@ def test_runs_and_calibrations_are_checked_and_weighed(listed, tmp_path):
 def test_all_problems_are_told_at_once(tmp_path):
     items = {"a": Item(("noise.position=-1",)), "b": Item(("calibration.poses=0",), "calibrate"), "c": ITEMS["mini"]}
     with pytest.raises(ConfigError) as raised:
-        check(Listed(items, [f"outputs={tmp_path}"], Loader()))
+        check(Listed(items, [f"outputs={tmp_path}"], Composer()))
     first, second = raised.value.problems
     assert first.startswith("[noise.position=-1] noise.position: must be 0 or more")
     assert second.startswith("[calibration.poses=0] ")

@@ -4,7 +4,7 @@ import pytest
 from support.short_runs import SHORT
 
 from runner import store
-from runner.sweeps.loading import Loader
+from runner.config.compose.composer import Composer
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective
@@ -23,7 +23,7 @@ def queue(tmp_path):
     folder = tmp_path / "tunings" / "one"
     study.write(folder, [])
     rules = Rules((), tmp_path, folder, "all", True, True, False, 1, None)
-    return TrialQueue(study, Journal(folder / "journal.log", keys, goals), Loader(), rules, 5, 0)
+    return TrialQueue(study, Journal(folder / "journal.log", keys, goals), Composer(), rules, 5, 0)
 
 
 def test_only_so_many_are_under_way_and_they_end_in_order(queue):

@@ -8,18 +8,17 @@ from runner.store import physics, syntax
 # What works on finished runs, tells or keeps something, or makes the resolved config, which the hash has itself.
 OTHERS = {
     "__init__.py", "__main__.py", "analysis", "api", "audit", "base/arrays.py", "base/bounded_yaml.py", "base/cache.py",
-    "base/data_file.py", "base/engine_output.py", "base/engines.py", "base/environment_variables.py", "base/errors.py",
-    "base/expressions", "base/former_names.py", "base/interpolation.py", "base/limits.py", "base/paths.py",
-    "base/progress.py", "base/quantities.py", "base/sanitize.py", "base/ticks.py", "cli", "config/caveats.py",
-    "config/compose", "config/limits.py", "config/spec.py", "doctor",
-    "metrics/caveats", "plants/servo_contact_stability.py", "plugins/discovery.py", "plugins/folder_code.py",
-    "recordings", "reporting", "schema/model.py", "schema/plausibility.py", "schema/units.py",
+    "base/data_file.py", "base/dotted_keys.py", "base/engine_output.py", "base/engines.py",
+    "base/environment_variables.py", "base/errors.py", "base/expressions", "base/former_names.py",
+    "base/interpolation.py", "base/limits.py", "base/paths.py", "base/progress.py", "base/quantities.py",
+    "base/sanitize.py", "base/ticks.py", "cli", "config/caveats.py", "config/compose", "config/limits.py",
+    "config/spec.py", "doctor", "metrics/caveats", "plants/servo_contact_stability.py", "plugins/discovery.py",
+    "plugins/folder_code.py", "recordings", "reporting", "schema/model.py", "schema/plausibility.py", "schema/units.py",
     "simulation/provenance.py", "simulation/result.py", "statistics", "store", "studies", "study", "sweeps/batch.py",
     "sweeps/check.py", "sweeps/closed_nodes.py", "sweeps/deadline.py", "sweeps/differing.py", "sweeps/engine.py",
-    "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/gathering.py", "sweeps/loading.py",
-    "sweeps/measurements.py", "sweeps/outcomes.py", "sweeps/plan.py", "sweeps/queue.py", "sweeps/run.py",
- "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py", "sweeps/template.py",
-    "sweeps/tuning", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
+    "sweeps/estimate.py", "sweeps/finer_step.py", "sweeps/gathering.py", "sweeps/measurements.py", "sweeps/outcomes.py",
+    "sweeps/plan.py", "sweeps/queue.py", "sweeps/run.py", "sweeps/status.py", "sweeps/swept.py", "sweeps/table.py",
+    "sweeps/template.py", "sweeps/tuning", "sweeps/work.py", "sweeps/writer.py", "symbolic/cache.py",
 }  # fmt: skip
 TREE = {
     "laws/__init__.py": 'from runner.laws.pd import Law\nKINDS = {"pd": "runner.laws.pd"}\n',

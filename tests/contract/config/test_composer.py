@@ -10,21 +10,22 @@ from hypothesis import strategies as st
 from runner.base import engines, paths
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose, from_hydra
+from runner.config.compose.composer import Composer, check_composed
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.compose.hydra_config import hydra_config
-from runner.config.compose.no_code import code_refused
 from runner.config.compose.overrides import force
+from runner.config.compose.sources import checked_sources
 
 SHORT = ("robot=macro", "plant=rk4", "duration=0.05")
 
 
 def plain(overrides, config_dirs=(), root="config"):
     """Compose as `compose` does, by Hydra's own function, which keeps nothing."""
-    search = [f"hydra.searchpath=[{','.join(f'file://{folder}' for folder in config_dirs)}]"] if config_dirs else []
     folder = str(paths.conf_dir())
     try:
-        with code_refused(), hydra.initialize_config_dir(folder, version_base="1.3", job_name="runner"):
-            config = hydra.compose(root, [*force(overrides), *search], return_hydra_config=True)
+        with checked_sources(config_dirs), hydra.initialize_config_dir(folder, version_base="1.3", job_name="runner"):
+            config = hydra.compose(root, force(overrides), return_hydra_config=True)
+        config.hydra.overrides.task, config.hydra.job.override_dirname = [], ""  # the Composer gives Hydra only options
+        check_composed(config)
         return from_hydra(config, config.hydra.runtime.choices, overrides, config_dirs, root)
     except COMPOSITION_ERRORS as error:
         raise explain(error, config_dirs) from None
@@ -106,12 +107,12 @@ def test_a_calibration_and_a_run_of_the_same_options_stay_apart():
 
 def test_other_values_compose_nothing_anew(monkeypatch):
     compose(["robot=macro", "seed=1"])
-    monkeypatch.setattr("runner.config.compose.hydra_config.code_refused", None)  # which Hydra composes within
+    monkeypatch.setattr(Composer, "hydra", None)
     assert compose(["robot=macro", "seed=2", "noise.position=1e-3"]).resolved["seed"] == 2
 
 
 def test_what_is_changed_in_one_config_is_in_no_other():
-    first = hydra_config(["robot=combined"])
+    first = Composer().load(["robot=combined"])
     first.robot.stages = None
     composed = compose(["robot=combined"])
     composed.resolved["robot"]["stages"].clear()

@@ -85,12 +85,23 @@ def test_a_scheduler_that_a_file_names_is_not_called(stranger, listening):
         ("# @package hydra.sweeper\n", "address: ADDRESS", "hydra.sweeper.address"),
         ("# @package _global_.hydra\n", "sweeper: {address: ADDRESS}", "hydra.sweeper.address"),
         ("# @package _global_\n", "defaults: ['other@hydra.sweeper']\naddress: ADDRESS", "other@hydra.sweeper"),
+        ("# @package x_global_.hydra.sweeper\n", "address: ADDRESS", "hydra.sweeper.address"),
+        ("# @package x\n", "defaults: ['other@x_global_.hydra']", "other@x_global_.hydra"),
     ],
 )
 def test_nor_by_way_of_a_package(stranger, listening, head, text, key):
     ending = stranger(text.replace("ADDRESS", f"tcp://127.0.0.1:{listening}"), "-m", file="noise/hydra", head=head)
     assert (ending.code, ending.out) == (2, "")
     assert f"theirs/noise/hydra.yaml, line 2: '{key}' {WHY}" in ending.err
+
+
+def test_nor_by_way_of_a_group(stranger, listening, tmp_path):
+    inner = tmp_path / "theirs/experiment/x_global_.hydra/sweeper.yaml"
+    inner.parent.mkdir(parents=True)
+    inner.write_text(f"address: tcp://127.0.0.1:{listening}\n")
+    ending = stranger("defaults: [x_global_.hydra/sweeper]", "-m")
+    assert (ending.code, ending.out) == (2, "")
+    assert f"sweeper.yaml: 'experiment/x_global_.hydra/sweeper' {WHY}" in ending.err
 
 
 def test_code_as_a_value_of_ours_is_only_a_wrong_value(stranger):
