@@ -13,6 +13,9 @@ from numpy.typing import NDArray
 
 Words = NDArray[np.uint32]
 
+MISMATCH, JOINT_TORQUES, TIP, COMPUTATION = (2**32 - n for n in (1, 2, 3, 4))
+"""Places of these draws in `[seed, repetition, place]`; the places of control loops and wrist sensor count from 0."""
+
 _POOL = 4  # words of 32 bits
 _INIT_A, _MULT_A = 0x43B0D7E5, 0x931E8875
 _INIT_B, _MULT_B = 0x8B51F9DD, 0x58F38DED

@@ -25,13 +25,12 @@ from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo
 from runner.robots.mismatch import nominal_robot
 from runner.robots.robot import Robot
+from runner.sensing.streams import MISMATCH
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
 from runner.simulation.compiled.compile import compile_commands, compile_program, describe_program, find_commands
 from runner.simulation.contact import add_wall, touches_by_tip
 from runner.trajectories.joint_motion import TipOfJoints
-
-_MISMATCH = 2**32 - 1  # in the seeds of nominal models; the loops' places count from 0
 
 
 def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
@@ -132,7 +131,7 @@ def find_start(config: RunConfig) -> FloatArray:
 
 def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
     """Return the nominal robot of the controllers, and their loops."""
-    generator = np.random.default_rng([config.settings.seed, repetition, _MISMATCH])
+    generator = np.random.default_rng([config.settings.seed, repetition, MISMATCH])
     payload = np.array(config.robot.payload.position)
     nominal = nominal_robot(config.arm, config.mismatch, payload, generator, config.plugged.get("mismatch"))
     nominal = with_nominal_links(config, with_nominal_motors(config, nominal))

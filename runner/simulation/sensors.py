@@ -26,10 +26,9 @@ from runner.sensing import (
     WristSensor,
 )
 from runner.sensing.endpoint import EndpointSensor
+from runner.sensing.streams import COMPUTATION, JOINT_TORQUES, TIP
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.recorder import CommandTiming, Recorder
-
-_TIP_SEED = 2**32 - 3  # in the seeds of these sensors; the loops' places count from 0, others are 2**32 - 2 and - 1
 
 
 class MeasuredTip:
@@ -80,7 +79,7 @@ def make_measured_tips(closed: ClosedLoop, config: RunConfig, repetition: int) -
                 loop.period,
                 config.endpoint_sensor,
                 ticks[loop.name],
-                np.random.default_rng([config.settings.seed, repetition, _TIP_SEED, place]),
+                np.random.default_rng([config.settings.seed, repetition, TIP, place]),
             ),
             closed.plant,
             closed.robot.model,
@@ -94,11 +93,6 @@ def make_measured_tips(closed: ClosedLoop, config: RunConfig, repetition: int) -
 def _moves(arm: RobotModel, q: FloatArray, dq: FloatArray) -> FloatArray:
     """Return position and velocity of an arm's tip, shape (2, 3), in m and m/s."""
     return np.array([arm.tip_position(q), arm.tip_jacobian(q)[:3] @ dq])
-
-
-_TORQUE_SEED = (
-    2**32 - 2
-)  # in the seeds of these sensors; the loops' places count from 0, and nominal models have 2**32 - 1
 
 
 @dataclass
@@ -152,14 +146,11 @@ def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: 
     plugged = config.plugged.get("joint_torque_sensor")
     if config.joint_torques is None and plugged is None:
         return None
-    generator = np.random.default_rng([config.settings.seed, repetition, _TORQUE_SEED])
+    generator = np.random.default_rng([config.settings.seed, repetition, JOINT_TORQUES])
     if plugged is not None:
         return JOINT_TORQUE_SENSORS.build(plugged, closed.robot.model.joint_names, closed.ticks + 1, generator)
     assert config.joint_torques is not None  # noqa: S101 - one of both is there
     return JointTorqueSensor(closed.ticks + 1, *config.joint_torques, generator)
-
-
-_COMPUTATION = 2**32 - 4  # in the seeds; the loops' places count from 0, others are 2**32 - 3 to - 1
 
 
 def make_sensors(
@@ -203,7 +194,7 @@ def make_command_timing(closed: ClosedLoop, config: RunConfig, repetition: int) 
     computation, seed = computation_of(config.plant), config.settings.seed
     rows = [
         computation.arrivals(
-            late, closed.every(loop), closed.ticks + 1, np.random.default_rng([seed, repetition, _COMPUTATION, place])
+            late, closed.every(loop), closed.ticks + 1, np.random.default_rng([seed, repetition, COMPUTATION, place])
         )
         for place, (loop, late) in enumerate(zip(closed.loops, config.timing.late, strict=True))
     ]
