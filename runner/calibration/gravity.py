@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtri
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
@@ -46,6 +45,8 @@ class GravityCalibration:
 
     def confidence_intervals(self, level: float) -> FloatArray:
         """Return lower and upper end of each parameter's interval at a level such as 0.95, shape (2, 11)."""
+        from scipy.special import ndtri  # for few configs
+
         half = ndtri(0.5 * (1.0 + level)) * np.sqrt(np.diagonal(self.covariance))
         return np.array([self.values - half, self.values + half])
 

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 
 
 @dataclass(frozen=True)

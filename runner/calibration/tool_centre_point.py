@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 from runner.sensing.wrench import cross_matrix
 
 MIN_SINGULAR_VALUE = 0.01

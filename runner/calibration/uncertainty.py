@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import gammaincinv
 
 from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
@@ -71,6 +70,8 @@ def consistency(errors: FloatArray, covariances: FloatArray, level: float) -> Co
         covariances: What each repetition gave as its covariance, shape (N, n, n).
         level: Probability of the band, such as 0.99, its two tails alike.
     """
+    from scipy.special import gammaincinv  # for few configs
+
     normalised = np.einsum("ij,ij->i", errors, np.linalg.solve(covariances, errors[..., None])[..., 0])
     freedom = errors.size
     lower, upper = 2.0 * gammaincinv(0.5 * freedom, [0.5 * (1.0 - level), 0.5 * (1.0 + level)]) / len(errors)

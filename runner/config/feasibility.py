@@ -5,10 +5,10 @@ import math
 from typing import cast
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, SimulationError
+from runner.base.lazy_modules import pin
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop, PositionController
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
 

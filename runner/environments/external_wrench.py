@@ -1,9 +1,9 @@
 """External wrenches on the arm, the equivalent joint torques, and the load on the wrist sensor."""
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.environments import Environment, LoadsJoints, PushesLinks
 from runner.environments.link_forces import LinkForces
 from runner.robots.robot import Robot
@@ -90,7 +90,7 @@ class Interaction:
         R = self._data.oMf[self._flange].rotation
         return np.concatenate([wrench[:3] @ R, wrench[3:] @ R])
 
-    def _load_on_flange(self, tip: pin.SE3) -> FloatArray:
+    def _load_on_flange(self, tip: "pin.SE3") -> FloatArray:
         model, data = self._model, self._data
         flange = pin.updateFramePlacement(model, data, self._flange)
         from_base = pin.SE3(flange.rotation.T, flange.rotation.T @ (tip.translation - flange.translation))

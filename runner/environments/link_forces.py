@@ -1,10 +1,10 @@
 """External forces at points of links, and the equivalent joint torques."""
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
+from runner.base.lazy_modules import pin
 from runner.base.sanitize import quoted
 from runner.environments import PushesLinks
 from runner.sensing.wrench import cross_matrix
@@ -25,7 +25,7 @@ class LinkForces:
         ConfigError: if a link is none of the arm's.
     """
 
-    def __init__(self, environment: PushesLinks, model: pin.Model) -> None:
+    def __init__(self, environment: PushesLinks, model: "pin.Model") -> None:
         self._environment = environment
         links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
         points = environment.points
@@ -38,7 +38,7 @@ class LinkForces:
             )
         self._points = [(model.getFrameId(link), np.array(point, dtype=np.float64)) for link, point in points.items()]
 
-    def torques(self, time: float, model: pin.Model, data: pin.Data, dq: FloatArray) -> FloatArray:
+    def torques(self, time: float, model: "pin.Model", data: "pin.Data", dq: FloatArray) -> FloatArray:
         """Return the joint torques of the forces, shape (nq,), in N m.
 
         Args:

@@ -4,10 +4,10 @@ import struct
 from typing import Literal
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.engine_output import quiet_stderr
+from runner.base.lazy_modules import pin
 from runner.plants.bullet_servers import SERVERS
 from runner.plants.compiled_motion import compile_links_torque
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant

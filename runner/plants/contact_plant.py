@@ -3,9 +3,9 @@
 from typing import Protocol
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.plants.friction import friction_of
 from runner.plants.plant import Plant, push
 from runner.robots.model import RobotModel

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.plants.compiled_flexible import compile_flexible
 from runner.robots.model import RobotModel
 from runner.robots.modes import largest_rate

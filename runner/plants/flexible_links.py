@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
+from runner.base.lazy_modules import pin
 from runner.plants.flexible_joints import runge_kutta
 from runner.robots.chain import Chain
 

@@ -3,10 +3,9 @@
 from typing import Protocol, runtime_checkable
 
 import numpy as np
-import pinocchio as pin
-from scipy.linalg.lapack import dposv
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import lapack, pin
 from runner.plants.plant import Plant, PlantWrapper, ReportsContact
 from runner.robots.model import RobotModel
 
@@ -69,7 +68,7 @@ class Frictional:
         M = np.triu(pin.crba(model, data, self.q))  # crba fills the upper triangle only
         M += np.triu(M, 1).T
         pushed = M @ self.dq + h * (tau + self._contact_torque() - bias)
-        _, columns, _ = dposv(M + np.diag(self._damping), np.column_stack([pushed, h * np.eye(len(tau))]))
+        _, columns, _ = lapack.dposv(M + np.diag(self._damping), np.column_stack([pushed, h * np.eye(len(tau))]))
         speed, mobility = columns[:, 0], columns[:, 1:]
         mu, self._direction = stopping_torques(mobility, speed, self._coulomb, self._direction)
         self.friction = self._viscous * (speed - mobility @ mu) + mu

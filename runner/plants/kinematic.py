@@ -3,9 +3,9 @@
 from typing import Literal
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.plants.computation import ComputationConfig
 from runner.plants.plant import Plant
 from runner.plants.servo import SetPoints

@@ -4,11 +4,11 @@ from typing import Literal
 
 import mujoco
 import numpy as np
-import pinocchio as pin
 from pydantic import Field
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 from runner.plants.decoupled import TorquePlantConfig, assemble_plant
 from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig

@@ -6,9 +6,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import pinocchio as pin
 
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 from runner.robots.tool_link import TOOL_MOUNT
 
 # Links stay bodies of their own, so that a tool has a reaction in its mount.

@@ -3,9 +3,9 @@
 from typing import Literal
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.plants.compiled_motion import compile_motion
 from runner.plants.decoupled import Motion, TorquePlantConfig, assemble_plant, find_motion
 from runner.plants.flexible_config import FlexibleJointsConfig

@@ -4,7 +4,6 @@ from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
-from scipy.linalg import eigh
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
@@ -121,6 +120,8 @@ class Rk4FlexibleLinksConfig(StrictModel):
         .. math:: D = M \Phi \, \mathrm{diag}(2 \zeta \omega) \, \Phi^T M, \qquad
             K \Phi = M \Phi \omega^2, \quad \Phi^T M \Phi = 1
         """
+        from scipy.linalg import eigh  # for few configs
+
         chain = self.chain(robot)
         M = chain.mass_matrix(robot.home)[np.ix_(chain.springs, chain.springs)]
         squares, modes = eigh(np.diag(chain.stiffness), M)

@@ -1,11 +1,10 @@
 """Joint position servos of a torque-driven arm, with their set-points."""
 
 import numpy as np
-import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
-from scipy.linalg.lapack import dposv
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import lapack, pin
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel
@@ -131,7 +130,7 @@ class ServoLaw:
         slip = velocity - dq
         np.einsum("ii->i", M)[:] += self._added_inertia
         asked = spring + self._damping * slip + G
-        _, ddq, _ = dposv(M, asked - bias)
+        _, ddq, _ = lapack.dposv(M, asked - bias)
         tau: FloatArray = asked - self._added_inertia * ddq
         return tau
 

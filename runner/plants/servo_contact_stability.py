@@ -9,10 +9,9 @@ servos, arm and wall. It assumes permanent contact, no active limits, no joint f
 from dataclasses import dataclass, replace
 
 import numpy as np
-import pinocchio as pin
-from scipy.linalg import expm
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.controllers.force.admittance_filter import Admittance, discretise
 from runner.plants.servo import ServoLaw
 from runner.robots.robot import Robot
@@ -183,6 +182,8 @@ def _arm(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
     Returns:
         Shapes (2 nq, 2 nq) and (2 nq, nq).
     """
+    from scipy.linalg import expm  # for few configs
+
     model, q = contact.arm.model, contact.q
     n, h = model.nq, contact.step
     M = model.mass_matrix(q)

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
 
@@ -58,7 +58,7 @@ class Part:
     begin: float
     end: float
 
-    def rod(self, beam: Beam, length: float, along: FloatArray) -> pin.Inertia:
+    def rod(self, beam: Beam, length: float, along: FloatArray) -> "pin.Inertia":
         """Return the inertia of a part of a beam, a thin rod, about where it begins."""
         own = self.end - self.begin
         mass = beam.mass * own / length
@@ -104,7 +104,7 @@ class Chain:
         stiffness: Of the springs, shape (k,), in N m/rad.
     """
 
-    pin_model: pin.Model
+    pin_model: "pin.Model"
     motors: np.ndarray
     springs: np.ndarray
     stiffness: FloatArray
@@ -167,7 +167,7 @@ class _Link:
     cuts: FloatArray
     along: FloatArray
 
-    def place(self, placement: pin.SE3) -> tuple[int, pin.SE3]:
+    def place(self, placement: "pin.SE3") -> "tuple[int, pin.SE3]":
         """Return the part on which a place of the rigid link stands, and the place in that part's frame."""
         part, begin = self.part(placement.translation)
         return part, pin.SE3(placement.rotation, placement.translation - begin)
@@ -188,7 +188,7 @@ class _Making:
         stiffness: Of these, in N m/rad.
     """
 
-    model: pin.Model
+    model: "pin.Model"
     springs: list[int] = field(default_factory=list)
     stiffness: list[float] = field(default_factory=list)
 
@@ -210,7 +210,7 @@ class _Making:
         return _Link(tuple(joints), np.array([piece.begin for piece in pieces[1:]]), along)
 
 
-def _planes(model: pin.Model, joint: int, along: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _planes(model: "pin.Model", joint: int, along: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the axes about which a link bends: the nearest to its joint's axis across it, and the other."""
     data = model.joints[joint].createData()
     model.joints[joint].calc(data, np.zeros(1))

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Annotated, TypeVar
 
 import numpy as np
-import pinocchio as pin
 from pydantic import Field, NonNegativeFloat, TypeAdapter, ValidationError
 
 from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.base.errors import ConfigError, nearest
+from runner.base.lazy_modules import pin
 from runner.base.limits import ExcessError, read_text
 from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
@@ -188,7 +188,7 @@ _ROUNDING = 1e-6  # of the largest moment: files print few digits
 _UPPER = tuple(itertools.combinations_with_replacement(range(3), 2))
 
 
-def _own_inertia(link: ET.Element) -> pin.Inertia:
+def _own_inertia(link: ET.Element) -> "pin.Inertia":
     """Return a link's inertia in its inertial frame, whose origin is its centre of mass."""
     mass = link.find("inertial/mass")
     return pin.Inertia(math.nan if mass is None else float(mass.get("value", "nan")), np.zeros(3), _tensor(link))
@@ -203,7 +203,7 @@ def _tensor(link: ET.Element) -> np.ndarray:
     return tensor
 
 
-def place_of(element: ET.Element | None) -> pin.SE3:
+def place_of(element: ET.Element | None) -> "pin.SE3":
     """Return the frame that the `<origin>` of a joint or an inertial gives, in that of the link that bears it."""
     origin = None if element is None else element.find("origin")
     xyz, rpy = ("0 0 0", "0 0 0") if origin is None else (origin.get("xyz", "0 0 0"), origin.get("rpy", "0 0 0"))

@@ -5,11 +5,10 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import wraps
 
 import numpy as np
-import pinocchio as pin
-from scipy.linalg.lapack import dgesv
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import lapack, pin
 from runner.robots.model import RobotModel
 from runner.robots.task_space import task_basis
 
@@ -222,7 +221,7 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
         # The damping vanishes with the error: Newton's speed near the solution, no leaps near a singular posture.
         square, added = J.dot(J.T), 1e-3 * left
         square.flat[:: len(error) + 1] += added
-        _, _, solution, singular = dgesv(square, error)
+        _, _, solution, singular = lapack.dgesv(square, error)
         if singular:
             raise np.linalg.LinAlgError("the tip's Jacobian is singular")
         step = J.T.dot(solution)

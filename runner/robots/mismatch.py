@@ -4,11 +4,11 @@ import copy
 from typing import Annotated, Any
 
 import numpy as np
-import pinocchio as pin
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 from runner.plugins.registry import KindConfig, Registry
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, with_models
@@ -130,5 +130,5 @@ def scale_model(
     return changed
 
 
-def _scale(inertia: pin.Inertia, mass: float, centre: float) -> pin.Inertia:
+def _scale(inertia: "pin.Inertia", mass: float, centre: float) -> "pin.Inertia":
     return pin.Inertia(mass * inertia.mass, centre * inertia.lever, mass * inertia.inertia)

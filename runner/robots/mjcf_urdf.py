@@ -6,9 +6,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.robots.inertials import make_massless, write_inertial
 
 _NO_LIMIT = 1e6  # what the runner takes for none, in SI units
@@ -129,7 +129,7 @@ def _write_joints(
         _write_joint(robot, f"{name}_fixed", "fixed", parent, name, place * pin.SE3(np.eye(3), -offset))
 
 
-def _back_by_ref(model: Any, joint: int) -> pin.SE3:
+def _back_by_ref(model: Any, joint: int) -> "pin.SE3":
     """Return the motion back from where MuJoCo draws a joint, at its `ref`, to zero."""
     axis, ref = model.jnt_axis[joint], float(model.qpos0[model.jnt_qposadr[joint]])
     if model.jnt_type[joint] == _HINGE:
@@ -137,12 +137,12 @@ def _back_by_ref(model: Any, joint: int) -> pin.SE3:
     return pin.SE3(np.eye(3), -ref * axis)
 
 
-def _frame(positions: FloatArray, quaternions: FloatArray, index: int) -> pin.SE3:
+def _frame(positions: FloatArray, quaternions: FloatArray, index: int) -> "pin.SE3":
     w, x, y, z = quaternions[index]
     return pin.SE3(pin.Quaternion(w, x, y, z).normalized().toRotationMatrix(), positions[index].copy())
 
 
-def _write_joint(robot: ET.Element, name: str, kind: str, parent: str, child: str, place: pin.SE3) -> ET.Element:
+def _write_joint(robot: ET.Element, name: str, kind: str, parent: str, child: str, place: "pin.SE3") -> ET.Element:
     joint = ET.SubElement(robot, "joint", name=name, type=kind)
     ET.SubElement(joint, "parent", link=parent)
     ET.SubElement(joint, "child", link=child)

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.engine_output import caught_output
 from runner.base.errors import ConfigError, nearest
+from runner.base.lazy_modules import pin
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
@@ -253,7 +253,7 @@ class RobotModel:
         return origin
 
 
-def _build(urdf: str) -> pin.Model:
+def _build(urdf: str) -> "pin.Model":
     model, said = _read(urdf)
     if said:  # of a shape that is unknown to Pinocchio: none is part of a model
         model, said = _read(_without_shapes(urdf))
@@ -272,7 +272,7 @@ def _armature(urdf: str, joints: Sequence[str]) -> FloatArray:
     return np.array([0.0 if value is None else float(value.get("armature", "0")) for value in values])
 
 
-def _read(urdf: str) -> tuple[pin.Model, list[str]]:
+def _read(urdf: str) -> "tuple[pin.Model, list[str]]":
     """Return the model of a URDF's text, and what was said while it was made."""
     said: list[str] = []
     try:
@@ -290,11 +290,11 @@ def _without_shapes(urdf: str) -> str:
     return ET.tostring(robot, encoding="unicode")
 
 
-def _is_prismatic(joint: pin.JointModel) -> bool:
+def _is_prismatic(joint: "pin.JointModel") -> bool:
     return bool(joint.shortname().startswith("JointModelP"))
 
 
-def _check_joints(model: pin.Model, names: Sequence[str]) -> None:
+def _check_joints(model: "pin.Model", names: Sequence[str]) -> None:
     problems = []
     if not 1 <= len(names) <= _MOST_JOINTS:
         problems.append(f"robot.urdf: {len(names) or 'no'} joints that move; allowed: 1 to {_MOST_JOINTS}")

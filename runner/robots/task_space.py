@@ -3,7 +3,6 @@
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import block_diag
 
 from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
@@ -31,7 +30,11 @@ def task_basis(model: RobotModel, pose: bool) -> FloatArray:
     postures = np.random.default_rng(0).uniform(lower, upper, (_POSTURES, model.nq))
     columns = np.hstack([model.tip_jacobian(q) for q in postures])
     linear = _span(columns[:3])
-    directions = np.array(block_diag(linear, _span(columns[3:])) if pose else linear)
+    directions = np.array(linear)
+    if pose:
+        from scipy.linalg import block_diag  # for few configs
+
+        directions = block_diag(linear, _span(columns[3:]))
     directions.flags.writeable = False
     return directions
 

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 from runner.robots.inertials import impossible_inertia
 
 TOOL, TOOL_TIP, TOOL_MOUNT = "tool", "tool_tip", "tool_mount"
@@ -78,7 +78,7 @@ def mount_tool(urdf: str, flange: str, tool: ToolBody) -> str:
     return ET.tostring(robot, encoding="unicode")
 
 
-def find_tool(model: pin.Model, flange: int) -> pin.Inertia:
+def find_tool(model: "pin.Model", flange: int) -> "pin.Inertia":
     """Return the inertia of the tool on a flange, in its frame; zero where there is none."""
     if not model.existFrame(TOOL_MOUNT):
         return pin.Inertia.Zero()
@@ -86,7 +86,9 @@ def find_tool(model: pin.Model, flange: int) -> pin.Inertia:
     return (model.frames[flange].placement.inverse() * mount.placement).act(mount.inertia)
 
 
-def holding_wrench(model: pin.Model, data: pin.Data, flange: int, tool: pin.Inertia, gravity: np.ndarray) -> np.ndarray:
+def holding_wrench(
+    model: "pin.Model", data: "pin.Data", flange: int, tool: "pin.Inertia", gravity: np.ndarray
+) -> np.ndarray:
     """Return what a flange puts on its tool to bear and to move it, by the tool's rigid-body balance.
 
     Args:

@@ -5,9 +5,9 @@ from math import floor
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dgesv, dposv, dpotrf
+
+from runner.base.lazy_modules import lapack, pin
 
 Array = NDArray[Any]
 """Of floats, or of objects that stand for numbers."""
@@ -98,7 +98,7 @@ class _NumpyBackend:
         return float(np.sqrt(a))
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Scalar]:
-        lu, pivots, solution, info = dgesv(A, b)
+        lu, pivots, solution, info = lapack.dgesv(A, b)
         if info and singular is not None:
             raise np.linalg.LinAlgError(singular)
         swaps = int(pivots[0] != 0) + int(pivots[1] != 1)
@@ -106,13 +106,13 @@ class _NumpyBackend:
         return solution, -determinant if swaps == 1 else determinant
 
     def solve_symmetric(self, A: Array, b: Array, singular: str | None) -> Array:
-        _, solution, info = dposv(A, b)
+        _, solution, info = lapack.dposv(A, b)
         if info and singular is not None:
             raise np.linalg.LinAlgError(singular)
         return np.asarray(solution)
 
     def positive_definite(self, A: Array) -> Scalar:
-        return dpotrf(A)[1] == 0
+        return lapack.dpotrf(A)[1] == 0
 
     def smallest_eigenvalue(self, A: Array) -> Scalar:
         return float(np.linalg.eigvalsh(A)[0])

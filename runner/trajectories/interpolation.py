@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import BPoly, CubicSpline
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import splines
 
 Interpolation = Literal["spline", "hermite"]
 
@@ -24,7 +24,7 @@ class Interpolated:
     """
 
     times: FloatArray
-    orders: Sequence[CubicSpline | BPoly]
+    orders: "Sequence[splines.CubicSpline | splines.BPoly]"
 
     @property
     def duration(self) -> float:
@@ -57,7 +57,7 @@ def interpolate(times: FloatArray, rows: FloatArray, kind: Interpolation) -> Int
         kind: Which of them.
     """
     if kind == "spline":
-        spline = CubicSpline(times, rows[:, 0], bc_type="clamped")
+        spline = splines.CubicSpline(times, rows[:, 0], bc_type="clamped")
         return Interpolated(times, (spline, spline.derivative(1), spline.derivative(2)))
-    curve = BPoly.from_derivatives(times, rows)
+    curve = splines.BPoly.from_derivatives(times, rows)
     return Interpolated(times, (curve, curve.derivative(1), curve.derivative(2)))

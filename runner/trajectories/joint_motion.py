@@ -6,10 +6,10 @@ from functools import cached_property
 from typing import Annotated, Any, Protocol
 
 import numpy as np
-import pinocchio as pin
 from pydantic import BeforeValidator
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
 from runner.schema.per_joint import expand

@@ -5,10 +5,10 @@ from typing import Literal
 
 import numpy as np
 from pydantic import PositiveFloat, ValidationInfo, field_validator
-from scipy.interpolate import BSpline
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import splines
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import JointPosition, Seconds
@@ -62,7 +62,7 @@ class JointWaypoints:
         samples: Samples of all parts together.
     """
 
-    spline: BSpline
+    spline: "splines.BSpline"
     duration: float
     samples: int
 

@@ -6,10 +6,10 @@ from typing import Literal
 
 import numpy as np
 from pydantic import PositiveFloat, ValidationInfo, field_validator
-from scipy.interpolate import BSpline, make_interp_spline
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import splines
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
 from runner.trajectories.nearest import distance_to_curve
@@ -85,7 +85,7 @@ class Waypoints(TrackedMotion):
 
     points: FloatArray
     times: FloatArray
-    spline: BSpline
+    spline: "splines.BSpline"
 
     @property
     def start(self) -> FloatArray:
@@ -125,10 +125,10 @@ def passing_times(lengths: FloatArray, shares: list[float] | None, duration: flo
     return times
 
 
-def least_jerk_spline(points: FloatArray, times: FloatArray) -> BSpline:
+def least_jerk_spline(points: FloatArray, times: FloatArray) -> "splines.BSpline":
     """Return the spline of least jerk from rest to rest through points at times, shapes (N, k) and (N,)."""
     rest = [(order, np.zeros(points.shape[1])) for order in (1, 2)]
-    return make_interp_spline(times, points, k=5, bc_type=(rest, rest))
+    return splines.make_interp_spline(times, points, k=5, bc_type=(rest, rest))
 
 
 CONFIG = WaypointsConfig

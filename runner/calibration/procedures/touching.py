@@ -3,11 +3,11 @@
 from typing import Annotated
 
 import numpy as np
-import pinocchio as pin
 from pydantic import Field, NonNegativeFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 from runner.base.sanitize import quoted
 from runner.calibration.procedures.bench import Bench
 from runner.robots.inverse_kinematics import solve_tip_pose

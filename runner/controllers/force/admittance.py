@@ -3,10 +3,10 @@
 from typing import Annotated, Literal
 
 import numpy as np
-import pinocchio as pin
 from pydantic import Field, PositiveFloat
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.controllers.controller import Loop
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
 from runner.controllers.force.wrist import Compensation, ToolCompensation

@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
-from scipy.linalg import expm
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 
 AXES = ("x", "y", "z", "rotation x", "rotation y", "rotation z")
 
@@ -65,6 +64,8 @@ def discretise(law: Admittance, period: float) -> tuple[FloatArray, FloatArray]:
     Returns:
         Phi, shape (6, 2, 2), and Gamma, shape (6, 2): (x, dx) at the next sample is Phi (x, dx) + Gamma f.
     """
+    from scipy.linalg import expm  # for few configs
+
     continuous = np.zeros((6, 3, 3))
     continuous[:, 0, 1] = 1.0
     continuous[:, 1] = np.column_stack([-law.stiffness, -law.damping, np.ones(6)]) / law.mass[:, None]

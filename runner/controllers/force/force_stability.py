@@ -3,7 +3,6 @@
 from typing import Protocol
 
 import numpy as np
-from scipy.linalg import expm
 
 from runner.base.arrays import FloatArray
 
@@ -63,6 +62,8 @@ def touch_radius(
 
 def _radius(passive: FloatArray, gain: FloatArray, delay: int) -> float:
     """Return the spectral radius of a unit mass under passive . (x, v) and a held push gain . (x, v), a period long."""
+    from scipy.linalg import expm  # for few configs
+
     step = expm(np.array([[0.0, 1.0, 0.0], [*passive, 1.0], [0.0, 0.0, 0.0]]))
     motion, push = step[:2, :2], step[:2, 2]
     goes: FloatArray = np.zeros((2 + delay, 2 + delay))  # position, velocity, and the pushes to come, the next first

@@ -3,9 +3,9 @@
 from typing import Literal
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import pin
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.force_torque import ForceTorqueConfig

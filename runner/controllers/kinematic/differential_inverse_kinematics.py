@@ -3,11 +3,11 @@
 from typing import Literal
 
 import numpy as np
-import pinocchio as pin
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 from runner.controllers.controller import Loop
 from runner.controllers.kinematic.resolved_rate import ResolvedRate
 from runner.controllers.operational_space.null_space import NullSpaceConfig, NullSpaceTask

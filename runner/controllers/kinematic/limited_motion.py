@@ -1,10 +1,10 @@
 """Tip pose tracking within joint position and speed limits, and a continuous reference for jumps."""
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 from runner.controllers.kinematic.resolved_rate import ResolvedRate
 from runner.robots.model import RobotModel
 from runner.trajectories.blend import quintic_blend
@@ -55,12 +55,12 @@ class LimitedMotion:
         self._q, self._held, self.free = q.copy(), {}, True
 
     @property
-    def tip(self) -> pin.SE3:
+    def tip(self) -> "pin.SE3":
         """Pose of the tip at the last command, in the base frame."""
         pin.framesForwardKinematics(self._model, self._data, self._q)
         return self._data.oMf[self._frame].copy()
 
-    def lead(self, time: float, wanted: pin.SE3) -> tuple[FloatArray, pin.SE3]:
+    def lead(self, time: float, wanted: "pin.SE3") -> "tuple[FloatArray, pin.SE3]":
         """Return the joint positions for a wanted pose, shape (nq,), in rad, and the pose that they reach."""
         J = pin.computeFrameJacobian(self._model, self._data, self._q, self._frame, pin.LOCAL_WORLD_ALIGNED)
         tip = self._data.oMf[self._frame]

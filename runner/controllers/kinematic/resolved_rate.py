@@ -1,9 +1,9 @@
 """Resolved-rate control: weighted, damped and bounded joint velocities with a null-space motion."""
 
 import numpy as np
-from scipy.linalg.lapack import dgesv, dpotrf
 
 from runner.base.arrays import FloatArray
+from runner.base.lazy_modules import lapack
 
 
 class ResolvedRate:
@@ -67,7 +67,7 @@ class ResolvedRate:
         if self._damping and self._is_near(A):
             smallest = max(float(np.linalg.eigvalsh(A)[0]), 0.0)
             A.flat[:: len(A) + 1] += max(self._damping**2 - smallest, 0.0)  # the diagonal
-        _, _, solution, singular = dgesv(A, v - J.dot(dq0))
+        _, _, solution, singular = lapack.dgesv(A, v - J.dot(dq0))
         if singular:
             raise np.linalg.LinAlgError("the tip's Jacobian is singular")
         return np.asarray(dq0 + spread.dot(solution))
@@ -76,4 +76,4 @@ class ResolvedRate:
         """Tell whether an eigenvalue of A lies below the damping's square, which a Cholesky factor shows sooner."""
         above = A.copy()
         above.flat[:: len(A) + 1] -= self._damping**2
-        return bool(dpotrf(above)[1] != 0)
+        return bool(lapack.dpotrf(above)[1] != 0)

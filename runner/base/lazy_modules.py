@@ -1,0 +1,47 @@
+"""Pinocchio and parts of SciPy, imported on first use: checks of a config do not need them."""
+
+from collections.abc import Callable
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pinocchio as pin
+    from scipy import interpolate as splines
+    from scipy.linalg import lapack
+else:
+
+    class _Loaded:
+        """The names of a module."""
+
+    class _LazyModule(_Loaded):
+        """The names of a module that is imported when one of them is first used."""
+
+        def __init__(self, load: Callable[[], ModuleType]) -> None:
+            self._load = load
+
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("__"):
+                raise AttributeError(name)
+            module = self._load()
+            self.__dict__.update(vars(module))
+            self.__class__ = _Loaded  # without this method, a name is found as fast as in a module
+            return getattr(module, name)
+
+    def _pinocchio() -> ModuleType:
+        import pinocchio
+
+        return pinocchio
+
+    def _interpolate() -> ModuleType:
+        from scipy import interpolate
+
+        return interpolate
+
+    def _lapack() -> ModuleType:
+        from scipy.linalg import lapack
+
+        return lapack
+
+    pin, splines, lapack = _LazyModule(_pinocchio), _LazyModule(_interpolate), _LazyModule(_lapack)
+
+__all__ = ["lapack", "pin", "splines"]
