@@ -8,7 +8,7 @@ from omegaconf import DictConfig
 
 
 class RunnerSweeper(Sweeper):
-    """Passes the config of a sweep to the task of `runner`, which makes its runs.
+    """Passes the config of a sweep to the task of `runner`, which simulates its runs.
 
     Args:
         workers: Number of processes on this machine; 0 for the current process.

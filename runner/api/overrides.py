@@ -55,7 +55,9 @@ def tuning_overrides(given: Sequence[str], values: Mapping[str, object]) -> list
 
 
 def _overrides(given: Sequence[str], values: Mapping[str, object], text: Callable[[object], str]) -> list[str]:
-    problems = [f"{quoted(each)} is no override; write KEY=VALUE as a text" for each in given if type(each) is not str]
+    problems = [
+        f"{quoted(each)} is not a valid override; write KEY=VALUE as a text" for each in given if type(each) is not str
+    ]
     found = list(given)
     for name, value in values.items():
         key = name.replace("__", ".")

@@ -172,7 +172,7 @@ class _Scan:
         if event.tag not in (None, "!"):
             yield f"the tag {quoted(event.tag)} says how to make a value; remove it: values are plain"
         if isinstance(event, yaml.ScalarEvent) and calls_function(event.value) and not self._ours:
-            yield f"{quoted(event.value)} calls a function; a file may refer to keys alone, as in ${{robot.period}}"
+            yield f"{quoted(event.value)} calls a function; a file may only refer to keys, as in ${{robot.period}}"
         if self._open[-1].key_next and not self._is_text(event):
             found = quoted(event.value) if isinstance(event, yaml.ScalarEvent) else "a collection"
             yield f"the key {found} is no text; put it in quotes, or look for a typing error"

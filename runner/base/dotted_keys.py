@@ -22,7 +22,7 @@ def leaves(config: object, place: Place = (), lists: bool = True) -> Iterator[tu
         inner = dict(enumerate(config))
     for key, item in inner.items():
         yield from leaves(item, (*place, key), lists)
-    if not inner:
+    if place and not inner:
         yield place, config
 
 

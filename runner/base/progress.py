@@ -62,7 +62,7 @@ class _Display:
 
     @contextlib.contextmanager
     def printing(self, text: str) -> Iterator[None]:
-        """Remove the bar while a text is printed."""
+        """Remove the bar during a print."""
         with self._lock:
             if self._bar is not None:
                 self._bar.clear()
@@ -174,7 +174,7 @@ def _in_notebook() -> bool:
 
 def _bar(stream: TextIO, stage: _Stage, name: str) -> Any:
     """Return the bar of a stage, with elapsed and remaining time; a stage without a unit has elapsed time only."""
-    from tqdm import tqdm  # in the thread that draws, as a short command needs no bar
+    from tqdm import tqdm  # in the thread that draws; a short command does not need it
 
     class Bar(tqdm):  # type: ignore[type-arg]
         monitor_interval = 0  # no second thread

@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from runner.base.dotted_keys import dotted, leaves
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
@@ -210,17 +211,13 @@ def _run_lines(
 
 def _changed_keys(what: str, both: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
     """Return a table of the dotted keys in which two mappings differ, or that they are the same."""
-    a, b = (dict(_flatten(one)) for one in both)
+    a, b = ({dotted(place): _shown(value) for place, value in leaves(one, lists=False)} for one in both)
     rows = [[key, a.get(key, "(absent)"), b.get(key, "(absent)")] for key in {**a, **b} if a.get(key) != b.get(key)]
     return f"{what} differs:\n{align_columns([['key', *names], *rows])}" if rows else f"same {what}"
 
 
-def _flatten(value: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
-    for key, item in value.items():
-        if isinstance(item, Mapping):
-            yield from _flatten(item, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", item if isinstance(item, str) else json.dumps(item)
+def _shown(value: Any) -> str:
+    return value if isinstance(value, str) else json.dumps(value)
 
 
 def _metric_rows(sides: "Sequence[Measurements]", metrics: Sequence[str]) -> Iterator[list[str]]:

@@ -1,7 +1,7 @@
 """`runner OVERRIDES` and `runner -m OVERRIDES`: compose the config, check it, run and store.
 
-Hydra's own command reads lines with flags of Hydra. It returns the overrides of a run or a sweep, which is then made as
-from a line without such flags.
+Hydra's own command reads lines with flags of Hydra. It returns the overrides of a run or a sweep, which is then
+simulated as from a line without such flags.
 """
 
 import shlex
@@ -58,14 +58,14 @@ class _Line:
         self._take(config.hydra)
 
     def _take(self, node: Any) -> None:
-        # Unresolved, as an override may hold an interpolation of the config's keys.
+        # Unresolved, because an override may contain an interpolation.
         found: Any = OmegaConf.to_container(node.overrides, resolve=False)
         of_sweeper = [each for each in found["hydra"] if each.startswith(_OF_SWEEPER)]
         self.overrides, self.root = [*found["task"], *of_sweeper], node.job.config_name
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Make the run or the sweep of a command line; print the folder made as the last line."""
+    """Simulate the run or the sweep of a command line; print its folder as the last line."""
     quiet_environment()
     words, config_dirs = _take_config_dirs(arguments)
     if any(word.startswith("-") and word not in _SWEEP for word in words):
@@ -83,7 +83,7 @@ def main(arguments: Sequence[str]) -> int:
         command = shlex.join(["runner", *arguments])
         return tell_sweep(sweep_typed(ours, composer.sweeper(overrides), composer, command))
     composed = compose(overrides, config_dirs, line.root)
-    from runner.sweeps.job import find_or_make  # after the config has composed: bad input is answered at once
+    from runner.sweeps.job import find_or_make  # after the composition, so that errors are reported at once
 
     run, made = find_or_make(composed)
     return tell_run(run, made, composed.resolved.get("caveats"))
@@ -112,7 +112,7 @@ def _take_config_dirs(arguments: Sequence[str]) -> tuple[list[str], list[Path]]:
 
 
 def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
-    """Let Hydra's command carry out a line with flags of its own, once its config has composed; return what is left."""
+    """Let Hydra's command read a line with flags of Hydra, after its config has composed; return its overrides."""
     line = _Line()
     if {"-sc", "--shell-completion"}.isdisjoint(words):
         words = [*user_overrides(), *force(words)]
@@ -121,9 +121,8 @@ def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
     try:
         if not (given.hydra_help or given.shell_completion):
             mode = RunMode.MULTIRUN if given.multirun else RunMode.RUN
-            Composer(config_dirs).load(
-                given.overrides, given.config_name or "config", mode
-            )  # checks what Hydra does not
+            root = given.config_name or "config"
+            Composer(config_dirs, root).load(given.overrides, mode=mode)  # checks what Hydra does not
         with checked_sources([folder.resolve() for folder in config_dirs]):
             # The absolute path works from a console script and from a wheel, where a relative one does not.
             hydra.main(version_base="1.3", config_path=str(conf_dir()), config_name="config")(line)()

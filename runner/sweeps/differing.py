@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.cache import Memory
+from runner.base.dotted_keys import dotted, leaves
 from runner.store import Run, simulated_part
 
 if TYPE_CHECKING:
@@ -235,13 +236,9 @@ def _flat(name: str, value: Any) -> dict[str, str]:
     return dict(entries({name: value}))
 
 
-def entries(config: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
-    """Yield the values of a config by their dotted keys, as texts."""
-    for key, value in config.items():
-        if isinstance(value, Mapping) and value:
-            yield from entries(value, f"{prefix}{key}.")
-        else:
-            yield f"{prefix}{key}", value_text(value)
+def entries(config: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield the values of a config by their dotted keys, as strings."""
+    return ((dotted(place), value_text(value)) for place, value in leaves(config, lists=False))
 
 
 def value_text(value: Any) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from runner.base import progress
 from runner.base.arrays import FloatArray
+from runner.base.dotted_keys import get
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.sanitize import few, quoted
 from runner.store import Finished, Run, Sweep, open_sweep
@@ -166,13 +167,7 @@ class Measurements:
 
     def resolved(self, key: str) -> list[Any]:
         """Return the resolved value of a dotted key in each config; a mapping of a group, None where there is none."""
-        values = []
-        for config, _ in self.configs:
-            value: Any = config
-            for part in key.split("."):
-                value = value.get(part) if isinstance(value, dict) else None
-            values.append(value)
-        return values
+        return [get(config, key) for config, _ in self.configs]
 
     @cached_property
     def copies(self) -> NDArray[np.bool_]:

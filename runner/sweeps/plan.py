@@ -134,7 +134,7 @@ class Grid(Plan):
         source: Composes the configs.
 
     Raises:
-        ConfigError: for what is no override, and for a key that is swept over no value.
+        ConfigError: for what is not a valid override, and for a key that is swept over no value.
     """
 
     def __init__(self, arguments: Sequence[str], source: Composer) -> None:
@@ -235,7 +235,7 @@ class Listed(Plan):
         loader: Composes the configs.
 
     Raises:
-        ConfigError: for what is no override.
+        ConfigError: for what is not a valid override.
     """
 
     def __init__(self, items: Mapping[str, Item], shared: Sequence[str], loader: Composer) -> None:

@@ -54,7 +54,7 @@ def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigL
         loader: Hydra's loader, which knows what `glob(*)` stands for.
 
     Raises:
-        ConfigError: for what is no override, for a key that is swept over no value, and for too many cells.
+        ConfigError: for what is not a valid override, for a key that is swept over no value, and for too many cells.
     """
     try:
         overrides = OverridesParser.create(config_loader=loader).parse_overrides(list(arguments))

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from runner.config.compose.units import Place, leaves, set_value, unit_at
+from runner.base.dotted_keys import Place, leaves, put
+from runner.config.compose.units import unit_at
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
 from runner.robots.armature import with_armature
@@ -91,7 +92,7 @@ class Key:
     def _with(self, numbers: Mapping[Place, float]) -> RunConfig:
         changed: Any = copy.deepcopy(dict(self.config.resolved))
         for place, number in numbers.items():
-            set_value(changed, place, number)
+            put(changed, place, number)
         return self.recomposed(f"{self.name}={json.dumps(reduce(getitem, self.name.split('.'), changed))}")
 
 

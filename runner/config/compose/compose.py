@@ -18,13 +18,13 @@ from runner.config.compose.units import to_si
 
 @dataclass(frozen=True)
 class Composed:
-    """A composed config that nobody has checked yet.
+    """A composed config before validation.
 
     Attributes:
         resolved: The config as plain data, interpolations resolved, quantities such as 20ms in SI units.
         overrides: The overrides that it was composed with, as typed.
         choices: The option chosen in each group, such as {"robot": "macro"}.
-        config_dirs: Config folders of the user's.
+        config_dirs: Config folders of the user.
         root: Name of the file in conf/ that the groups hang on: "config" of a run, "calibrate" of a calibration.
     """
 
@@ -40,7 +40,7 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: st
 
     Args:
         overrides: Hydra overrides, such as "robot=macro" and "noise.position=1e-3".
-        config_dirs: Config folders of the user, searched with ours.
+        config_dirs: Config folders of the user.
         root: Name of the file in conf/ that the groups hang on.
 
     Raises:
@@ -58,18 +58,18 @@ def from_hydra(
     config_dirs: Sequence[Path],
     root: str = "config",
 ) -> Composed:
-    """Take a config as Hydra made it, and resolve it.
+    """Resolve a config that Hydra composed.
 
     Args:
         config: The config, with or without Hydra's own node; it is completed in place.
-        chosen: What Hydra took in each group, its own groups included.
+        chosen: The option of each group, with the groups of Hydra.
         overrides: The overrides, as typed.
-        config_dirs: Config folders of the user's.
-        root: Name of the file in conf/ that it hangs on.
+        config_dirs: Config folders of the user.
+        root: Name of its file in conf/.
 
     Raises:
-        ConfigError: for an interpolation of a key that does not exist, a key that is no text, or a robot of ours whose
-            file a config folder has under the same name.
+        ConfigError: for an interpolation of a key that does not exist, a key that is not a string, or a built-in robot
+            whose file a config folder has under the same name.
     """
     try:
         choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
@@ -93,10 +93,10 @@ def from_hydra(
 
 
 def _strange_keys(value: object, place: str = "") -> Iterator[str]:
-    """Yield a problem for each key that is no text: no part of the runner has such a key."""
+    """Yield a problem for each key that is not a string: no part of the runner has such a key."""
     if isinstance(value, Mapping):
         for key, item in value.items():
             if isinstance(key, str):
                 yield from _strange_keys(item, f"{place}{key}.")
             else:
-                yield f"{place}{quoted(key)}: the key is no text; put it in quotes, or look for a typing error"
+                yield f"{place}{quoted(key)}: keys must be strings. Put it in quotes, or look for a typing error"

@@ -103,7 +103,7 @@ class Composer:
         return config
 
     def _of_options(self, options: Sequence[Override], root: str, mode: RunMode) -> DictConfig:
-        # Of one group the last option counts; the order of the groups does not.
+        # The last option of a group counts. The order of the groups has no effect.
         lines = tuple(str(each.input_line) for each in sorted(options, key=lambda each: each.key_or_group))
         files = _files(conf_dir(), *self.config_dirs)
         load = _load_options if files is not None else _load_options.__wrapped__
@@ -168,11 +168,16 @@ def _load_options(
 
     The last arguments are the other things that it depends on: the files as they are, and the plant of `default`.
     """
-    return pickle.dumps(Composer(config_dirs).hydra.load_configuration(root, list(options), mode, from_shell=False))
+    config = Composer(config_dirs).hydra.load_configuration(root, list(options), mode, from_shell=False)
+    try:
+        return pickle.dumps(config)
+    except RecursionError:
+        check_composed(config)  # reports that it is nested too deeply
+        raise
 
 
 def _files(*folders: Path) -> Files | None:
-    """Return what is in some folders; None where that is too much to look at, or is not there."""
+    """Return the files in some folders; None if there are too many, or a folder does not exist."""
     try:
         found = tuple(islice((each for folder in folders for each in _below(folder)), _MOST + 1))
     except OSError:

@@ -37,7 +37,9 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
             return ConfigError([f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}"])
     if isinstance(error, OverrideParseException):
         found = one_line(f"'{error.override}'", VALUE)
-        return ConfigError([f"{found} is no override: {one_line(explain_parser(str(error).splitlines()[0]), VALUE)}"])
+        return ConfigError(
+            [f"{found} is not a valid override: {one_line(explain_parser(str(error).splitlines()[0]), VALUE)}"]
+        )
     missing = _LACKING.match(str(error))
     if isinstance(error, InterpolationKeyError) and error.full_key and missing is not None:
         group = missing[1].partition(".")[0]

@@ -57,14 +57,14 @@ def _problem(override: str, names: set[str]) -> str | None:
     if override.startswith("-"):  # a flag
         return f"{override}: a pickle may run code; give the overrides again" if override.startswith("--e") else None
     if len(override) > _CHARACTERS:
-        return f"{quoted(override)} is no override: it is too long; allowed: up to {_CHARACTERS} characters"
+        return f"{quoted(override)} is not a valid override: it is too long; allowed: up to {_CHARACTERS} characters"
     if _depth(value) + key.count(".") > CONFIG.depth:
-        return f"{quoted(override)} is no override: nested deeper than {CONFIG.depth} levels"
+        return f"{quoted(override)} is not a valid override: nested deeper than {CONFIG.depth} levels"
     if calls_function(override.replace("\\", "")):  # Hydra takes them away
-        return f"{quoted(override)} calls a function; a value may refer to keys alone, as in ${{robot.period}}"
+        return f"{quoted(override)} calls a function; a value may only refer to keys, as in ${{robot.period}}"
     fault = find_syntax_error(override)
     if fault:
-        return f"{quoted(override)} is no override: {fault}"
+        return f"{quoted(override)} is not a valid override: {fault}"
     group = key.lstrip("+~").partition("@")[0]
     if (says := SAYS_HOW.search(key)) and says[1] == "hydra" and not _MAY_BE_TYPED.fullmatch(key):
         return f"{key}: is Hydra's own; you may set hydra.sweeper.workers, .address and .params; folders: --config-dir"
@@ -74,7 +74,7 @@ def _problem(override: str, names: set[str]) -> str | None:
 
 
 def _depth(text: str) -> int:
-    """Return how deeply brackets stand within each other in a text."""
+    """Return the depth of nested brackets in a string."""
     deepest = depth = 0
     for sign in text:
         depth += (sign in "[{(") - (sign in ")}]")

@@ -40,10 +40,10 @@ _folders: ContextVar[Sequence[Path] | None] = ContextVar("folders", default=None
 
 @contextlib.contextmanager
 def checked_sources(config_dirs: Sequence[Path]) -> Iterator[None]:
-    """Let Hydra find and read config files by the source of this module only, in our folder and some of the user's.
+    """Let Hydra find and read config files only by the source of this module, in conf/ and in folders of the user.
 
-    In the folder of a study, experiments have the study's name; see study_folder. The one function that a file calls,
-    in conf/plant/default.yaml, is ours.
+    In the folder of a study, experiments have the study's name; see place_in. Only conf/plant/default.yaml calls a
+    function.
     """
     for plugin in (CheckedSource, CheckedSearchPath):
         Plugins.instance().register(plugin)
@@ -99,7 +99,7 @@ class CheckedSource(ConfigSource):
         return self._file(config_path).is_file() and not self._is_hidden(config_path)
 
     def _is_hidden(self, config_path: str) -> bool:
-        """Return True if a folder of the user has the file in vain: one of Hydra, or one outside of the groups."""
+        """Return True for a file of a user's folder that is not read: one of Hydra, or a second root file."""
         return self.provider == _USERS and (
             config_path.startswith("hydra/") or ("/" not in config_path and self._has_ours(config_path))
         )
@@ -125,10 +125,10 @@ class CheckedSource(ConfigSource):
         status = path.stat()
         content, package = pickle.loads(_read(path, status.st_mtime_ns, status.st_size))  # noqa: S301 - made by _read
         if not ships(path):
-            if self.provider == _USERS and self._has_ours(config_path):  # nobody could say which of the two a run has
+            if self.provider == _USERS and self._has_ours(config_path):  # it is unclear which one is meant
                 group, _, option = config_path.rpartition("/")
                 raise ConfigError(
-                    [f"{group}: '{option}' is one of ours, and {path} has the same name; rename that file"]
+                    [f"{group}: '{option}' is a built-in option, and {path} has the same name; rename that file"]
                 )
             _check_settings(content, config_path, package, path)
         return ConfigResult(self.provider, self.full_path(), content, {"package": package})
@@ -155,13 +155,13 @@ def _read(path: Path, *_: int) -> bytes:
     except ExcessError as error:
         raise ConfigError([f"{path}: {error}"]) from None
     except UnicodeDecodeError as error:
-        raise ConfigError([f"{path}: is no text: {error}"]) from None
+        raise ConfigError([f"{path}: is not a text file: {error}"]) from None
     except OSError as error:
         raise ConfigError([f"{path}: {error.strerror or 'holds no mapping of keys'}"]) from None
 
 
 def _check_settings(content: Any, config_path: str, package: str | None, path: Path) -> None:
-    """Check that a file of the user, in its package, says nothing of how or where runs are made."""
+    """Check that a file of the user, in its package, does not set how or where runs are simulated."""
     groups = list(_groups(content))
     refuse_settings(groups, path)
     group = config_path.rpartition("/")[0]

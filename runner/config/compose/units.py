@@ -6,11 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from runner.base.dotted_keys import Place, leaves, put
 from runner.base.errors import ConfigError
 from runner.schema.model import StrictModel
 from runner.schema.units import Unit, explain_quantity, read_quantity
-
-Place = tuple[str | int, ...]
 
 _RANGE = re.compile(r"\b(interval|range)\(([^()]*)\)")
 
@@ -33,30 +32,13 @@ def to_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> None
         for each in unit.at(place):
             value = quantity.in_unit(each)
             if value is not None:
-                set_value(resolved, place, value)
+                put(resolved, place, value)
                 if unit.sliding:
                     of_joints.append((place, str(text), each == unit.sliding))
     joints = _sliding_joints(resolved, config_dirs) if of_joints else {}
     for place, text, slides in of_joints:
         if _of_place(place, joints) - {slides}:
-            set_value(resolved, place, text)
-
-
-def leaves(value: object, place: Place = ()) -> Iterator[tuple[Place, object]]:
-    """Yield the place and value of all that a config holds, in its groups and lists."""
-    inner = value.items() if isinstance(value, Mapping) else enumerate(value) if isinstance(value, list) else None
-    if inner is None:
-        yield place, value
-    else:
-        for key, item in inner:
-            yield from leaves(item, (*place, key))
-
-
-def set_value(config: Any, place: Place, value: object) -> None:
-    """Put a value at a place of a config."""
-    for key in place[:-1]:
-        config = config[key]
-    config[place[-1]] = value
+            put(resolved, place, text)
 
 
 def _sliding_joints(resolved: Mapping[str, object], config_dirs: Sequence[Path]) -> Mapping[str, Mapping[str, bool]]:

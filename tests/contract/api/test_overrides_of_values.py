@@ -96,7 +96,7 @@ def test_all_problems_are_told_at_once():
         sweep_overrides([3], {"a": object(), "b c": 1, "d": [], "e": [{1, 2}], "f": {"g h": 1}})
     told = raised.value.problems
     assert len(told) == 6
-    assert "3 is no override" in told[0]
+    assert "3 is not a valid override" in told[0]
     assert "a: cannot be written as an override" in told[1]
     assert "'b c' is no key" in told[2]
     assert "d: is swept over no value" in told[3]

@@ -122,7 +122,9 @@ def test_a_file_of_the_folder_with_the_name_of_one_of_ours_is_seen(mine):
     (mine / "trajectory").mkdir()
     (mine / "trajectory" / "quintic.yaml").write_text("{kind: quintic, duration: 1.0}\n")
     (problem,) = refused(mine)
-    assert re.search("exact/untuned and 3 more: trajectory: 'quintic' is one of ours.*; rename that file", problem)
+    assert re.search(
+        "exact/untuned and 3 more: trajectory: 'quintic' is a built-in option.*; rename that file", problem
+    )
 
 
 def test_a_law_called_as_one_of_ours_is_refused(mine):
@@ -130,7 +132,7 @@ def test_a_law_called_as_one_of_ours_is_refused(mine):
     (mine / "controller" / f"{LAW}.yaml").rename(mine / "controller" / "impedance.yaml")
     changed(mine / "controller" / "impedance.yaml", "kind: gravity_pd", "kind: impedance")
     (part,) = read_user_plugins([f"controller={mine}/impedance.py"])
-    with pytest.raises(RunnerError, match=r"is one of ours|no name of a law of ours"):
+    with pytest.raises(RunnerError, match=r"is a built-in option|no name of a law of ours"):
         [*check_law(str(mine.parent / "paper"), "", part, 2)]
 
 

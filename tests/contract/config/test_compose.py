@@ -84,9 +84,9 @@ def test_what_was_chosen_is_kept():
         ("noise=1", "noise: no '1'; known: none, thesis"),
         ("experiment=figure_3_5", "experiment: no 'figure_3_5' (did you mean thesis/figure_3_5?); known: "),
         ("trajectory.goal=${robot.nope}", "trajectory.goal: it refers to robot.nope, which the chosen robot lacks"),
-        ("noise.position=[1,", "'noise.position=[1,' is no override: "),
-        ("foo", "'foo' is no override: it must read KEY=VALUE; a value with signs such as"),
-        ("foo\x1b]0;t\x07[", r"'foo\x1b]0;t\x07[' is no override: "),
+        ("noise.position=[1,", "'noise.position=[1,' is not a valid override: "),
+        ("foo", "'foo' is not a valid override: it must read KEY=VALUE; a value with signs such as"),
+        ("foo\x1b]0;t\x07[", r"'foo\x1b]0;t\x07[' is not a valid override: "),
     ],
 )
 def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, message):
@@ -108,7 +108,7 @@ def test_what_does_not_compose_is_said_in_one_line(cli, tmp_path, override, mess
             "noise/own.yaml, line 2, column 15: mapping values are not allowed in this context",
         ),
         (b"position: 0.0\nposition: 1.0\n", "noise/own.yaml, line 2, column 1: found duplicate key position"),
-        (b"# \xff\xfe\nposition: 0.0\n", "noise/own.yaml: is no text: 'utf-8' codec can't decode byte 0xff"),
+        (b"# \xff\xfe\nposition: 0.0\n", "noise/own.yaml: is not a text file: 'utf-8' codec can't decode byte 0xff"),
         (b"3\n", "noise/own.yaml: holds no mapping of keys"),
         (b"- 3\n", "noise: must be a group of keys; found [3]"),
         (b"position: ${robot.nope}\n", "noise.position: it refers to robot.nope, which the chosen robot lacks"),

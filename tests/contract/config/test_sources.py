@@ -121,7 +121,7 @@ def test_axes_of_an_experiment_stay_free(stranger):
     [
         ("3", "line 6: 'hydra.sweeper.params' says how"),
         ("${x}\nx: {outputs: there}", "line 6: 'hydra.sweeper.params' says how"),
-        ("{seed: MAKE}", "is no override"),
+        ("{seed: MAKE}", "is not a valid override"),
         ("{seed: '${nope}'}", "hydra.sweeper.params.seed: it refers to nope"),
         (
             "{hydra.sweeper.address: 'tcp://127.0.0.1:9'}",
@@ -192,10 +192,10 @@ def test_the_environment_enters_by_no_file_and_no_override(cli, stranger, monkey
     monkeypatch.setenv("RUNNER_SECRET", "hidden")
     ending = stranger("robot: {name: '${oc.env:RUNNER_SECRET}'}")
     assert ending.code == 2
-    assert "trap.yaml, line 4: '${oc.env:RUNNER_SECRET}' calls a function; a file may refer to keys alone" in ending.err
+    assert "trap.yaml, line 4: '${oc.env:RUNNER_SECRET}' calls a function; a file may only refer to keys" in ending.err
     ending = cli("robot.name=${oc.env:RUNNER_SECRET}", "duration=0.05")
     assert ending.code == 2
-    assert "'robot.name=${oc.env:RUNNER_SECRET}' calls a function; a value may refer to keys alone" in ending.err
+    assert "'robot.name=${oc.env:RUNNER_SECRET}' calls a function; a value may only refer to keys" in ending.err
     assert "hidden" not in ending.err
 
 

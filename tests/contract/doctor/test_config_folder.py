@@ -87,7 +87,7 @@ def test_no_robot_of_a_folder_has_the_name_of_one_of_ours(tmp_path, ours):
     (tmp_path / "robot").mkdir()
     (tmp_path / "robot" / f"{ours}.yaml").write_text("# @package _global_\nrobot: {urdf: lamp.urdf}\n")
     with pytest.raises(
-        ConfigError, match=rf"robot: '{ours}' is one of ours, and .*/robot/{ours}\.yaml has the same name"
+        ConfigError, match=rf"robot: '{ours}' is a built-in option, and .*/robot/{ours}\.yaml has the same name"
     ):
         compose([f"robot={ours}"], [tmp_path])
 

@@ -76,7 +76,7 @@ def test_runs_yaml_reads_no_environment(paper, tmp_path, text):
 
 def test_nor_one_that_is_put_together(paper, tmp_path):
     text = f"{GRID}    over:\n      sign: [$]\n      x: {{y: 'robot.name={{{{ sign }}}}{{oc.env:RUNNER_SECRET}}'}}"
-    assert refused(paper({"runs.yaml": text}), tmp_path, "calls a function; a value may refer to keys alone")
+    assert refused(paper({"runs.yaml": text}), tmp_path, "calls a function; a value may only refer to keys")
 
 
 @pytest.mark.parametrize(

@@ -157,7 +157,7 @@ def test_a_run_that_takes_too_long_failed(tuned):
         ([FREQUENCY, "sweep.trace=never"], "sweep.trace: a tuning keeps the trace of every run; found 'never'"),
         ([FREQUENCY, "hydra.sweeper.workers=-1"], "hydra.sweeper.workers: must be a whole number"),
         ([FREQUENCY, "robot=macr"], "robot: no 'macr' (did you mean macro?)"),
-        ([FREQUENCY, "nonsense"], "'nonsense' is no override"),
+        ([FREQUENCY, "nonsense"], "'nonsense' is not a valid override"),
         (["robot=macro"], "nothing to tune; give a key a range"),
     ],
 )

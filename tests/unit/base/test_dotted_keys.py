@@ -18,6 +18,10 @@ def test_leaves_are_the_values_and_what_is_empty(lists, found):
     assert {dotted(place): value for place, value in leaves(CONFIG, lists=lists)} == found
 
 
+def test_an_empty_config_has_none():
+    assert list(leaves({})) == []
+
+
 def test_a_place_may_begin_in_a_larger_config():
     assert [dotted(place) for place, _ in leaves({"b": 1}, ("a",))] == ["a.b"]
 

@@ -63,7 +63,7 @@ def test_ours_alone_may_call_a_function():
     ],
 )
 def test_functions_in_an_override_are_refused(override):
-    with pytest.raises(ConfigError, match="calls a function; a value may refer to keys alone"):
+    with pytest.raises(ConfigError, match="calls a function; a value may only refer to keys"):
         force([override])
 
 

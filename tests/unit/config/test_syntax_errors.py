@@ -48,7 +48,7 @@ def test_a_fault_is_told_in_words(override, fault):
 def test_no_text_of_the_parser_is_left(cli, tmp_path, mode, override):
     ending = cli(*mode, "robot=macro", override)
     assert (ending.code, ending.out) == (2, "")
-    assert "is no override: " in ending.err
+    assert "is not a valid override: " in ending.err
     for word in ("EOF", "expecting", "viable", "ANTLR", "Lexer", "token", "mismatched", "extraneous", "parsing"):
         assert word not in ending.err
     assert list(tmp_path.iterdir()) == []

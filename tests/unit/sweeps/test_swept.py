@@ -56,7 +56,7 @@ def test_an_empty_axis_is_named(argument):
 
 
 def test_what_is_no_override_is_said():
-    with pytest.raises(ConfigError, match="'seed=0,1,,2' is no override"):
+    with pytest.raises(ConfigError, match="'seed=0,1,,2' is not a valid override"):
         keys("seed=0,1,,2")
 
 
