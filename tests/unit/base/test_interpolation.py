@@ -38,7 +38,7 @@ def test_references_to_keys_are_free(value):
     ],
 )
 def test_functions_in_a_file_are_refused_with_their_line(text):
-    with pytest.raises(YamlError, match=r"own\.yaml, line 2: .* calls a function; a file may refer to keys"):
+    with pytest.raises(YamlError, match=r"own\.yaml, line 2: .* calls a function; a file may only refer to keys"):
         check_yaml(f"a: 1\n{text}", "own.yaml")
 
 
