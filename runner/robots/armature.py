@@ -8,11 +8,11 @@ from pydantic import NonNegativeFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
-from runner.base.sanitize import quoted
 from runner.robots.inertials import read_sets
 from runner.robots.robot import Robot, with_models
 from runner.robots.tree import UrdfTree
 from runner.schema.model import StrictModel
+from runner.schema.per_joint import expand
 
 
 class _ArmatureSet(StrictModel):
@@ -40,14 +40,8 @@ def armature_by_joint(tree: UrdfTree, path: Path, given: float | Sequence[float]
     joints = tree.chain
     if isinstance(given, str):
         return _of_set(tree, path, given)
-    if isinstance(given, int | float):
-        return dict.fromkeys(joints, float(given))
-    if len(given) != len(joints):
-        raise ConfigError(
-            [f"robot.armature: {len(given)} values for {len(joints)} joints ({', '.join(joints)}); found "
-             f"{quoted(list(given))}"]
-        )  # fmt: skip
-    return dict(zip(joints, given, strict=True))
+    each = expand("robot.armature", float(given) if isinstance(given, int | float) else list(given), joints)
+    return dict(zip(joints, each, strict=True))
 
 
 def write_armature(tree: UrdfTree, values: dict[str, float]) -> None:

@@ -4,9 +4,9 @@ import numpy as np
 from pydantic import FiniteFloat, NonNegativeFloat
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
+from runner.schema.per_joint import expand
 from runner.schema.units import JointTorque
 
 
@@ -28,19 +28,11 @@ class JointTorqueConfig(StrictModel):
         Raises:
             ConfigError: for a list of another length; names the joints.
         """
-        joints = arm.model.joint_names
         if self.noise is None:
             return None
-        for key, values in (("noise", self.noise), ("bias", self.bias)):
-            if isinstance(values, list) and len(values) != len(joints):
-                raise ConfigError(
-                    [
-                        f"joint_torque_sensor.{key}: {len(values)} values for {len(joints)} joints "
-                        f"({', '.join(joints)}); found {values}"
-                    ]
-                )
-        noise, bias = (np.broadcast_to(np.array(values), len(joints)) for values in (self.noise, self.bias))
-        return noise, bias
+        joints = arm.model.joint_names
+        noise = expand("joint_torque_sensor.noise", self.noise, joints)
+        return np.array(noise), np.array(expand("joint_torque_sensor.bias", self.bias, joints))
 
 
 class JointTorqueSensor:
