@@ -11,7 +11,7 @@ from runner import store
 from runner.api import page
 from runner.api.boundary import public
 from runner.api.run import Run
-from runner.base.errors import RunnerError, StoreError, nearest
+from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line, quoted
 from runner.sweeps.measurements import Axis, Measurements, axes_of, find_axis, measure_sweep
@@ -218,13 +218,7 @@ class Sweep:
 
     @cached_property
     def _measurements(self) -> Measurements:
-        """The cells with their values; what a sweep that is at work lacks is looked for anew each time."""
-        left = find_status(self.stored).left
-        if left:
-            raise StoreError(
-                f"{self.folder}: {left} of its {len(self)} runs are not made yet; the same call of runner.sweep goes "
-                f"on, or the command: {self.command}"
-            )
+        """The cells with their values; an incomplete sweep is read again each time."""
         return measure_sweep(self.stored)
 
 

@@ -23,6 +23,7 @@ from runner.recordings import is_bag
 from runner.schema.units import read_quantity
 
 if TYPE_CHECKING:
+    from runner.recordings.compare import RecordingComparison
     from runner.reporting.answers import Answer, Asked
     from runner.reporting.comparison.differences import Value
     from runner.reporting.comparison.sweeps import SweepComparison
@@ -337,6 +338,42 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
         raise RunnerError(f"{folders[0]} is a sweep; a recording is compared with one run")
     if options.by or options.within or options.metrics:
         raise RunnerError("--by, --within and --metrics are not for recordings")
-    from runner.cli.compare_recording import print_recording
+    _print_recording(folders[0], recordings[0], options.columns, options.fill_gaps or 0.0)
 
-    print_recording(folders[0], recordings[0], options.columns, options.fill_gaps or 0.0)
+
+def _print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: float) -> None:
+    """Print how a recording differs from a run, and write the report; its folder is the last line."""
+    from runner import store
+    from runner.base import progress
+    from runner.recordings.compare import compare_recording
+    from runner.reporting.recording_report import recording_document, report_folder
+    from runner.reporting.render import write_report
+    from runner.store.latest import note
+
+    progress.begin("reading runs")
+    found = compare_recording(store.open_run(folder), recording, columns, fill_gaps)
+    print(_recording_text(found), end="\n\n")
+    made = report_folder(found)
+    write_report(recording_document(found), made)
+    note(made)
+    print(made)
+
+
+def _recording_text(found: "RecordingComparison") -> str:
+    from runner.recordings import words
+
+    parts = [
+        f"run        {found.run.folder}",
+        f"recording  {found.recording.path}",
+        one_line(words.aligned_text(found)),
+        "",
+        align_columns([words.RESIDUAL_HEADER, *words.residual_rows(found, number)], indent=""),
+        "",
+        one_line(words.FIT),
+        "",
+        align_columns([["metric", "unit", "run", "recording"], *words.metric_rows(found, number)], indent=""),
+        "",
+        *words.friction_lines(found),
+    ]
+    rows = words.friction_rows(found, number)
+    return "\n".join([*parts, *([align_columns([words.FRICTION_HEADER, *rows], indent="")] if rows else [])])

@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.environment_variables import quiet_environment
-from runner.base.errors import RunnerError, StoreError
+from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored
 
 if TYPE_CHECKING:
     from runner.reporting.export.paper_table import PaperTable
-    from runner.store import Sweep
     from runner.sweeps.measurements import Measurements
 
 _ENDINGS = {".csv": "csv", ".parquet": "parquet", ".md": "markdown", ".tex": "latex"}
@@ -40,11 +39,12 @@ def run(options: Namespace) -> int:
     chosen = _format(options)
     quiet_environment()
     from runner import store
+    from runner.sweeps.measurements import measure_sweep
 
     if store.is_run(options.folder) and not store.is_sweep(options.folder):
         return _of_run(options, chosen)
     sweep = store.open_sweep(options.folder)
-    measurements = _measure(sweep)
+    measurements = measure_sweep(sweep)
     if not (chosen or options.metrics or options.by or options.where):
         return _whole(options.folder, measurements)
     if chosen in ("markdown", "latex"):
@@ -75,32 +75,13 @@ def _format(options: Namespace) -> str:
     return chosen
 
 
-def _measure(sweep: "Sweep") -> "Measurements":
-    from runner import store
-    from runner.sweeps.measurements import measure_sweep
-    from runner.sweeps.status import find_status
-
-    try:
-        return measure_sweep(sweep)
-    except store.DamagedError:
-        raise
-    except StoreError as error:
-        left = find_status(sweep).left
-        if not left:
-            raise
-        raise StoreError(
-            f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are missing; continue with: {sweep.command}"
-        ) from error
-
-
 def _whole(folder: Path, measurements: "Measurements") -> int:
     from runner.sweeps.differing import in_words
     from runner.sweeps.table import write_table
 
     columns = write_table(measurements, folder)
-    failed = sum(status != "ok" for status in measurements.statuses)
     doubted = sum(map(bool, measurements.caveats))
-    count = f"{len(measurements.hashes)} cells, {failed} of them failed, {doubted} with caveats"
+    count = f"{len(measurements.hashes)} cells, {measurements.failed} of them failed, {doubted} with caveats"
     print(f"{count}; {columns} columns: table.parquet, table.csv")
     also = in_words(measurements.differences)
     if also:

@@ -50,28 +50,24 @@ def is_one_arm(config: Mapping[str, Any]) -> bool:
 
 
 class Resolver:
-    """Resolves the configs of stored runs, of which many have the same robot."""
+    """Resolves the configs of stored runs, many of which have the same robot."""
 
     def __init__(self) -> None:
         self._tips: dict[str, Sequence[float]] = {}
 
     def resolve(self, run: Run) -> Mapping[str, Any]:
-        """Return the config of a stored run; see the function of that name. The distance is told of one arm only."""
-        starts = run.config.get("trajectory", {}).get("start", ...) is None
-        home = self._home(run) if starts and is_one_arm(run.config) else None
+        """Return the config of a stored run as the function `resolve` does; only one arm has the distance."""
+        home = None
+        if run.config.get("trajectory", {}).get("start", ...) is None and is_one_arm(run.config):
+            robot = run.config["robot"]
+            key = json.dumps(robot, sort_keys=True)
+            if key not in self._tips:
+                from runner.robots.model import RobotModel
+
+                tip = RobotModel(run.urdf, robot["tip"]).tip_position(np.array(robot["home"], dtype=float))
+                self._tips[key] = tip.tolist()
+            home = self._tips[key]
         return resolve(run.config, run.provenance["plant_step"], home)
-
-    def _home(self, run: Run) -> Sequence[float]:
-        robot = run.config["robot"]
-        key = json.dumps(robot, sort_keys=True)
-        if key not in self._tips:
-            import numpy as np
-
-            from runner.robots.model import RobotModel
-
-            home = np.array(robot["home"], dtype=float)
-            self._tips[key] = RobotModel(run.urdf, robot["tip"]).tip_position(home).tolist()
-        return self._tips[key]
 
 
 def _is_point(value: object) -> bool:

@@ -15,12 +15,13 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.sanitize import few, quoted
-from runner.store import Finished, Run, Sweep, open_sweep
+from runner.store import DamagedError, Finished, Run, Sweep, open_sweep
 from runner.store.axes import Axes, is_simulated, override_value
 from runner.store.finer import finer_names, read_finer
 from runner.store.sweep import InShard
 from runner.sweeps.differing import Difference, Resolved
 from runner.sweeps.gathering import Gathered
+from runner.sweeps.status import find_status
 
 
 @dataclass(frozen=True)
@@ -88,6 +89,19 @@ def find_axis(axes: Sequence[Axis], name: str, option: str = "") -> Axis:
         known = ", ".join(names) or "nothing"
         raise RunnerError(f"{option}{quoted(name)} was not swept{nearest(name, names)}; the sweep is over: {known}")
     return axes[names.index(name)]
+
+
+def group_cells(axes: Sequence[Axis], cells: NDArray[np.intp]) -> list[tuple[list[int], NDArray[np.intp]]]:
+    """Return each combination of the levels of some axes, in ascending order, with the cells that have it.
+
+    Args:
+        axes: The axes; of none all cells are one group.
+        cells: The cells, shape (n,).
+    """
+    levels = np.column_stack([axis.level[cells] for axis in axes] or [np.zeros(len(cells), dtype=np.intp)])
+    combinations, group = np.unique(levels, axis=0, return_inverse=True)
+    some = combinations[:, : len(axes)].tolist()
+    return [(levels, cells[group.ravel() == place]) for place, levels in enumerate(some)]
 
 
 @dataclass(frozen=True)
@@ -272,13 +286,20 @@ def measure_sweep(sweep: Sweep) -> Measurements:
     """
     gathered = Gathered(len(sweep.hashes))
     progress.begin("reading runs", len(sweep.hashes), "cells")
-    for found in sweep.found():
-        if isinstance(found, InShard):
-            gathered.add_shard(found.path, found.rows, found.cells)
-            progress.step(len(found.cells))
-        else:
-            gathered.add_run(*found)
-            progress.step()
+    try:
+        for found in sweep.found():
+            if isinstance(found, InShard):
+                gathered.add_shard(found.path, found.rows, found.cells)
+                progress.step(len(found.cells))
+            else:
+                gathered.add_run(*found)
+                progress.step()
+    except StoreError as error:
+        if isinstance(error, DamagedError) or not (left := find_status(sweep).left):
+            raise
+        raise StoreError(
+            f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are not stored; continue with: {sweep.command}"
+        ) from error
     measured = _with_finer(_measured(sweep.overrides, gathered), sweep.outputs)
     return replace(measured, folder=sweep.folder, command=sweep.command)
 

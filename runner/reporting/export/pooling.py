@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.sanitize import table_cell
-from runner.sweeps.measurements import Axis, Measurements, find_axis
+from runner.sweeps.measurements import Axis, Measurements, find_axis, group_cells
 from runner.sweeps.table import metric_columns, with_units
 
 if TYPE_CHECKING:
@@ -55,13 +55,13 @@ def pool(measurements: Measurements, by: Sequence[str] | None = None, where: Seq
     for name in names:
         find_axis(measurements.axes, name, "--by: ")
     _refuse_mixtures([name for name in varying if name not in names and name != SEED], names, axes, kept)
-    levels = np.column_stack([axes[name].level[kept] for name in names] or [np.zeros((len(kept), 1), dtype=np.intp)])
-    rows, row_of = np.unique(levels, axis=0, return_inverse=True)
-    groups = [_distinct(measurements, kept[row_of.ravel() == row]) for row in range(len(rows))]
+    rows = group_cells([axes[name] for name in names], kept)
+    levels = np.array([levels for levels, _ in rows], dtype=np.intp)
+    groups = [_distinct(measurements, cells) for _, cells in rows]
     failed = [sum(measurements.statuses[cell] != "ok" for cell in cells) for cells in groups]
     pooled = replace(
         measurements,
-        axes=[Axis(name, axes[name].values, rows[:, column]) for column, name in enumerate(names)],
+        axes=[Axis(name, axes[name].values, levels[:, column]) for column, name in enumerate(names)],
         fixed=[*measurements.fixed, *where],
         hashes=[measurements.hashes[cells[0]] if len(cells) == 1 else "" for cells in groups],
         statuses=["failed" if count else "ok" for count in failed],

@@ -39,7 +39,7 @@ def section(subject: Subject, command: str) -> Section:
             + (literal(f"The same in all: {fixed}.") if fixed else "")
         )
     )
-    failed = sum(status != "ok" for status in measurements.statuses)
+    failed = measurements.failed
     if failed:
         blocks.append(
             Notice(

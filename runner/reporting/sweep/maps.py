@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.reporting import metric_titles
@@ -11,7 +12,7 @@ from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Formula, Map, Maps, Section, Series, Text
 from runner.reporting.markup import literal
 from runner.reporting.sweep.subject import Subject, key_label, spans_decades
-from runner.sweeps.measurements import Axis
+from runner.sweeps.measurements import Axis, group_cells
 
 POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
 _FEWEST_FOR_CONTOURS = 3
@@ -71,15 +72,10 @@ def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis
             panels.append(replace(cells, contours=True))
             what += ", and lines of equal value"
     else:
-        levels = np.column_stack([axis.level for axis in others])
-        combinations = np.unique(levels, axis=0)
+        combinations = named_groups(others, len(medians))
         shown = spaced_indices(len(combinations), _MOST_MULTIPLES)
-        panels = [
-            _map(subject, of, x, y, np.flatnonzero((levels == some).all(axis=1)).tolist(),
-                 ", ".join(f"{axis.name} = {axis.text(int(level))}"
-                           for axis, level in zip(others, some, strict=True)))
-            for some in combinations[shown]
-        ]  # fmt: skip
+        panels = [_map(subject, of, x, y, cells.tolist(), name)
+                  for name, cells in (combinations[place] for place in shown)]  # fmt: skip
         columns = min(3 if len(others) == 1 else 2, len(panels))
         names = " and ".join(axis.name for axis in others)
         what += f", a map for each value of {names}"
@@ -89,6 +85,19 @@ def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis
     scale = " The colours span the 95 % intervals of the medians." if np.isfinite(low).any() else ""
     caption = literal(f"{what}: {metric_titles.title(metric)}.{crosses}{scale}")
     return Maps(caption, subject.label(metric), panels, spans_decades(medians), columns)
+
+
+def named_groups(axes: Sequence[Axis], count: int) -> list[tuple[str, NDArray[np.intp]]]:
+    """Return the name of each combination of the levels of some axes, such as "robot = macro", and its cells.
+
+    Args:
+        axes: The axes.
+        count: Number of all cells.
+    """
+    return [
+        (", ".join(f"{axis.name} = {axis.text(level)}" for axis, level in zip(axes, levels, strict=True)), cells)
+        for levels, cells in group_cells(axes, np.arange(count))
+    ]
 
 
 def _map(subject: Subject, of: Sequence[FloatArray], x: Axis, y: Axis, cells: Sequence[int], title: str) -> Map:

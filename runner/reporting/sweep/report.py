@@ -61,7 +61,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         sections.append(distributions.section(subject))
         low, high = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
         sections.append(distributions.extremes_section(subject, low, high))
-    if any(status != "ok" for status in measurements.statuses):
+    if measurements.failed:
         sections.append(failures.section(subject))
     sections.append(_all_runs(subject, sweep, runs_address))
     sections.append(Section("Provenance", (Provenance(_made_by(subject, sweep)),)))
@@ -90,7 +90,7 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
 
 def _abstract(subject: Subject, sweep: Sweep) -> str:
     measurements = subject.measurements
-    cells, failed = len(measurements.hashes), sum(status != "ok" for status in measurements.statuses)
+    cells, failed = len(measurements.hashes), measurements.failed
     sizes = " × ".join(f"{axis.name} ({len(axis.values)})" for axis in subject.axes)
     ends = f"{failed} of them failed" if failed else "all of them finished"
     over = f" over {sizes}" if sizes else ""

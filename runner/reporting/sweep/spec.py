@@ -153,13 +153,11 @@ def _curve(one: Failing, axis: Axis) -> Curves:
 def _maps(subject: Subject, one: Failing) -> Maps:
     """Return maps of the share that failed and of the upper end of the interval, a row for each value of more axes."""
     x, y, *others = maps.choose_axes(subject)
-    levels = np.column_stack([axis.level for axis in others] or [np.zeros((len(one.of), 0), dtype=np.intp)])
-    combinations = np.unique(levels, axis=0)
-    shown = combinations[spaced_indices(len(combinations), _MOST_MULTIPLES)]
+    combinations = maps.named_groups(others, len(one.of))
+    shown = [combinations[place] for place in spaced_indices(len(combinations), _MOST_MULTIPLES)]
     panels: list[Map] = []
-    for some in shown:
-        named = ", ".join(f"{axis.name} = {axis.text(int(level))}" for axis, level in zip(others, some, strict=True))
-        panels += _row(one, x, y, np.flatnonzero((levels == some).all(axis=1)), f"{named}: " if named else "")
+    for name, cells in shown:
+        panels += _row(one, x, y, cells, f"{name}: " if name else "")
     values = np.concatenate([panel.values.ravel() for panel in panels])
     log = spans_decades(values[values > 0])
     texts = [f"Probability of failing: {one.name}."]

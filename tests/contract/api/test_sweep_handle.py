@@ -155,7 +155,7 @@ def test_a_sweep_that_is_not_all_made_says_so(sweep, tmp_path):
     assert "1 not made yet" in repr(part)
     assert "1 not made yet" in part._repr_html_()
     for asked in (part.to_frame, lambda: part.to_frame(level="repetitions"), lambda: part.compare(by="robot")):
-        with pytest.raises(runner.RunnerError, match="1 of its 8 runs are not made yet; the same call"):
+        with pytest.raises(runner.RunnerError, match=r"1 of 8 cells of .* are not stored; continue with: runner -m "):
             asked()
     assert part.run(robot="mini", controller="computed_torque", seed=0).status == "ok"
     runner.sweep(

@@ -102,7 +102,7 @@ def test_a_sweep_that_is_not_whole_tells_what_is_missing(cli, tmp_path):
     folder = write_sweep(tmp_path / "o", jobs, "runner -m controller=computed_torque,operational_space")
     ending = cli("table", folder, "--format", "markdown")
     assert ending.code == 2
-    assert f"1 of 2 cells of {folder} are missing; continue with: runner -m controller=" in ending.err
+    assert f"1 of 2 cells of {folder} are not stored; continue with: runner -m controller=" in ending.err
 
 
 def test_the_whole_table_stays_as_it_was(cli, sweep):

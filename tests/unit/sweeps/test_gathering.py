@@ -64,5 +64,5 @@ def test_a_missing_run_is_named(sweep):
     opened = store.open_sweep(sweep("seed=0,1", "sweep.trace=never").folder)
     for path in (opened.outputs / "shards").iterdir():
         path.unlink()
-    with pytest.raises(StoreError, match=r"no folder .*; `runner status .*` says what is left"):
+    with pytest.raises(StoreError, match=r"2 of 2 cells of .* are not stored; continue with: runner -m "):
         measure_sweep(opened)
