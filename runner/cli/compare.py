@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from runner.store import Run
     from runner.sweeps.measurements import Measurements
 
-# What a result may follow from besides its config; date, machine and command tell nothing about the physics.
+# Possible causes of a difference besides the config; date, machine and command do not affect the physics.
 _PROVENANCE = ("commit", "versions", "plant_step")
 
 
@@ -38,7 +38,7 @@ class StoredOrRecording(Stored):
     """The type of an argument that is the folder of something stored, or a recording."""
 
     def __call__(self, text: str) -> Path:
-        """Return the folder or the file that a text names."""
+        """Return the folder or the file of an argument."""
         return Path(text) if _is_recording(text) else super().__call__(text)
 
 
@@ -277,7 +277,7 @@ def _head(one: "Asked") -> list[str]:
 
 
 def _explain_alone(folder: Path, is_sweep: bool) -> str:
-    """Return what is missing beside one folder."""
+    """Return the reason why one folder is not enough."""
     from runner import store
     from runner.sweeps.measurements import axes_of
 
@@ -293,7 +293,7 @@ def _explain_alone(folder: Path, is_sweep: bool) -> str:
 
 
 def _explain_mixture(one: Path, folder: Path) -> str:
-    """Return what would work instead of a run against a sweep."""
+    """Return the reason why a run and a sweep are not compared, and an alternative."""
     from runner import store
 
     run, sweep = store.open_run(one), store.open_sweep(folder)
@@ -302,7 +302,7 @@ def _explain_mixture(one: Path, folder: Path) -> str:
     if run.hash in names:
         cell = " ".join(sweep.overrides[names.index(run.hash)])
         return (
-            f"{what}: this run is the sweep's cell {cell}; `runner compare {folder} --by AXIS` holds the cells against "
+            f"{what}: this run is the sweep's cell {cell}; `runner compare {folder} --by AXIS` compares the cells with "
             "each other"
         )
     first = " ".join(sweep.overrides[0])

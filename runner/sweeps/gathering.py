@@ -22,7 +22,7 @@ _SEED = '"seed": '
 
 
 class Gathered:
-    """What the cells of a sweep measured.
+    """Measurements of the cells of a sweep.
 
     Args:
         cells: Number of cells.
@@ -32,7 +32,7 @@ class Gathered:
         failures: When, where and why each cell failed; empty for a good one.
         seeds: Seed of each cell, shape (cells,).
         units: Unit of each metric.
-        provenance: What made the runs, each with its distinct values as texts.
+        provenance: Plant, commit, machine, date and versions behind the runs, each with its distinct values.
         caveats: Why the result of each cell may not be what it seems.
         changes: With what else than today caveats were looked for, each with the number of cells.
         configs: Each resolved config with the cells that have it; those of a shard may differ in their seed.
@@ -47,7 +47,7 @@ class Gathered:
         self.caveats: list[Sequence[Mapping[str, Any]]] = [()] * cells
         self.changes: Counter[str] = Counter()
         self.configs: list[tuple[Mapping[str, Any], list[Cells]]] = []
-        self._places: dict[object, int] = {}  # of configs, by what tells them apart
+        self._places: dict[object, int] = {}  # of configs, by their text without the seed
         self._values: dict[str, FloatArray] = {}
         self._measured = np.zeros(cells, dtype=bool)
         self._resolver = Resolver()
@@ -136,7 +136,7 @@ class Gathered:
     def values(self) -> dict[str, FloatArray]:
         """Return each metric in each repetition, shape (cells, repetitions); see Measurements."""
         width = max((values.shape[1] for values in self._values.values()), default=1)
-        # A run of which no repetition ended stores no metric at all.
+        # A run without a finished repetition stores no metric.
         lost = ~self._measured & np.array([bool(text) for text in self.failures], dtype=bool)
         for name, values in self._values.items():
             missing = width - values.shape[1]
@@ -147,7 +147,7 @@ class Gathered:
 
 
 def commit_text(commit: object) -> str:
-    """Return a commit as the provenance of a sweep tells it."""
+    """Return a commit as the provenance of a sweep has it."""
     return str(commit or "none (installed package)")
 
 

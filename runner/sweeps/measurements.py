@@ -30,7 +30,7 @@ class Axis:
 
     Attributes:
         name: The key, such as "noise.position", or a group, such as "controller".
-        values: Its distinct values: numbers in ascending order; texts, as first met, where not all are numbers.
+        values: Its distinct values: numbers in ascending order, or strings in order of appearance.
         level: Index into `values` of each cell, shape (cells,).
     """
 
@@ -40,22 +40,22 @@ class Axis:
 
     @property
     def numbers(self) -> FloatArray | None:
-        """Its values as numbers, shape (levels,), or None where they are texts."""
+        """Its values as numbers, shape (levels,); None for strings."""
         texts = len(self.values) > 0 and isinstance(self.values[0], str)
         return None if texts else np.array(self.values, dtype=float)
 
     @property
     def texts(self) -> list[str]:
-        """Its values as texts."""
+        """Its values as strings."""
         return [value if isinstance(value, str) else f"{value:g}" for value in self.values]
 
     def text(self, level: int) -> str:
-        """Return one of its values as text."""
+        """Return one of its values as a string."""
         value = self.values[level]
         return value if isinstance(value, str) else f"{value:g}"
 
     def find_level(self, value: object, option: str = "") -> int:
-        """Return the place of a value, given as a number or as text, among its values.
+        """Return the level of a value, which is a number or a string.
 
         Args:
             value: The value.
@@ -113,7 +113,7 @@ class Measurements:
         fixed: Overrides that all cells share, as typed.
         hashes: Name of each cell's run.
         statuses: "ok" or "failed".
-        failures: When, where and why a cell failed, in words; empty for a good one.
+        failures: Time, place and reason of the failure of each cell; empty for a good one.
         units: Unit of each metric.
         values: Each metric in each repetition, shape (cells, repetitions): infinite, that is beyond every number,
             where the repetition failed or never settled; NaN where the run has no such metric or repetition.
@@ -128,7 +128,7 @@ class Measurements:
         folder: Folder of the sweep or run.
         command: The command that makes it.
         missing: Number of cells that are not stored.
-        damage: What is damaged of what is stored, a text for each file.
+        damage: Damaged files, a message for each.
     """
 
     axes: Sequence[Axis]
@@ -185,7 +185,7 @@ class Measurements:
 
     @cached_property
     def copies(self) -> NDArray[np.bool_]:
-        """Whether the repetitions of each cell, of several, are alike in every metric, as nothing is drawn."""
+        """True for cells whose repetitions are equal in every metric because nothing is drawn, shape (cells,)."""
         alike = np.full(len(self.hashes), self.repetitions > 1)
         for values in self.values.values():
             alike &= ((values == values[:, :1]) | np.isnan(values)).all(axis=1)
@@ -209,7 +209,7 @@ class Measurements:
         """Return some metrics by name, each once; all of them for None.
 
         Raises:
-            RunnerError: If one is none of the sweep's; tells the nearest, and which there are.
+            RunnerError: If the sweep lacks one; the message has the nearest name and all names.
         """
         check_metrics(wanted or (), self.values)
         return list(self.values if wanted is None else dict.fromkeys(wanted))
@@ -222,7 +222,7 @@ class Measurements:
 
     def medians(self, metric: str) -> FloatArray:
         """Return the median of a metric in each cell, shape (cells,): infinite or NaN as its values."""
-        return medians(np.sort(self.values[metric], axis=1))  # NaN, which is no repetition, comes last
+        return medians(np.sort(self.values[metric], axis=1))  # NaN is last: it is not a repetition
 
     def axis_columns(self, cells: slice | NDArray[np.intp] = slice(None)) -> dict[str, object]:
         """Return the values of some cells on each axis, by the names of the axes."""
@@ -308,7 +308,7 @@ def measure_stored(folder: Path, name: str = "") -> Measurements:
     """Read what is stored of a sweep, ended or not.
 
     Raises:
-        StoreError: If the folder is no sweep, or none of its cells is stored.
+        StoreError: If the folder is not a sweep, or no cell is stored.
         DamagedError: If it is damaged.
     """
     sweep = open_sweep(folder)
@@ -436,7 +436,7 @@ _PART = re.compile(r".*_([xyz]|q\d+)$")
 
 
 def is_part(name: str) -> bool:
-    """Tell whether a metric is that of one direction or joint, such as peak_torque_q1."""
+    """Return True for a metric of one direction or joint, such as peak_torque_q1."""
     return _PART.match(name) is not None
 
 

@@ -11,7 +11,7 @@ from runner.store import simulated_part
 from runner.sweeps.differing import DISTANCE, entries, is_of_option
 from runner.sweeps.measurements import Measurements
 
-# How many values there are and which noise they have is no part of what a cell is.
+# The number of repetitions and their seed do not define a cell.
 _OF_REPETITIONS = ("seed", "repetitions")
 _OPTION = ("kind", "name")
 # Of what made the runs these tell nothing about the physics.
@@ -25,7 +25,7 @@ class Value:
     """A value that differs between two sweeps.
 
     Attributes:
-        key: Its dotted key, or what it is in words.
+        key: Its dotted key, or a description.
         a: The value in the first, as text.
         b: The value in the second.
         cells: The matched cells at which it has these two values, as text; empty for all of them.
@@ -39,10 +39,10 @@ class Value:
 
 @dataclass(frozen=True)
 class ConfigDifferences:
-    """What two sweeps differ in where their cells are matched.
+    """Differences between the configs of the matched cells of two sweeps.
 
     Attributes:
-        options: Groups of which they take other options, such as `controller`.
+        options: Groups with different options, such as `controller`.
         values: Resolved values that differ beside these.
         provenance: What made the runs, where that differs: commit and versions.
     """
@@ -53,11 +53,11 @@ class ConfigDifferences:
 
     @property
     def names(self) -> list[str]:
-        """All that they differ in, each once; options first."""
+        """Names of all differences, each once; options first."""
         return list(dict.fromkeys(value.key for value in (*self.options, *self.values)))
 
     def in_words(self, a: str, b: str) -> str:
-        """Return in a sentence whether one thing alone differs, and what else does.
+        """Return a sentence that names what differs.
 
         Args:
             a: What the first is called.

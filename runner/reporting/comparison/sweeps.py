@@ -98,7 +98,7 @@ class SweepComparison:
 def open_compared(folders: Sequence[Path]) -> list[Measurements]:
     """Read the runs or sweeps of a comparison, named A, B and so on.
 
-    What a finer step of the plant changes in them is worked out first, if it is not stored.
+    The effect of a finer step of the plant is computed first, if it is not stored.
 
     Raises:
         StoreError: If one cannot be read, or no cell of it is stored.

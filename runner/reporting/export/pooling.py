@@ -42,7 +42,7 @@ def pool(measurements: Measurements, by: Sequence[str] | None = None, where: Seq
 
     Args:
         measurements: The sweep.
-        by: The axes that tell the rows apart; None takes all that were swept but the seed.
+        by: The axes whose levels make the rows; None takes all swept axes but the seed.
         where: Values to which cells are limited, each as KEY=VALUE.
 
     Raises:
@@ -123,7 +123,7 @@ def selection(
     by: Sequence[str] | None = None,
     where: Sequence[str] = (),
 ) -> "pd.DataFrame":
-    """Return a row for each combination of some axes: their values, how many cells stand behind it, and the metrics.
+    """Return a row for each combination of some axes: their values, its number of cells, and the metrics.
 
     The columns of a metric are those of `runner.sweeps.table`; see `pool` for the arguments and errors.
     """
@@ -148,7 +148,7 @@ def of_one(measurements: Measurements, metrics: Sequence[str] | None = None) -> 
 
 
 def as_csv(frame: "pd.DataFrame") -> bytes:
-    """Return a table as CSV of which no cell is taken for a formula."""
+    """Return a table as CSV whose cells no spreadsheet reads as formulas."""
     texts = frame.select_dtypes(exclude="number").columns
     safe = frame.assign(**{name: frame[name].map(lambda value: table_cell(str(value))) for name in texts})
     return safe.rename(columns=table_cell).to_csv(index=False, lineterminator="\n").encode()
