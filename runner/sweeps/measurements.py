@@ -1,6 +1,5 @@
 """Measurements of a sweep by cell: swept axes, status, and every metric in every repetition."""
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -240,22 +239,6 @@ def medians(ordered: FloatArray) -> FloatArray:
     return found
 
 
-def median_ends(ordered: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the ends of the 95 % interval of the median of each row, shape (cells,); NaN for too few values.
-
-    Args:
-        ordered: Values, shape (cells, repetitions), ascending, NaN last.
-    """
-    from runner.statistics import SMALLEST_SAMPLE, median_intervals  # imports SciPy
-
-    counts = np.sum(~np.isnan(ordered), axis=1)
-    low, high = np.full((2, len(ordered)), np.nan)
-    for count in np.unique(counts[counts >= SMALLEST_SAMPLE]).tolist():
-        cells = np.flatnonzero(counts == count)
-        low[cells], high[cells] = median_intervals(ordered[cells, :count])
-    return low, high
-
-
 def measure(overrides: Sequence[Sequence[str]], runs: Iterable[Run]) -> Measurements:
     """Take runs, one by one.
 
@@ -430,14 +413,6 @@ def _number(text: str) -> float | None:
     except ValueError:
         return None
     return number if np.isfinite(number) else None
-
-
-_PART = re.compile(r".*_([xyz]|q\d+)$")
-
-
-def is_part(name: str) -> bool:
-    """Return True for a metric of one direction or joint, such as peak_torque_q1."""
-    return _PART.match(name) is not None
 
 
 def check_metrics(wanted: Sequence[str], known: Iterable[str]) -> None:

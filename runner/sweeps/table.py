@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.sanitize import table_cell
 from runner.store.atomic import open_atomically
-from runner.sweeps.measurements import Measurements, median_ends, medians
+from runner.sweeps.measurements import Measurements, medians
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -99,6 +99,22 @@ def with_units(schema: Any, units: Mapping[str, str]) -> Any:
         if name in units and kind != "n":
             schema = schema.set(index, schema.field(index).with_metadata({"unit": units[name]}))
     return schema
+
+
+def median_ends(ordered: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the ends of the 95 % interval of the median of each row, shape (cells,); NaN for too few values.
+
+    Args:
+        ordered: Values, shape (cells, repetitions), ascending, NaN last.
+    """
+    from runner.statistics import SMALLEST_SAMPLE, median_intervals  # imports SciPy
+
+    counts = np.sum(~np.isnan(ordered), axis=1)
+    low, high = np.full((2, len(ordered)), np.nan)
+    for count in np.unique(counts[counts >= SMALLEST_SAMPLE]).tolist():
+        cells = np.flatnonzero(counts == count)
+        low[cells], high[cells] = median_intervals(ordered[cells, :count])
+    return low, high
 
 
 def _columns(name: str, values: FloatArray) -> Iterator[tuple[str, FloatArray]]:

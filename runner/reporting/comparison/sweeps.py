@@ -14,12 +14,11 @@ from runner.base.quantities import ROUNDING
 from runner.reporting.answers import Answer, Asked, ask, judge
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
 from runner.reporting.comparison.pairs import Label, Pairs, keep_common_seeds, label_text, level_pairs, match
-from runner.reporting.sweep.subject import first_screen, whole_metrics
+from runner.reporting.sweep.subject import first_screen, is_part, whole_metrics
 from runner.store import is_sweep, open_run, open_sweep
 from runner.sweeps.measurements import (
     Measurements,
     check_metrics,
-    is_part,
     measure_run,
     measure_stored,
     stored_part,

@@ -1,5 +1,6 @@
 """Subject of a sweep report: cells, compared metrics and their order."""
 
+import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,7 +14,8 @@ from runner.base.quantities import label_with_unit, quantity
 from runner.config.compose.units import key_unit
 from runner.reporting.metric_titles import metric_label, title
 from runner.sweeps.differing import UNITS
-from runner.sweeps.measurements import Axis, Measurements, is_part, median_ends
+from runner.sweeps.measurements import Axis, Measurements
+from runner.sweeps.table import median_ends
 
 if TYPE_CHECKING:
     from runner.statistics import EffectAnalysis
@@ -43,6 +45,7 @@ COSTS = ("peak_torque", "rms_torque", "control_effort", "energy")
 """Metrics of what a motion costs."""
 
 _DECADE = 10.0
+_PART = re.compile(r".*_([xyz]|q\d+)$")
 _LONGEST = 60  # characters of a value in a table
 
 
@@ -155,6 +158,11 @@ def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:
     if cost is not None and cost not in chosen:
         chosen[-1] = cost  # what the others are traded off against
     return Subject(measurements, tuple(chosen))
+
+
+def is_part(name: str) -> bool:
+    """Return True for a metric of one direction or joint, such as peak_torque_q1."""
+    return _PART.match(name) is not None
 
 
 def whole_metrics(known: Collection[str]) -> list[str]:
