@@ -68,6 +68,7 @@ def _things(outputs: Path) -> Iterator[tuple[str, object]]:
     for folder in sorted((outputs / "tunings").iterdir()):
         yield f"{folder}", lambda folder=folder: open_tuning(folder)
         yield f"{folder}/sweep", lambda folder=folder: _sweep(folder)
+        yield f"{folder}/progress", lambda folder=folder: read_pace(folder)
     for folder in sorted((outputs / "calibrations").iterdir()):
         yield f"{folder}", lambda folder=folder: _run(store.open_calibration(folder))
         yield f"{folder}/urdf", lambda folder=folder: store.open_calibration(folder).urdf

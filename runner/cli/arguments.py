@@ -56,6 +56,13 @@ def count(text: str) -> int:
     return int(text)
 
 
+def config_folder(text: str) -> Path:
+    """Return a config folder, which must exist."""
+    if not Path(text).is_dir():
+        raise RunnerError(f"--config-dir: no folder {text}")
+    return Path(text)
+
+
 _SHARED: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
     "output": (("-o", "--output"), {"type": Path, "metavar": "PATH"}),
     "metrics": (("--metrics",), {"type": Names(), "metavar": "A,B"}),
@@ -65,7 +72,10 @@ _SHARED: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
     "save_baseline": (("--save-baseline",), {"type": Path, "metavar": "FILE"}),
     "by": (("--by",), {"type": Names(), "metavar": "A,B"}),
     "where": (("--where",), {"action": "append", "default": [], "metavar": "KEY=VALUE"}),
-    "config_dir": (("--config-dir", "-cd"), {"type": Path, "action": "append", "default": [], "metavar": "DIR"}),
+    "config_dir": (
+        ("--config-dir", "-cd"),
+        {"type": config_folder, "action": "append", "default": [], "metavar": "DIR"},
+    ),
     "plugin": (("--plugin",), {"action": "append", "default": [], "metavar": "GROUP=MODULE"}),
     "quiet": (("-q", "--quiet"), {"action": "store_true"}),
 }

@@ -106,9 +106,6 @@ def _run_command(name: str, words: Sequence[str]) -> int:
     arguments, unknown = build_parser([name]).parse_known_args([name, *words])
     if unknown:
         arguments.parser.reject(unknown)
-    for folder in getattr(arguments, "config_dir", ()):
-        if not folder.is_dir():
-            raise RunnerError(f"--config-dir: no folder {folder}")
     arguments.words = words
     code: int = arguments.run(arguments)
     return code

@@ -11,30 +11,10 @@ from runner.base.errors import RunnerError, nearest
 from runner.base.former_names import TOPICS as FORMER_TOPICS
 from runner.base.sanitize import escaped, one_line
 from runner.cli.arguments import Parser
-from runner.config.compose.options import group_options
+from runner.config.compose.options import group_options, groups
 
 if TYPE_CHECKING:
     from runner.reporting.published_claims import PublishedClaim
-
-_GROUPS = {
-    "robots": "robot",
-    "controllers": "controller",
-    "trajectories": "trajectory",
-    "experiments": "experiment",
-    "plants": "plant",
-    "environments": "environment",
-    "wrist_sensors": "wrist_sensor",
-    "mismatch": "mismatch",
-    "disturbance_observers": "disturbance_observer",
-    "input_shapers": "input_shaper",
-    "notches": "notch",
-    "joint_torque_sensors": "joint_torque_sensor",
-    "endpoint_sensors": "endpoint_sensor",
-    "noise": "noise",
-    "presets": "preset",
-    "torque_limits": "torque_limits",
-    "calibrations": "calibration",
-}
 
 
 def add_arguments(parser: Parser) -> None:
@@ -59,13 +39,20 @@ def run(options: Namespace) -> int:
     return 0
 
 
+def _topic(group: str) -> str:
+    """Return the plural of a group's name."""
+    if group.endswith("y"):
+        return f"{group[:-1]}ies"
+    return group if group.endswith(("s", "noise")) else f"{group}{'es' if group.endswith('ch') else 's'}"
+
+
 def _list_group(group: str) -> Callable[[Sequence[Path]], dict[str, str]]:
     return lambda config_dirs: group_options(group, config_dirs)
 
 
 def _list_plants(config_dirs: Sequence[Path]) -> dict[str, str]:
     found = group_options("plant", config_dirs)
-    return found if engines.has_pybullet() else {**found, "bullet": f"not here, PyBullet is missing: {found['bullet']}"}
+    return found if engines.has_pybullet() else {**found, "bullet": f"PyBullet is not installed: {found['bullet']}"}
 
 
 def _list_metrics(_: Sequence[Path]) -> dict[str, str]:
@@ -109,7 +96,7 @@ def _list_claims(_: Sequence[Path]) -> dict[str, str]:
 
 
 def _printed(claim: "PublishedClaim") -> str:
-    """Return a claim's value as printed; nothing where the source compares in words."""
+    """Return a claim's value as printed; nothing if the source compares in words."""
     return f": {' to '.join(f'{value:g}' for value in claim.printed)} {claim.unit}" if claim.printed else ""
 
 
@@ -131,14 +118,14 @@ def _list_studies(_: Sequence[Path]) -> dict[str, str]:
 
 
 TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
-    **{topic: _list_group(group) for topic, group in _GROUPS.items()},
+    **{_topic(group): _list_group(group) for group in groups()},
     "plants": _list_plants,
     "metrics": _list_metrics,
     "claims": _list_claims,
     "baselines": _list_baselines,
     "studies": _list_studies,
 }
-"""What can be listed: each gives names and one-line descriptions."""
+"""Topics: each has a function that returns names with one-line descriptions."""
 
 
 def _print_overview(own: Sequence[Path]) -> None:
@@ -150,7 +137,7 @@ def _print_overview(own: Sequence[Path]) -> None:
         names = escaped(", ".join(entries(own))) or "none"
         indent = " " * 15
         print(textwrap.fill(f"{topic:<13}  {names}", width, subsequent_indent=indent, break_on_hyphens=False))
-    print("\n`runner list TOPIC` tells more; an option is chosen by its group, as in robot=macro")
+    print("\n`runner list TOPIC` describes each; an option is chosen by its group, as in robot=macro")
 
 
 def _print_table(entries: Mapping[str, str]) -> None:

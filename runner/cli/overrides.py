@@ -4,6 +4,7 @@ An override sets a key or chooses from a group, as controller.period=5ms or robo
 `runner -m`. All other flags are Hydra's.
 """
 
+import shlex
 from argparse import Namespace
 from collections.abc import Sequence
 
@@ -18,14 +19,13 @@ def add_arguments(parser: Parser) -> None:
     parser.add_overrides("such as robot=macro; a sweep takes lists, as seed=0,1")
     parser.add_argument(*_MANY, action="store_true", help="simulate a sweep over every combination")
     _add_own(parser)
-    parser.add_shared("config_dir")
     parser.add_argument("-c", "--cfg", choices=("job", "hydra", "all"), help="show the config without a simulation")
     parser.add_argument("--hydra-help", action="store_true", help="show all flags of Hydra")
     parser.add_argument("--version", action="store_true", help="show the version")
 
 
 def _add_own(parser: Parser) -> None:
-    parser.add_shared(output="outputs folder, as outputs=PATH", jobs="number of processes of a sweep")
+    parser.add_shared("config_dir", output="outputs folder, as outputs=PATH", jobs="number of processes of a sweep")
 
 
 def run(arguments: Namespace) -> int:
@@ -38,6 +38,7 @@ def simulate(words: Sequence[str]) -> int:
     own = Parser(prog="runner run", add_help=False)
     _add_own(own)
     given, others = own.parse_known_args(words)
+    typed = shlex.join(["runner", *words])
     if given.output is not None:
         others.append(f"outputs={given.output}")
     if given.jobs is not None:
@@ -46,4 +47,4 @@ def simulate(words: Sequence[str]) -> int:
         others.append(f"hydra.sweeper.workers={given.jobs}")
     from runner.cli.run import main
 
-    return main(others)
+    return main(others, given.config_dir, typed)

@@ -4,7 +4,6 @@ Hydra's own command reads lines with flags of Hydra. It returns the overrides of
 simulated as from a line without such flags.
 """
 
-import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -17,9 +16,8 @@ from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
 from runner.base.environment_variables import quiet_environment
-from runner.base.errors import RunnerError
 from runner.base.paths import conf_dir
-from runner.cli.ending import tell_run, tell_sweep
+from runner.cli.summary import print_run, print_sweep
 from runner.config.compose.compose import compose
 from runner.config.compose.composer import Composer
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
@@ -33,7 +31,6 @@ _WITHOUT_OURS = (
     "hydra.output_subdir=null",
 )  # fmt: skip
 _SWEEP, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
-_CONFIG_DIR = ("--config-dir", "-cd")
 
 
 class _Line:
@@ -64,10 +61,15 @@ class _Line:
         self.overrides, self.root = [*found["task"], *of_sweeper], node.job.config_name
 
 
-def main(arguments: Sequence[str]) -> int:
-    """Simulate the run or the sweep of a command line; print its folder as the last line."""
+def main(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
+    """Simulate the run or the sweep of a command line; print its folder as the last line.
+
+    Args:
+        words: Overrides, and flags of Hydra.
+        config_dirs: The user's config folders.
+        command: The command line; it is stored with a sweep.
+    """
     quiet_environment()
-    words, config_dirs = _take_config_dirs(arguments)
     if any(word.startswith("-") and word not in _SWEEP for word in words):
         line = _read_by_hydra(words, config_dirs)
     else:
@@ -80,46 +82,21 @@ def main(arguments: Sequence[str]) -> int:
 
         composer = Composer(config_dirs, line.root)
         ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
-        command = shlex.join(["runner", *arguments])
-        return tell_sweep(sweep_typed(ours, composer.sweeper(overrides), composer, command))
+        return print_sweep(sweep_typed(ours, composer.sweeper(overrides), composer, command))
     composed = compose(overrides, config_dirs, line.root)
     from runner.sweeps.job import find_or_make  # after the composition, so that errors are reported at once
 
     run, made = find_or_make(composed)
-    return tell_run(run, made, composed.resolved.get("caveats"))
-
-
-def _take_config_dirs(arguments: Sequence[str]) -> tuple[list[str], list[Path]]:
-    """Return the other arguments, and the folders of --config-dir.
-
-    Raises:
-        RunnerError: if a folder does not exist.
-    """
-    others: list[str] = []
-    config_dirs: list[Path] = []
-    words = iter(arguments)
-    for word in words:
-        if word in _CONFIG_DIR:
-            config_dirs.append(Path(next(words, "")))
-        elif word.startswith("--config-dir="):
-            config_dirs.append(Path(word.partition("=")[2]))
-        else:
-            others.append(word)
-    for folder in config_dirs:
-        if not folder.is_dir():
-            raise RunnerError(f"--config-dir: no folder {folder}")
-    return others, config_dirs
+    return print_run(run, made, composed.resolved.get("caveats"))
 
 
 def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
     """Let Hydra's command read a line with flags of Hydra, after its config has composed; return its overrides."""
     line = _Line()
-    if {"-sc", "--shell-completion"}.isdisjoint(words):
-        words = [*user_overrides(), *force(words)]
-    sys.argv = ["runner", *words, *(_WITHOUT_OURS if "--hydra-help" in words else ())]
+    sys.argv = ["runner", *user_overrides(), *force(words), *(_WITHOUT_OURS if "--hydra-help" in words else ())]
     given = get_args_parser().parse_args()
     try:
-        if not (given.hydra_help or given.shell_completion):
+        if not given.hydra_help:
             mode = RunMode.MULTIRUN if given.multirun else RunMode.RUN
             root = given.config_name or "config"
             Composer(config_dirs, root).load(given.overrides, mode=mode)  # checks what Hydra does not

@@ -6,7 +6,7 @@ from stored data and have no checksums; baselines and claims are edited by peopl
 
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -23,12 +23,12 @@ _WORDS: Mapping[State, str] = {"good": "as written", "unfinished": "unfinished",
 
 @dataclass(frozen=True)
 class Found:
-    """What was found of one thing stored.
+    """State of one stored thing.
 
     Attributes:
-        kind: The folder that it lies in, such as "runs".
-        state: Whether all its digests are right; unfinished where its writer was killed.
-        problem: What is damaged and what makes it anew, in words; empty where nothing is.
+        kind: Its folder, such as "runs".
+        state: "good" if all checksums are right, "unfinished" if its writer was killed.
+        problem: Damage, and the command that repairs it; empty if there is none.
     """
 
     kind: str
@@ -66,7 +66,7 @@ def run(options: Namespace) -> int:
 
 
 def verify(outputs: Path) -> Iterator[Found]:
-    """Read everything that is stored in an outputs folder, and compare it with its digests.
+    """Read everything that is stored in an outputs folder, and compare it with its checksums.
 
     Args:
         outputs: The outputs folder.
@@ -76,74 +76,58 @@ def verify(outputs: Path) -> Iterator[Found]:
     """
     from runner.store import DamagedError
 
-    for kind, (pattern, needed, read) in _KINDS.items():
+    for kind, (pattern, needed) in _KINDS.items():
         for path in sorted((outputs / kind).glob(pattern)):
             if not all((path / name).exists() for name in needed):
                 yield Found(kind, "unfinished")
                 continue
             try:
-                read(path)
+                _read(kind, path)
                 yield Found(kind, "good")
             except DamagedError as error:
                 yield Found(kind, "damaged", str(error))
 
 
-def _run(folder: Path) -> None:
-    from runner.store import open_run
+def _read(kind: str, path: Path) -> None:
+    """Read a stored thing with all its files, which compares them with their checksums."""
+    from runner import store
 
-    run = open_run(folder)
-    # Reads their files, and compares them with their digests.
-    _ = run.urdf, run.units, [run.values(metric) for metric in run.metrics]
+    if kind == "runs":
+        run = store.open_run(path)
+        _ = run.urdf, run.units, [run.values(metric) for metric in run.metrics]
+    elif kind == "calibrations":
+        _ = store.open_calibration(path).urdf
+    elif kind == "shards":
+        from runner.store.shards import open_row, read_outcomes
 
+        for row in range(len(read_outcomes(path))):
+            open_row(path, row)
+    elif kind in ("sweeps", "tunings"):
+        from runner.sweeps.status import read_pace
+        from runner.sweeps.tuning.study import open_tuning
 
-def _calibration(folder: Path) -> None:
-    from runner.store import open_calibration
+        if kind == "tunings":
+            open_tuning(path)
+        read_pace(path)
+        store.open_sweep(path)
+    elif kind == "finer":
+        from runner.store.finer import read_finer
 
-    _ = open_calibration(folder).urdf  # reads its file, and compares it with its digest
+        read_finer(path.parents[1], path.stem)
+    else:
+        from runner.store.seal import read_json
 
-
-def _shard(path: Path) -> None:
-    from runner.store.shards import open_row, read_outcomes
-
-    for row in range(len(read_outcomes(path))):
-        open_row(path, row)
-
-
-def _sweep(folder: Path) -> None:
-    from runner.store import open_sweep
-    from runner.sweeps.status import read_pace
-
-    read_pace(folder)
-    open_sweep(folder)
-
-
-def _tuning(folder: Path) -> None:
-    from runner.sweeps.tuning.study import open_tuning
-
-    open_tuning(folder)
-    _sweep(folder)
+        read_json(path, "its command measures it again")
 
 
-def _benchmark(path: Path) -> None:
-    from runner.store.seal import read_json
-
-    read_json(path, "its command measures it again")
-
-
-def _finer(path: Path) -> None:
-    from runner.store.finer import read_finer
-
-    read_finer(path.parents[1], path.stem)
-
-
-# Of each folder what lies in it, the files without which that is unfinished, and what reads it.
-_KINDS: dict[str, tuple[str, Sequence[str], Callable[[Path], None]]] = {
-    "runs": ("[!.]*", ["metrics.json"], _run),
-    "shards": ("[!.]*.parquet", [], _shard),
-    "sweeps": ("[!.]*", ["sweep.json"], _sweep),
-    "tunings": ("[!.]*", ["tuning.json", "journal.log", "sweep.json"], _tuning),
-    "calibrations": ("[!.]*", ["result.json"], _calibration),
-    "benchmarks": ("[!.]*.json", [], _benchmark),
-    "claims": ("[!.]*.json", [], _benchmark),
-    "finer": ("[!.]*.json", [], _finer),
+# Of each kind: the pattern of its paths, and the files without which one is unfinished.
+_KINDS: Mapping[str, tuple[str, Sequence[str]]] = {
+    "runs": ("[!.]*", ["metrics.json"]),
+    "shards": ("[!.]*.parquet", []),
+    "sweeps": ("[!.]*", ["sweep.json"]),
+    "tunings": ("[!.]*", ["tuning.json", "journal.log", "sweep.json"]),
+    "calibrations": ("[!.]*", ["result.json"]),
+    "benchmarks": ("[!.]*.json", []),
+    "claims": ("[!.]*.json", []),
+    "finer": ("[!.]*.json", []),
 }

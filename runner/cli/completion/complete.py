@@ -19,8 +19,7 @@ from argcomplete.shell_integration import shellcode
 from runner.base.errors import RunnerError, nearest
 from runner.cli.arguments import Names, Parser, Stored
 from runner.cli.commands import COMMANDS, build_parser
-from runner.cli.completion.keys import metric_names
-from runner.cli.completion.overrides import Typed, override_words
+from runner.cli.completion.overrides import Typed, metric_names, override_words
 from runner.store.latest import WORD, Kind, folder_of
 
 _MOST = 1000  # words

@@ -1,18 +1,28 @@
-"""Completion of overrides: group options from file names, keys from the config that Hydra composes."""
+"""Completion of overrides: options of groups from file names, keys from the config that Hydra composes.
 
+Answers that take long are kept in the cache of compiled code, as long as everything that they depend on is unchanged.
+"""
+
+import hashlib
+import itertools
+import os
 import re
-from collections.abc import Iterator, Sequence
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from runner.base.paths import conf_dir
+from runner.base.paths import conf_dir, package_dir, robots_dir
 from runner.config.compose.options import group_options, groups
+from runner.config.compose.user_settings import user_overrides
+from runner.symbolic import cache
 
 _SIGN = re.compile(r"[+~]*")
 _FILE = re.compile(r"^  - (\w+)\s*(?:#.*)?$", re.MULTILINE)  # of a root's defaults: a file whose keys lie at the top
 _GROUP = re.compile(r"^  - (\w+): ", re.MULTILINE)
 _KEY = re.compile(r"^(\w+):[ \t]*([^\s#]?)", re.MULTILINE)
 _SPEC = "spec.metrics."
+_MOST = 10_000  # files that an answer may depend on; with more, it is not kept
 _GLOBAL = "# @package _global_"  # begins a file whose keys lie at the top of the config
 
 
@@ -46,9 +56,7 @@ def override_words(typed: Typed, typed_word: str, root: str) -> Iterator[str]:
     elif word.startswith(_SPEC) and not given and root == "config":
         found = _bounds(word.removeprefix(_SPEC))
     elif given or "." in word:
-        from runner.cli.completion.keys import keys
-
-        found = keys(typed.overrides, typed.config_dirs, word, root)
+        found = _keys(typed, word, root)
     else:
         found = _top(root)
     yield from (sign + each for each in found)
@@ -56,8 +64,6 @@ def override_words(typed: Typed, typed_word: str, root: str) -> Iterator[str]:
 
 def _bounds(word: str) -> Iterator[str]:
     """Yield the metrics that a spec may bound, and the keys of a bound behind a metric."""
-    from runner.cli.completion.keys import metric_names
-
     metric, dot, _ = word.partition(".")
     if dot:
         yield from (f"{_SPEC}{metric}.{key}=" for key in ("min", "max", "reason"))
@@ -92,3 +98,93 @@ def _top(root: str) -> Iterator[str]:
         yield f"{group}="
         if any(not path.read_text().startswith(_GLOBAL) for path in (folder / group).glob("*.yaml")):
             yield f"{group}."
+
+
+def _keys(typed: Typed, word: str, root: str) -> Iterator[str]:
+    """Yield the keys that complete a word up to the next dot; behind a whole key, its value."""
+    key, given, _ = word.partition("=")
+    whole = [each for each in typed.overrides if "=" in each]
+    values: Mapping[str, str | None] = _cached(
+        ["keys of", root, *whole], typed.config_dirs, lambda: dict(_compose(whole, typed.config_dirs, root))
+    )
+    if given:
+        if values.get(key) is not None:
+            yield f"{key}={values[key]}"
+        return
+    place = key.rfind(".") + 1
+    for found in values:
+        if found.startswith(key):
+            name, dot, _ = found[place:].partition(".")
+            yield f"{key[:place]}{name}{dot or '='}"
+
+
+def metric_names() -> Iterable[str]:
+    """Return the names of the built-in metrics."""
+
+    def read() -> list[str]:
+        from runner.cli.list import TOPICS
+
+        return [*TOPICS["metrics"]([])]
+
+    names: list[str] = _cached(["metrics"], [], read)
+    return names
+
+
+def _cached(question: Sequence[str], config_dirs: Sequence[Path], answer: Callable[[], Any]) -> Any:
+    """Return the answer to a question from the cache; it is computed and kept if the cache lacks it."""
+    key = cache_key(question, config_dirs)
+    found = None if key is None else cache.read_answer(key)
+    if found is None:
+        found = answer()
+        if key is not None:
+            cache.write_answer(key, found)
+    return found
+
+
+def _compose(overrides: Sequence[str], config_dirs: Sequence[Path], root: str) -> Iterator[tuple[str, str | None]]:
+    from omegaconf import OmegaConf
+    from omegaconf.errors import OmegaConfBaseException
+
+    from runner.base.dotted_keys import dotted, leaves
+    from runner.config.compose.composer import Composer
+
+    config = Composer(config_dirs, root).load(overrides)
+    ours: Any = OmegaConf.to_container(config, resolve=False)
+    del ours["hydra"]
+    for key, value in ((dotted(place), value) for place, value in leaves(ours)):
+        try:
+            yield key, _typed(OmegaConf.select(config, key) if "${" in str(value) else value)
+        except OmegaConfBaseException:  # it refers to a key that does not exist yet
+            yield key, None
+
+
+def _typed(value: Any) -> str | None:
+    """Return a value as it is typed in an override."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(value) if isinstance(value, int | float | str) else None
+
+
+def cache_key(question: Sequence[str], config_dirs: Sequence[Path]) -> str | None:
+    """Return a digest of a question and of everything that its answer depends on; None if these are too many files.
+
+    It covers the working folder, the user's settings, the path, time and size of every file of our configs, robots and
+    source and of the user's config folders, and the folders of the installed packages.
+    """
+    packages = [(place, os.stat(place).st_mtime_ns) for place in sys.path if os.path.isdir(place)]  # noqa: PTH112, PTH116
+    digest = hashlib.sha256(repr((sys.version, os.getcwd(), user_overrides(), question, packages)).encode())  # noqa: PTH109
+    roots = (conf_dir(), robots_dir(), package_dir(), *(folder.resolve() for folder in config_dirs))
+    files = [*itertools.islice((path for root in roots for path in _tree(root)), _MOST + 1)]
+    try:
+        states = [(path, status.st_mtime_ns, status.st_size) for path in files for status in (os.stat(path),)]  # noqa: PTH116
+    except OSError:  # a file that another process has just removed
+        return None
+    digest.update(repr(states).encode())
+    return digest.hexdigest() if len(files) <= _MOST else None
+
+
+def _tree(root: Path) -> Iterator[str]:
+    """Yield the paths of the files below a folder, in one order."""
+    for folder, folders, files in os.walk(root, followlinks=True):
+        folders[:] = sorted(name for name in folders if name != "__pycache__")
+        yield from (os.path.join(folder, name) for name in sorted(files))  # noqa: PTH118

@@ -90,7 +90,7 @@ def test_bullet_without_pybullet_says_what_to_do(cli, monkeypatch):
 
 def test_the_list_of_plants_says_that_bullet_is_missing(cli, installed):
     (line,) = [line for line in cli("list", "plants").out.splitlines() if line.startswith("bullet ")]
-    assert ("not here, PyBullet is missing: " in line) != installed
+    assert ("PyBullet is not installed: " in line) != installed
 
 
 @pytest.mark.usefixtures("_missing")

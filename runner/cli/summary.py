@@ -19,28 +19,28 @@ _FAILURES_SHOWN = 20
 _MOST_RANKED = 200  # cells; to read so many takes half a second
 
 
-def tell_run(run: "Run", made: bool, thresholds: Any) -> int:
-    """Tell of a run; return its exit code.
+def print_run(run: "Run", made: bool, thresholds: Any) -> int:
+    """Print the summary of a run; return its exit code.
 
     Args:
         run: The run.
-        made: Whether it was made by this command, and not found stored.
-        thresholds: Thresholds of the caveats that were asked for.
+        made: Whether this command simulated it.
+        thresholds: Thresholds of the caveats in the command's config.
     """
     if not run.failure:
-        _tell_metrics(run, made)
-    _tell_spec(run)
+        _print_metrics(run, made)
+    _print_spec(run)
     for warning in run.provenance["warnings"]:
         print(one_line(f"runner: warning: {warning}"), file=sys.stderr)
-    _tell_caveats(run, thresholds)
+    _print_caveats(run, thresholds)
     if run.failure:
         print(one_line(f"runner: {run.failure_text}"), file=sys.stderr)
     print(run.folder)
     return 1 if run.failure else 0
 
 
-def _tell_metrics(run: "Run", made: bool) -> None:
-    """Print what was run, where it is, and the metrics that say most of it."""
+def _print_metrics(run: "Run", made: bool) -> None:
+    """Print the names of a run's parts, its folder, and its main metrics."""
     from runner.cli.columns import align_columns
     from runner.reporting.key_metrics import key_metrics
 
@@ -54,8 +54,8 @@ def _tell_metrics(run: "Run", made: bool) -> None:
         print(align_columns(rows), file=sys.stderr)
 
 
-def _tell_spec(run: "Run") -> None:
-    """Print how often the bounds of a run's spec are kept, where it has any."""
+def _print_spec(run: "Run") -> None:
+    """Print the fraction of repetitions that pass each bound of a run's spec, if it has one."""
     if run.spec is None:
         return
     from runner.cli.columns import align_columns
@@ -67,8 +67,8 @@ def _tell_spec(run: "Run") -> None:
         print(one_line(f"runner: {lacking}"), file=sys.stderr)
 
 
-def _tell_caveats(run: "Run", thresholds: Any) -> None:
-    """Print why a run's result may mislead, and where other thresholds than those asked for were used."""
+def _print_caveats(run: "Run", thresholds: Any) -> None:
+    """Print the caveats of a run, and the thresholds that differ from those of the command's config."""
     from runner.metrics.caveats import changes_since
 
     for caveat in run.caveats:
@@ -78,8 +78,12 @@ def _tell_caveats(run: "Run", thresholds: Any) -> None:
         print(one_line(f"runner: stored before; its caveats were looked for by {'; '.join(changes)}"), file=sys.stderr)
 
 
-def tell_sweep(ended: "Ended") -> int:
-    """Tell of a sweep; return its exit code."""
+def print_sweep(ended: "Ended") -> int:
+    """Print the summary of a sweep; return its exit code."""
+    from runner.store import open_sweep
+    from runner.sweeps.differing import in_words
+    from runner.sweeps.measurements import axes_of
+
     if ended.failures:
         from runner.cli.columns import align_columns
 
@@ -91,18 +95,21 @@ def tell_sweep(ended: "Ended") -> int:
             print(f"  and {len(ended.failures) - len(rows)} more", file=sys.stderr)
     counts = ended.ends.caveats
     if counts.any():
-        told = f"{(counts > 0).sum()} of {len(counts)} cells have caveats, {counts.max()} at most"
-        print(f"runner: {told}; `runner table {ended.folder}` says which", file=sys.stderr)
+        text = f"{(counts > 0).sum()} of {len(counts)} cells have caveats, {counts.max()} at most"
+        print(f"runner: {text}; `runner table {ended.folder}` says which", file=sys.stderr)
     if ended.left:
         print(f"runner: stopped at a failure; left: {ended.left}", file=sys.stderr)
-    _tell_differences(ended)
-    _tell_cells(ended)
+    axes, _ = axes_of(open_sweep(ended.folder).overrides)
+    also = in_words(ended.resolved.differences(axes))
+    if also:
+        print(one_line(f"runner: {also}; the report lists their values"), file=sys.stderr)
+    _print_cells(ended, axes)
     print(ended.folder)
     return 1 if ended.failures else 0
 
 
-def _tell_cells(ended: "Ended") -> None:
-    """Print how many runs were made, what may be said of them, and what may be typed next."""
+def _print_cells(ended: "Ended", axes: "Sequence[Axis]") -> None:
+    """Print the numbers of runs, the answer of the sweep, and the next commands."""
     from runner import store
     from runner.reporting.sweep.question import in_short
     from runner.reporting.sweep.subject import choose
@@ -112,38 +119,20 @@ def _tell_cells(ended: "Ended") -> None:
     made, failed = len(ended.ends) - ended.stored, len(ended.failures)
     runs = "1 run" if len(ended.ends) == 1 else f"{len(ended.ends)} runs"
     text = f"{runs}: {made} made, {ended.stored} stored before, {failed or 'none'} of them failed"
-    told, kept = "", ""
+    answer, spec = "", ""
     if len(ended.names) <= _MOST_RANKED and not (ended.left or failed == len(ended.names)):
         sweep = store.open_sweep(ended.folder)
         work_out_sweep(sweep)
         subject = choose(measure_sweep(sweep))
-        told = in_short(subject)
+        answer = in_short(subject)
         if sweep.spec:
-            from runner.reporting.sweep.spec import summary  # imports what draws, which takes long
+            from runner.reporting.sweep.spec import summary  # imports charts, which takes long
 
-            kept = summary(subject, sweep)
-    for line in filter(None, (text, told, kept)):
+            spec = summary(subject, sweep)
+    for line in filter(None, (text, answer, spec)):
         print(one_line(f"runner: {line}"), file=sys.stderr)
     here = ended.outputs.resolve() == outputs_dir().resolve()
     name = WORD if here else str(ended.folder)
-    compared = next((axis.name for axis in _axes(ended) if axis.name != "seed"), None)
+    compared = next((axis.name for axis in axes if axis.name != "seed"), None)
     compare = f", `runner compare {name} --by {compared}`" if compared else ""
     print(one_line(f"runner: next: `runner report {name}`, `runner table {name}`{compare}"), file=sys.stderr)
-
-
-def _tell_differences(ended: "Ended") -> None:
-    """Say in a line that cells differ beyond what was swept, where they do."""
-    from runner.sweeps.differing import in_words
-
-    also = in_words(ended.resolved.differences(_axes(ended)))
-    if also:
-        print(one_line(f"runner: {also}; the report lists their values"), file=sys.stderr)
-
-
-def _axes(ended: "Ended") -> "Sequence[Axis]":
-    """Return what was swept."""
-    from runner.store import open_sweep
-    from runner.sweeps.measurements import axes_of
-
-    axes, _ = axes_of(open_sweep(ended.folder).overrides)
-    return axes

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.cli.completion.basis import basis
+from runner.cli.completion.overrides import cache_key
 from runner.symbolic import cache
 
 LINE = ("robot=macro", "plant=rk4", "duration=0.05")
@@ -19,33 +19,32 @@ def test_source_and_what_is_installed_count(tmp_path, monkeypatch):
     package, place = tmp_path / "package", tmp_path / "site"
     package.mkdir()
     place.mkdir()
-    monkeypatch.setattr("runner.cli.completion.basis.package_dir", lambda: package)
+    monkeypatch.setattr("runner.cli.completion.overrides.package_dir", lambda: package)
     monkeypatch.syspath_prepend(str(place))
-    digests = {basis(LINE, [])}
+    digests = {cache_key(LINE, [])}
     (package / "law.py").write_text("1")
-    digests.add(basis(LINE, []))
+    digests.add(cache_key(LINE, []))
     (package / "law.py").write_text("2")
-    digests.add(basis(LINE, []))
+    digests.add(cache_key(LINE, []))
     (place / "engine-1.dist-info").mkdir()
-    digests.add(basis(LINE, []))
+    digests.add(cache_key(LINE, []))
     assert len(digests) == 4
-    assert basis(LINE, []) in digests
+    assert cache_key(LINE, []) in digests
 
 
 def test_the_folder_counts(tmp_path, monkeypatch):
-    here = basis(LINE, [])
+    here = cache_key(LINE, [])
     monkeypatch.chdir(tmp_path)
-    assert basis(LINE, []) != here
+    assert cache_key(LINE, []) != here
 
 
-def test_a_large_config_folder_is_not_read(tmp_path, monkeypatch):
+def test_nothing_is_kept_for_a_config_folder_with_many_files(tmp_path, monkeypatch):
+    key = cache_key(LINE, [tmp_path])
+    assert key is not None
     (tmp_path / "a.yaml").write_text("a: 1")
-    assert basis(LINE, [tmp_path]) is not None
-    monkeypatch.setattr("runner.cli.completion.basis._LARGEST", 3)
-    assert basis(LINE, [tmp_path]) is None
-    monkeypatch.setattr("runner.cli.completion.basis._LARGEST", 100)
-    monkeypatch.setattr("runner.cli.completion.basis._MOST", 1)
-    assert basis(LINE, [tmp_path]) is None
+    assert cache_key(LINE, [tmp_path]) not in (key, None)
+    monkeypatch.setattr("runner.cli.completion.overrides._MOST", 1)
+    assert cache_key(LINE, [tmp_path]) is None
 
 
 def test_answers_are_bounded(tmp_path, monkeypatch):
