@@ -280,7 +280,7 @@ def test_output_and_jobs_of_runs_and_sweeps(cli, tmp_path):
     assert run.folder.parent == tmp_path / "else where" / "runs"
     sweep = cli("sweep", *SHORT, "seed=0,1", "-j", "1", f"--output={tmp_path / 'other'}")
     assert (sweep.code, sweep.folder.parent) == (0, tmp_path / "other" / "sweeps")
-    assert "hydra.sweeper.workers=1" in open_sweep(sweep.folder).command
+    assert "seed=0,1 -j 1 --output=" in open_sweep(sweep.folder).command
     assert cli(*SHORT, "-j", "2").err == "runner: --jobs: one run uses one process. Add -m for a sweep.\n"
     assert "-j/--jobs: must be a whole number, 1 or more; found '0'" in cli("sweep", *SHORT, "-j", "0").err
 
