@@ -7,7 +7,7 @@ a run.
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,15 +15,13 @@ from runner import store
 from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.config.compose.compose import Composed
-from runner.config.run import RunConfig
-from runner.config.validation import validate
-from runner.metrics.plant_error import COMPARED, PLANT, on_runge_kutta, reason_not_comparable
-from runner.simulation.batch_blocks import simulate_blocks, threads_allowed
 from runner.statistics.interval import SMALLEST_SAMPLE
 from runner.store import Run, Sweep
 from runner.store.finer import finer_names, write_finer
 from runner.sweeps.measurements import axes_of
+
+if TYPE_CHECKING:
+    from runner.config.run import RunConfig
 
 DRAWS = 8
 """Repetitions that are made again, the first ones: what the step leaves scatters far less than what is drawn."""
@@ -69,6 +67,11 @@ def work_out(outputs: Path, runs: Iterable[Run]) -> None:
 
 def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
     """Return why a run has no finer step, and its metrics on it; None where it cannot be made as it was."""
+    # Imports of the simulator, which a comparison of runs with known errors does not need
+    from runner.config.compose.compose import Composed
+    from runner.config.validation import validate
+    from runner.simulation.batch_blocks import simulate_blocks, threads_allowed
+
     try:
         config = validate(run.config, run.config_dirs)
         if store.run_hash(run.config, config.arm.urdf) != run.hash:
@@ -89,15 +92,19 @@ def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
     }
 
 
-def _hindrance(config: RunConfig) -> str:
+def _hindrance(config: "RunConfig") -> str:
+    from runner.metrics.plant_error import COMPARED, PLANT, reason_not_comparable
+
     kind = config.plant.kind
     if reason := reason_not_comparable(config.environment.kind):
         return reason
     return "" if kind in COMPARED or kind.startswith(PLANT) else f"plant={kind} has no finer step"
 
 
-def _finer(given: Mapping[str, Any], config: RunConfig) -> dict[str, Any]:
-    """Return the config of the same run on a finer step, the first repetitions alone."""
+def _finer(given: Mapping[str, Any], config: "RunConfig") -> dict[str, Any]:
+    """Return the config of the same run on a finer step, with the first repetitions only."""
+    from runner.metrics.plant_error import COMPARED, on_runge_kutta
+
     if config.plant.kind in COMPARED:
         resolved = on_runge_kutta(given)
     else:
