@@ -1,7 +1,7 @@
 """Checked config of a run, with the objects that the checks built."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 from runner.base.arrays import FloatArray
 from runner.config.caveats import CaveatsConfig
@@ -20,6 +20,9 @@ from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise, EndpointSensorConfig, ForceTorqueConfig
 from runner.trajectories import Trajectory
+
+# Fields that differ between configs of the same run, or that are new objects in each config.
+_OF_ONE_RUN = frozenset({"settings", "resolved", "loaded", "plugged", "joint_torques", "timing"})
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,14 @@ class RunConfig:
     def with_seed(self, resolved: Mapping[str, object]) -> "RunConfig":
         """Return the same run with the seed of another config, from which it differs in nothing else."""
         return replace(self, settings=self.settings.model_copy(update={"seed": resolved["seed"]}), resolved=resolved)
+
+    @property
+    def cache_key(self) -> tuple[object, ...]:
+        """All parts of a run but its seed: numbers, and objects that several configs share; see Memory."""
+        parts = (getattr(self, each.name) for each in fields(self) if each.name not in _OF_ONE_RUN)
+        times = (getattr(self.timing, each.name) for each in fields(self.timing) if each.name != "late")
+        several = (*self.loaded, *self.plugged.items(), self.joint_torques or (), self.timing.late)
+        return (*parts, *times, self.settings.repetitions, *(part for each in several for part in each))
 
     @property
     def compilable(self) -> bool:

@@ -15,7 +15,6 @@ from runner.base.cache import Memory
 from runner.base.ticks import add_ticks
 from runner.base.trace import Trace, Traces
 from runner.config.run import RunConfig
-from runner.config.timing import Timing
 from runner.metrics import MetricContext
 from runner.plugins.discovery import added_parts
 from runner.robots.robot import Robot, end_points
@@ -122,13 +121,8 @@ class BatchSimulator:
 
     def _loop(self, config: RunConfig, repetition: int) -> tuple[LoopProgram, FloatArray] | None:
         """Return the closed loop of a repetition, and where it starts; see assemble_program."""
-        # Beliefs are drawn for each repetition; all else follows from these parts.
-        drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else ()
-        parts = (
-            *("whole", config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
-            *(config.path, config.mismatch, config.robot, config.environment, *_times(config.timing), *drawn),
-        )
-        return self.memory.known(parts, lambda: assemble_program(config, repetition))
+        drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else ()  # beliefs of each repetition
+        return self.memory.known(("loop", *drawn, *config.cache_key), lambda: assemble_program(config, repetition))
 
     def simulate(self, runs: Sequence[RunSpec]) -> Iterator[BatchResult | tuple[int, Trace]]:
         """Simulate runs; yield those that ended well, many at a time, and the place and trace of each that failed."""
@@ -226,11 +220,6 @@ class BatchSimulator:
             joint_units=model.joint_units,
             tick_seconds=np.full(len(t) - 1, seconds),
         )
-
-
-def _times(timing: Timing) -> tuple[object, ...]:
-    """Return what times a closed loop follows from, one by one."""
-    return (timing.tick, timing.step, timing.steps_per_tick, timing.even, timing.ticks, *timing.late)
 
 
 def _start(runs: Sequence[RunSpec], errors: Sequence[FloatArray]) -> FloatArray:

@@ -63,7 +63,7 @@ def simulate_blocks(job: Job, threads: int = 1, ticks: int = TICKS) -> RunResult
             first.watch.join(run.watch)
         failure = failure or run.failure
     result = replace(first, names=names, values=values.T, failure=failure).result()
-    clock = timing(first.trace.tick_seconds, time.perf_counter() - wall, time.process_time() - cpu)
+    clock = timing(result.trace.tick_seconds, time.perf_counter() - wall, time.process_time() - cpu)
     return replace(result, timing=clock)
 
 

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 
@@ -14,7 +14,7 @@ from runner.base.trace import Failure, Trace
 from runner.config.compose.compose import Composed
 from runner.config.run import RunConfig
 from runner.metrics import measure, summarize_arrays
-from runner.metrics.caveats import Found, Setting, Watch, look_together, setting_of, signals_of
+from runner.metrics.caveats import Found, Watch, look_together, setting_of, signals_of
 from runner.simulation.batch import BatchSimulator, RunSpec
 from runner.simulation.provenance import job_provenance
 from runner.simulation.result import RunResult, timing
@@ -24,29 +24,65 @@ NO_DEADLINE: AbstractContextManager[None] = nullcontext()
 _LONG = 0.5  # s: what takes longer is not made twice to be timed
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Simulated:
-    """A run all of whose repetitions are simulated, or those that were asked for.
+    """A run and the results of its repetitions, or of those that were asked for; complete once `left` is 0.
 
     Attributes:
         place: Which it is of those that were asked for.
         job: Its checked config, and what that was checked from.
-        names: Names of its metrics; empty where no repetition ended well.
+        first: Number of the first repetition that was asked for.
+        watch: Looks for caveats.
+        left: Number of repetitions that are not simulated yet.
         values: Its metrics, shape (repetitions, metrics), NaN for none.
-        watch: What looked for reasons why they may not be what they seem.
+        names: Names of its metrics; empty where no repetition ended well.
         failure: The first failure and its repetition, or None.
-        trace: The trace of its first repetition.
-        seconds: Its share of the time that a clock measured, in s.
+        trace: The trace of the first repetition; None until that is simulated.
+        seconds: Its part of the time that a clock measured, in s.
     """
 
     place: int
     job: Job
-    names: tuple[str, ...]
-    values: FloatArray
+    first: int
     watch: Watch
-    failure: tuple[int, Failure] | None
-    trace: Trace
-    seconds: float
+    left: int
+    values: FloatArray
+    names: tuple[str, ...] = ()
+    failure: tuple[int, Failure] | None = None
+    trace: Trace | None = None
+    seconds: float = 0.0
+
+    @classmethod
+    def begin(cls, place: int, job: Job, runs: Sequence[RunSpec], batcher: BatchSimulator) -> "Simulated":
+        """Return a run with no result yet; see simulate_together."""
+        config, q_start = job[0], runs[0].q_start
+        setting = batcher.memory.known(("setting", q_start, *config.cache_key), lambda: setting_of(config, q_start))
+        watch = Watch(setting, config.caveats)
+        return cls(place, job, runs[0].repetition, watch, len(runs), np.zeros((len(runs), 0)))
+
+    def measured(self, repetitions: Sequence[int], names: tuple[str, ...], values: FloatArray) -> None:
+        """Take the metrics of repetitions that ended well, shape (n, metrics)."""
+        if not self.names:
+            self.names, self.values = names, np.full((len(self.values), len(names)), np.nan)
+        self.values[np.array(repetitions) - self.first] = values
+
+    def failed(self, repetition: int, failure: Failure) -> None:
+        """Take the failure of a repetition."""
+        if self.failure is None or repetition < self.failure[0]:
+            self.failure = repetition, failure
+
+    def ended(self, repetitions: int, seconds: float, trace: Trace | None) -> bool:
+        """Note that repetitions have ended, and return whether all have.
+
+        Args:
+            repetitions: Number of them.
+            seconds: The time that each took, in s.
+            trace: The trace of `first` if it is among them.
+        """
+        self.left -= repetitions
+        self.seconds += seconds * repetitions
+        self.trace = self.trace if trace is None else trace
+        return not self.left
 
     @cached_property
     def caveats(self) -> Found:
@@ -56,11 +92,13 @@ class Simulated:
     @property
     def timing(self) -> dict[str, float | None]:
         """What a clock measured."""
+        assert self.trace is not None  # noqa: S101 - it is complete
         return timing(self.trace.tick_seconds, self.seconds, self.seconds)
 
     def result(self) -> RunResult:
         """Return all that it leaves to be stored."""
         config, composed = self.job
+        assert self.trace is not None  # noqa: S101 - it is complete
         return RunResult(
             resolved=config.resolved,
             urdf=config.arm.urdf,
@@ -72,62 +110,6 @@ class Simulated:
             timing=self.timing,
             provenance=job_provenance(config, composed),
         )
-
-
-class _Gathered:
-    """What is known so far of a run.
-
-    Attributes:
-        first: Its first repetition of those that were asked for.
-        watch: Looks for reasons why its result may not be what it seems.
-    """
-
-    def __init__(self, place: int, job: Job, runs: Sequence[RunSpec], batcher: BatchSimulator) -> None:
-        self._place, self._job, self.first = place, job, runs[0].repetition
-        self.watch = Watch(_setting(job[0], runs[0].q_start, batcher), job[0].caveats)
-        self._names: tuple[str, ...] = ()
-        self._values = np.zeros((len(runs), 0))
-        self._failure: tuple[int, Failure] | None = None
-        self._trace: Trace | None = None
-        self._left, self._seconds = len(runs), 0.0
-
-    def measured(self, repetitions: Sequence[int], names: tuple[str, ...], values: FloatArray) -> None:
-        """Take the metrics of repetitions that ended well, shape (n, metrics)."""
-        if not self._names:
-            self._names, self._values = names, np.full((len(self._values), len(names)), np.nan)
-        self._values[np.array(repetitions) - self.first] = values
-
-    def failed(self, repetition: int, failure: Failure) -> None:
-        """Take note of a repetition that failed."""
-        if self._failure is None or repetition < self._failure[0]:
-            self._failure = repetition, failure
-
-    def ended(self, repetitions: int, seconds: float, trace: Trace | None) -> Simulated | None:
-        """Take note that repetitions have ended, with the trace of the first one; return the run once all have.
-
-        Args:
-            repetitions: Number of them.
-            seconds: The time that each took, in s.
-            trace: The trace of `first` if it is among them.
-        """
-        self._left -= repetitions
-        self._seconds += seconds * repetitions
-        self._trace = self._trace if trace is None else trace
-        if self._left or self._trace is None:
-            return None
-        return Simulated(
-            self._place, self._job, self._names, self._values, self.watch, self._failure, self._trace, self._seconds
-        )
-
-
-def _setting(config: RunConfig, q_start: FloatArray, batcher: BatchSimulator) -> Setting:
-    """Return the setting of a run, which those that differ in nothing but the seed share."""
-    parts = (
-        *("setting", config.arm, config.loops, config.plant, config.controller, config.noise, config.torque_limits),
-        *(q_start, config.path, config.mismatch, config.robot, config.environment, config.wrist_sensor),
-        *(*astuple(config.timing), config.commands, config.settings.repetitions),
-    )
-    return batcher.memory.known(parts, lambda: setting_of(config, q_start))
 
 
 def seconds_together(
@@ -183,15 +165,18 @@ def simulate_together(
     Raises:
         SimulationError: where a trajectory of the user's goes wrong in a metric.
     """
-    gathered = [_Gathered(place, job, own, batcher) for place, (job, own) in enumerate(zip(jobs, runs, strict=True))]
-    owners = [(own, run.repetition) for own, of_job in zip(gathered, runs, strict=True) for run in of_job]
+    owners = []
+    for place, (job, own_runs) in enumerate(zip(jobs, runs, strict=True)):
+        own = Simulated.begin(place, job, own_runs, batcher)
+        owners += [(own, run.repetition) for run in own_runs]
     for found in batcher.simulate([run for of_job in runs for run in of_job]):
-        ended = []
+        complete = []
         if isinstance(found, tuple):
             (own, repetition), trace = owners[found[0]], found[1]
             assert trace.failure is not None  # noqa: S101 - such a trace has one
             own.failed(repetition, trace.failure)
-            ended.append(own.ended(1, trace.tick_seconds.sum(), trace if repetition == own.first else None))
+            if own.ended(1, trace.tick_seconds.sum(), trace if repetition == own.first else None):
+                complete.append(own)
         else:
             metrics, traces = measure(found.traces, found.context), found.traces
             names, values = tuple(metrics), np.stack(list(metrics.values()), axis=1)
@@ -203,8 +188,8 @@ def simulate_together(
             for own, repetitions in apart:
                 own.measured(repetitions, names, values[row : row + len(repetitions)])
                 first = traces.run(row) if own.first == repetitions[0] else None
-                ended.append(own.ended(len(repetitions), seconds, first))
+                if own.ended(len(repetitions), seconds, first):
+                    complete.append(own)
                 row += len(repetitions)
-        complete = [run for run in ended if run is not None]
         if complete:
             yield complete

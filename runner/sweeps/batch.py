@@ -1,7 +1,6 @@
 """Batch simulation of the runs of a chunk."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import astuple
 
 import numpy as np
 
@@ -91,6 +90,6 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> I
 def _provenance(job: Job, batcher: BatchSimulator) -> dict[str, object]:
     """Return where a run comes from, which is much the same for runs that share their parts."""
     config, composed = job
-    parts = ("provenance", config.arm, config.plant, *astuple(config.timing), composed.choices, config.commands)
-    common = batcher.memory.known(parts, lambda: job_provenance(config, composed))
+    key = ("provenance", composed.choices, *config.cache_key)
+    common = batcher.memory.known(key, lambda: job_provenance(config, composed))
     return {**common, "command": command(composed), "seed": config.settings.seed}
