@@ -84,9 +84,12 @@ def main(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int
         ours = [each for each in overrides if not each.startswith(_OF_SWEEPER)]
         return print_sweep(sweep_typed(ours, composer.sweeper(overrides), composer, command))
     composed = compose(overrides, config_dirs, line.root)
-    from runner.sweeps.job import find_or_make  # after the composition, so that errors are reported at once
+    from runner.config.validation import validate  # after the composition, so that errors are reported at once
 
-    run, made = find_or_make(composed)
+    config = validate(composed.resolved, composed.config_dirs)
+    from runner.sweeps.job import find_or_make  # after validation, for the same reason
+
+    run, made = find_or_make(composed, config)
     return print_run(run, made, composed.resolved.get("caveats"))
 
 

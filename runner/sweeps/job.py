@@ -185,12 +185,11 @@ def run(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Run:
 
 def execute(composed: Composed) -> store.Run:
     """Run a composed config, or return its stored run; see `run`."""
-    return find_or_make(composed)[0]
+    return find_or_make(composed, validate(composed.resolved, composed.config_dirs))[0]
 
 
-def find_or_make(composed: Composed) -> tuple[store.Run, bool]:
-    """Run a composed config, or find its stored run; return the run, and whether it was made."""
-    config = validate(composed.resolved, composed.config_dirs)
+def find_or_make(composed: Composed, config: RunConfig) -> tuple[store.Run, bool]:
+    """Run a composed config, which was checked, or find its stored run; return the run, and whether it was made."""
     outputs = Path(config.settings.outputs)
     name = store.run_hash(composed.resolved, config.arm.urdf)
     try:

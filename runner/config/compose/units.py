@@ -142,13 +142,16 @@ def with_numbers(override: str) -> str:
 
 def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Iterator[type[StrictModel]]:
     """Yield the models of a group, or of the one kind of it that is chosen."""
-    from runner.calibration.procedures import CALIBRATIONS
     from runner.config.groups import GROUPS, PLUGGED
     from runner.config.robot import OneArmConfig, StageConfig
     from runner.config.settings import RunSettings
     from runner.plugins.registry import Kinds
 
-    known = CALIBRATIONS if group == CALIBRATIONS.group else GROUPS.get(group)
+    known = GROUPS.get(group)
+    if group == "calibration":
+        from runner.calibration.procedures import CALIBRATIONS  # for few commands
+
+        known = CALIBRATIONS
     if not group:
         yield RunSettings
     elif rest[0] == "stages":

@@ -25,12 +25,12 @@ print(json.dumps([codes, sorted(parts), sorted(large & {*sys.modules})]))
 """
 
 
-def test_runs_sweeps_and_comparisons_need_linear_algebra_and_special_functions_of_scipy_alone(tmp_path):
+def test_runs_sweeps_and_comparisons_need_linear_algebra_and_special_functions_of_scipy_at_most(tmp_path):
     ended = subprocess.run(
         [sys.executable, "-c", CHILD, json.dumps(LINES)],
         check=True, cwd=tmp_path, capture_output=True, text=True, timeout=PATIENCE,
     )  # fmt: skip
     codes, parts, large = json.loads(ended.stdout.splitlines()[-1])
     assert codes == [0] * len(LINES)
-    assert parts == ["linalg", "special"]
+    assert {*parts} <= {"linalg", "special"}
     assert large == []
