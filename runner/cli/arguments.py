@@ -125,7 +125,7 @@ class Parser(argparse.ArgumentParser):
         self.add_argument("--format", type=Names(allowed, most), metavar="A,B", help=meaning)
 
     def add_overrides(self, meaning: str, root: str = "config") -> None:
-        """Add a list of overrides; options may stand between them.
+        """Add a list of overrides, with options anywhere among them.
 
         Args:
             meaning: Its help.
@@ -135,7 +135,7 @@ class Parser(argparse.ArgumentParser):
         self.root, self._options_first = root, True
 
     def parse_known_args(self, args: Iterable[str] | None = None, namespace: Any = None) -> Any:
-        """Parse arguments; where the parser takes overrides, options may stand between them."""
+        """Parse arguments; options may be anywhere among overrides."""
         words = list(args or ())
         return super().parse_known_args(self._sorted(words) if self._options_first else words, namespace)
 
@@ -156,7 +156,7 @@ class Parser(argparse.ArgumentParser):
         return [*options, *others]
 
     def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
-        """Return the value of an argument; completion takes any word, so that it can go on behind a wrong one."""
+        """Return the value of an argument; completion takes any word, because an earlier word may be wrong."""
         return arg_string if "_ARGCOMPLETE" in os.environ else super()._get_value(action, arg_string)
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:

@@ -53,10 +53,10 @@ def check_law(name: str, profile: str, part: "UserPlugin", workers: int) -> Iter
         name: The study.
         profile: Its profile; empty for the one that it makes otherwise.
         part: The law.
-        workers: Number of processes that are to make its runs.
+        workers: Number of processes for its runs.
 
     Raises:
-        RunnerError: with all that is wrong, if the law does not fit.
+        RunnerError: with all problems, if the controller does not fit.
     """
     from runner.study.estimate import told
     from runner.study.fit import fit

@@ -115,7 +115,7 @@ def _move_row(move: "Move") -> list[str]:
 
 
 def _direction(move: "Move") -> str:
-    """Return which way a metric moved, and by how much of what it was; no value counts as beyond every number."""
+    """Return the direction and the relative size of a change; a missing value counts as beyond every number."""
     old, new = None if move.was is None else move.was.median, move.value
     if old is None or new is None:
         return "new" if move.was is None else "up" if new is None else "down"

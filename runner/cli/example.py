@@ -29,7 +29,7 @@ def copy_examples(folder: Path) -> list[Path]:
     """Copy all examples that come with the package; return the copies.
 
     Args:
-        folder: Where; made if it is not there.
+        folder: Target folder; it is created if it does not exist.
 
     Raises:
         RunnerError: if there is something in the folder already, or it cannot be written.

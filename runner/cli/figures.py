@@ -107,7 +107,7 @@ def _of_study(name: str, outputs: Path) -> "tuple[Document, Path]":
 
 
 def _tell_failure(run: "Run") -> None:
-    """Tell that a run failed where its trace goes up to then.
+    """Print that a run failed, and the end of its trace.
 
     Raises:
         RunnerError: If it has no trace to draw.

@@ -66,7 +66,7 @@ def _list_metrics(_: Sequence[Path]) -> dict[str, str]:
 
 
 def _read_bullets(docstring: str) -> dict[str, str]:
-    """Return what a docstring's bullets `- name, name: meaning; more` say of each name, up to the semicolon."""
+    """Return the meaning of each name in a docstring's bullets `- name, name: meaning; more`, up to the semicolon."""
     meanings = {}
     for names, meaning in re.findall(r"^\s*- ([\w, ]+): (.+?)(?:;|\.?\s*(?=^\s*- |\Z))", docstring, re.M | re.S):
         for name in names.split(","):

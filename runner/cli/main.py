@@ -31,7 +31,7 @@ def main() -> None:
         code = dispatch(sys.argv[1:])
         sys.stdout.flush()
     except OSError as error:
-        # What is still buffered must not complain again when the interpreter flushes it at the very end.
+        # Buffered output must not raise again when the interpreter flushes it at the end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = 0  # the reader has closed the pipe, as in `runner list | head -1`
         if not isinstance(error, BrokenPipeError):

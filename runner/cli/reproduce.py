@@ -50,7 +50,7 @@ class _Way:
 
 @dataclass(frozen=True)
 class _Reproduced:
-    """What came of a study: its report, the runs behind it by name, why others are missing, and caveats it expects."""
+    """Result of a study: its report, its runs by name, the reasons for missing runs, and the expected caveats."""
 
     document: "Document"
     runs: "Mapping[str, Run]"

@@ -63,7 +63,7 @@ def shell_code(words: Sequence[str]) -> str:
             f"-sc: found {wrong}{near}. Allowed: install= and one of {', '.join(_SHELLS)}, as in "
             'eval "$(runner -sc install=bash)"'
         )
-    # A key that ends with a dot goes on, so the shell must not put a space behind it.
+    # The shell must not add a space behind a key that ends with a dot.
     return shellcode(["runner"], shell=asked[0]).replace("[=/:]", "[=/:.]")
 
 
@@ -80,7 +80,7 @@ class _Finder(CompletionFinder):
     """Argcomplete's finder, with a bounded number of words."""
 
     def _init_debug_stream(self) -> None:
-        """Leave file descriptor 9 alone."""
+        """Do not open file descriptor 9, which may belong to another part of the process."""
 
     def filter_completions(self, completions: list[str]) -> list[str]:
         """Return the words without repetitions, sorted; at most a thousand."""
