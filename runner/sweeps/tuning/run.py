@@ -64,7 +64,7 @@ def tune(
     shared = [text for text in fixed if not text.startswith("hydra.")]
     _check_numbers(Grid(shared, loader), keys)
     plan, checked = _check_ranges(loader, shared, keys)
-    shown = [text for text in shared if is_simulated(text.partition("=")[0])]
+    shown = [text for text in shared if is_simulated(text)]
     study = Study(shown, keys, objectives, at_once, command)
     seed = cast(int, plan.composed(0).resolved["seed"])
     store.prepare(checked.outputs)
