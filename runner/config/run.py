@@ -1,7 +1,7 @@
 """Checked config of a run, with the objects that the checks built."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 from runner.base.arrays import FloatArray
 from runner.config.caveats import CaveatsConfig
@@ -92,8 +92,8 @@ class RunConfig:
     @property
     def cache_key(self) -> tuple[object, ...]:
         """All parts of a run but its seed: numbers, and objects that several configs share; see Memory."""
-        parts = (getattr(self, each.name) for each in fields(self) if each.name not in _OF_ONE_RUN)
-        times = (getattr(self.timing, each.name) for each in fields(self.timing) if each.name != "late")
+        parts = (part for name, part in vars(self).items() if name not in _OF_ONE_RUN)
+        times = (part for name, part in vars(self.timing).items() if name != "late")
         several = (*self.loaded, *self.plugged.items(), self.joint_torques or (), self.timing.late)
         return (*parts, *times, self.settings.repetitions, *(part for each in several for part in each))
 
