@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.metrics.caveats import changes_since
 from runner.store import Run
 from runner.store.shards import METRIC, open_row, read_columns
 from runner.sweeps.differing import Resolver
@@ -34,7 +32,7 @@ class Gathered:
         units: Unit of each metric.
         provenance: Plant, commit, machine, date and versions behind the runs, each with its distinct values.
         caveats: Why the result of each cell may not be what it seems.
-        changes: With what else than today caveats were looked for, each with the number of cells.
+        rules: Rules that looked for caveats, each with the number of cells.
         configs: Each resolved config with the cells that have it; those of a shard may differ in their seed.
     """
 
@@ -45,7 +43,7 @@ class Gathered:
         self.units: dict[str, str] = {}
         self.provenance: dict[str, dict[str, None]] = {}
         self.caveats: list[Sequence[Mapping[str, Any]]] = [()] * cells
-        self.changes: Counter[str] = Counter()
+        self.rules: list[tuple[Mapping[str, Any] | None, int]] = []
         self.configs: list[tuple[Mapping[str, Any], list[Cells]]] = []
         self._places: dict[object, int] = {}  # of configs, by their text without the seed
         self._values: dict[str, FloatArray] = {}
@@ -56,7 +54,7 @@ class Gathered:
         """Take the run of a cell."""
         self.hashes[cell], self.failures[cell], self.caveats[cell] = run.hash, run.failure_text, run.caveats
         self.seeds[cell] = int(run.provenance["seed"])
-        self.changes.update(changes_since(run.caveat_rules))
+        self._count_rules(run.caveat_rules, 1)
         self._note(run)
         for name, metric in run.metrics.items():
             own = run.values(name)
@@ -94,7 +92,7 @@ class Gathered:
         for place, cell in enumerate(cells.tolist()):
             self.hashes[cell], self.failures[cell], self.caveats[cell] = names[place], failures[place], caveats[place]
         for some, count in rules:
-            self.changes.update(dict.fromkeys(changes_since(some), count))
+            self._count_rules(some, count)
         for key, same in _settings(table["config"].to_pylist()).items():
             if key not in self._places:
                 run = open_row(path, int(rows[same[0]]))
@@ -106,6 +104,13 @@ class Gathered:
             self.provenance.setdefault(name, {}).update(dict.fromkeys(texts))
         for name, unit, members, values in metrics:
             self._put(name, unit, cells[members], values)
+
+    def _count_rules(self, rules: Mapping[str, Any] | None, count: int) -> None:
+        for place, (known, before) in enumerate(self.rules):
+            if known == rules:
+                self.rules[place] = (known, before + count)
+                return
+        self.rules.append((rules, count))
 
     def _note(self, run: Run) -> None:
         """Take note of what made a run."""

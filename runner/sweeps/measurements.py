@@ -1,5 +1,6 @@
 """Measurements of a sweep by cell: swept axes, status, and every metric in every repetition."""
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -118,7 +119,7 @@ class Measurements:
             where the repetition failed or never settled; NaN where the run has no such metric or repetition.
         provenance: What made the runs: plant, commit, machine, date and so on, each with its distinct values.
         caveats: Why the result of each cell may not be what it seems, as stored: rule, text, value, repetitions.
-        caveat_changes: With what else than today these were looked for, each with the number of cells.
+        caveat_rules: Digest and thresholds of the rules that looked for these, each with the number of cells.
         seeds: Seed of each cell; empty where all have the same.
         differences: Resolved config values that differ between cells beyond the axes.
         configs: Each resolved config with the cells that have it; these may differ in their seed.
@@ -139,7 +140,7 @@ class Measurements:
     values: Mapping[str, FloatArray]
     provenance: Mapping[str, Sequence[str]]
     caveats: Sequence[Sequence[Mapping[str, Any]]] = ()
-    caveat_changes: Mapping[str, int] = field(default_factory=dict)
+    caveat_rules: Sequence[tuple[Mapping[str, Any] | None, int]] = ()
     seeds: Sequence[int] | NDArray[np.int64] = ()
     differences: Sequence[Difference] = ()
     configs: Sequence[tuple[Mapping[str, Any], NDArray[np.intp]]] = ()
@@ -154,6 +155,16 @@ class Measurements:
     def failed(self) -> int:
         """Number of cells that failed."""
         return sum(status != "ok" for status in self.statuses)
+
+    @cached_property
+    def caveat_changes(self) -> Mapping[str, int]:
+        """Differences between these rules and those of today, each with the number of cells."""
+        from runner.metrics.caveats import changes_since  # imports all rules
+
+        found: Counter[str] = Counter()
+        for rules, count in self.caveat_rules:
+            found.update(dict.fromkeys(changes_since(rules), count))
+        return found
 
     @cached_property
     def config_of_cells(self) -> NDArray[np.intp]:
@@ -352,7 +363,7 @@ def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measure
         gathered.values(),
         {key: sorted(texts) for key, texts in provenance.items()},
         gathered.caveats,
-        gathered.changes,
+        gathered.rules,
         gathered.seeds,
         resolved.differences(axes),
         [(config, np.concatenate(members)) for config, members in gathered.configs],
