@@ -18,7 +18,7 @@ THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
         "Share of its loop's ticks at which a joint's torque may jump from one limit to the opposite one.",
     ),
     "did_not_follow": ("share", PositiveFloat, "Share of the size of its motion that the tip's error may reach."),
-    "joint_limits": ("excess", Radians[NonNegativeFloat], "How far a joint may be beyond a position limit, in rad."),
+    "joint_limits": ("excess", Radians[NonNegativeFloat], "Excess of a joint over a position limit, in rad."),
     "exact_velocity": (
         "noise",
         Radians[NonNegativeFloat],
@@ -43,7 +43,7 @@ THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
     "unstable_contact": (
         "radius",
         PositiveFloat,
-        "How many times a small motion in contact with a wall may grow in each period of the controller.",
+        "Growth factor of a small motion in contact with a wall in each control period.",
     ),
     "short_horizon": (
         "share",
@@ -51,7 +51,7 @@ THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
         "Share of the run that three time constants of the slowest part of the control law may take.",
     ),
     "default_plant": ("replaced", _Share, "0 reports it, 1 does not."),
-    "robot_file": ("left_out", NonNegativeFloat, "How many elements that affect the motion may be left out."),
+    "robot_file": ("left_out", NonNegativeFloat, "Number of elements left out that affect the motion."),
     "plant_error": (
         "share",
         _Share,
