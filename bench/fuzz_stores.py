@@ -79,7 +79,7 @@ def _run(run: store.Run | store.Calibration) -> object:
 
 
 def _trace(run: store.Run) -> object:
-    return list(run.trace.columns), run.trace.to_numpy().tobytes(), run.units
+    return list(run.trace().columns), run.trace().to_numpy().tobytes(), run.units
 
 
 def _values(run: store.Run) -> object:

@@ -138,7 +138,7 @@ def _workers_of(pid: int) -> Iterator[int]:
 
 def _metrics(outputs: Path) -> dict[str, object]:
     """Return what all runs of an outputs folder measured, by their names."""
-    return {path.name: open_run(path).metrics for path in (outputs / "runs").iterdir()}
+    return {path.name: open_run(path).record["metrics"] for path in (outputs / "runs").iterdir()}
 
 
 def _reports(folder: Path) -> list[bytes]:

@@ -193,12 +193,12 @@ def run_seed(experiment: str, preset: str, seed: int) -> Path:
 
 def make_band(runs: list[Run], experiment: str, preset: str, metric: str) -> dict[str, float | str]:
     """Return the band of a metric from the runs of all seeds."""
-    medians = [run.metrics[metric]["median"] for run in runs]
+    medians = [run.metrics[metric].median for run in runs]
     values = np.concatenate([run.values(metric) for run in runs])
     low, high = min(medians), max(medians)
     quartiles = np.nanpercentile(values, [25, 75])
     extra = EXTRA.get((experiment, metric), 0.5 * float(np.diff(quartiles)[0]) + MARGIN * high)
-    unit = runs[0].metrics[metric]["unit"]
+    unit = runs[0].metrics[metric].unit
     spread = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
     seeds = f"{len(medians)} seeds gave {spread}" + ("" if unit == "1" else f" {unit}")
     return {

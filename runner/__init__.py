@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from runner.api.commands import calibrate, run, sweep, tune
     from runner.api.compare import compare
-    from runner.api.metric import Metric
     from runner.api.open import open_run, open_sweep, open_tuning
     from runner.api.report import Report, report
     from runner.api.run import Run
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from runner.api.tuning import Tuning
     from runner.base.errors import RunnerError
     from runner.store import Calibration
+    from runner.store.metric import Metric
 
 __all__ = [
     "Calibration",
@@ -44,7 +44,7 @@ __all__ = [
 ]
 _PLACES = {
     "Calibration": "runner.store",
-    "Metric": "runner.api.metric",
+    "Metric": "runner.store.metric",
     "Report": "runner.api.report",
     "Run": "runner.api.run",
     "RunnerError": "runner.base.errors",

@@ -1,5 +1,5 @@
-"""Implementation of the public Python API: commands as functions, and handles on stored results.
+"""Implementation of the public Python API: commands as functions, and public classes of stored results.
 
-A handle (`Run`, `Sweep`, `Tuning`) contains the data that another package reads from the disk, as `stored`. It adds a
+`Run`, `Sweep` and `Tuning` inherit from the stored classes, so that other packages take them as they are. They add a
 short text, a page for a notebook, tables and figures. No other package imports this one.
 """

@@ -4,6 +4,7 @@ import functools
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import fields
 from typing import Any, ParamSpec, TypeVar
 
 from runner.base.errors import RunnerError
@@ -29,6 +30,11 @@ def public(function: Callable[P, T]) -> Callable[P, T]:
             raise KeyboardInterrupt(_GO_ON) from None
 
     return through
+
+
+def public_class(kind: type[T], stored: Any) -> T:
+    """Return a stored run, sweep or tuning as the public class that inherits from its own."""
+    return kind(**{each.name: getattr(stored, each.name) for each in fields(stored)})
 
 
 @contextmanager

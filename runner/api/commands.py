@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from runner import store
-from runner.api.boundary import public, workers_only_work
+from runner.api.boundary import public, public_class, workers_only_work
 from runner.api.overrides import config_folders, run_overrides, sweep_overrides, tuning_overrides
 from runner.api.run import Run
 from runner.api.sweep import Sweep
@@ -40,7 +40,7 @@ def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (),
 
     use_plugins(plugins)
     texts = run_overrides(overrides, values)
-    return Run(job.run(*texts, config_dirs=config_folders(config_dirs)))
+    return public_class(Run, job.run(*texts, config_dirs=config_folders(config_dirs)))
 
 
 @public
@@ -88,7 +88,7 @@ def sweep(
     sweep = store.open_sweep(ended.folder)
     if not ended.left:
         work_out_sweep(sweep)
-    return Sweep(sweep)
+    return public_class(Sweep, sweep)
 
 
 @public
@@ -142,7 +142,7 @@ def tune(
     command = _command(["tune"], folders, [*texts, *words])
     with workers_only_work():
         made = tuning.tune([*texts, f"hydra.sweeper.workers={workers}"], objectives, trials, jobs, command, folders)
-    return Tuning(made)
+    return public_class(Tuning, made)
 
 
 @public

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner import store
-from runner.api.boundary import public
+from runner.api.boundary import public, public_class
 from runner.store.latest import find_folder
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def open_run(folder: str | Path) -> "Run":
     """
     from runner.api.run import Run
 
-    return Run(store.open_run(find_folder(folder, ("run",))))
+    return public_class(Run, store.open_run(find_folder(folder, ("run",))))
 
 
 @public
@@ -44,7 +44,7 @@ def open_sweep(folder: str | Path) -> "Sweep":
     """
     from runner.api.sweep import Sweep
 
-    return Sweep(store.open_sweep(find_folder(folder, ("sweep", "tuning"))))
+    return public_class(Sweep, store.open_sweep(find_folder(folder, ("sweep", "tuning"))))
 
 
 @public
@@ -65,4 +65,4 @@ def open_tuning(folder: str | Path) -> "Tuning":
     from runner.api.tuning import Tuning
     from runner.sweeps.tuning import study
 
-    return Tuning(study.open_tuning(find_folder(folder, ("tuning",))))
+    return public_class(Tuning, study.open_tuning(find_folder(folder, ("tuning",))))

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 from runner import store
 from runner.base.errors import ConfigError, RunnerError
 from runner.store.run import units_of
-from runner.store.shards import ShardRun
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -39,12 +38,12 @@ def signals_of(run: store.Run, repetition: int) -> Signals:
         RunnerError: if there is no such repetition, or the code, the robot's file or the machine gives another one.
         DamagedError: if the run is damaged.
     """
-    count = int(run.record["repetitions"])
+    count = run.repetitions
     if not 0 <= repetition < count:
         allowed = "0 alone" if count == 1 else f"0 to {count - 1}"
         raise RunnerError(f"repetition {repetition}: the run {run.hash} has no such one; allowed: {allowed}")
-    if repetition == 0 and not isinstance(run, ShardRun):
-        return Signals(run.trace.copy(), run.units)
+    if repetition == 0 and run.text is None:
+        return Signals(store.Run.trace(run).copy(), run.units)
     return _simulated(run, repetition)
 
 

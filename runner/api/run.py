@@ -1,13 +1,12 @@
-"""Handle on a stored run."""
+"""Public class of a stored run: tables, figures, sensitivity and comparison with recordings."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from runner import store
 from runner.api import page
 from runner.api.boundary import public
-from runner.api.metric import Metrics
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
 
@@ -18,93 +17,23 @@ if TYPE_CHECKING:
     from runner.analysis.sensitivity import Sensitivity
     from runner.recordings.compare import RecordingComparison
     from runner.reporting.key_metrics import KeyMetric
-    from runner.statistics.spec import Spec
 
 _IN_TEXT, _ON_PAGE = 1, 6
 
 
-class Run:
+class Run(store.Run):
     """A stored run: `runner.run` makes one, `runner.open_run` opens one.
 
-        >>> run = runner.run("noise=thesis", robot="macro", trajectory="quintic", duration=0.1, repetitions=3)
-        >>> run.metrics["peak_torque"].unit
-        'N m'
-        >>> len(run.metrics["peak_torque"].values)
-        3
-        >>> run.to_frame().columns.tolist()
-        ['unit', 'median', 'min', 'max', 'n']
-        >>> run.trace(repetition=2)[["t", "error_x"]].shape
-        (11, 2)
-
-    Attributes:
-        stored: The run as it is stored, which other packages take.
+    >>> run = runner.run("noise=thesis", robot="macro", trajectory="quintic", duration=0.1, repetitions=3)
+    >>> run.metrics["peak_torque"].unit
+    'N m'
+    >>> len(run.metrics["peak_torque"].values)
+    3
+    >>> run.to_frame().columns.tolist()
+    ['unit', 'median', 'min', 'max', 'n']
+    >>> run.trace(repetition=2)[["t", "error_x"]].shape
+    (11, 2)
     """
-
-    def __init__(self, stored: store.Run) -> None:
-        self.stored = stored
-
-    @property
-    def folder(self) -> Path:
-        """Where it is stored; a run of a large sweep that kept no trace lies in a shard beside `runs`."""
-        return self.stored.folder
-
-    @property
-    def hash(self) -> str:
-        """Its name: a digest of all that the result follows from."""
-        return self.stored.hash
-
-    @property
-    def status(self) -> str:
-        """Either "ok" or "failed"."""
-        return self.stored.status
-
-    @property
-    def failure(self) -> str | None:
-        """When, where and why it failed, in words; None for a good one."""
-        return self.stored.failure_text or None
-
-    @property
-    def repetitions(self) -> int:
-        """How often it was simulated, each time with other random draws."""
-        return int(self.stored.record["repetitions"])
-
-    @property
-    def metrics(self) -> Metrics:
-        """Its metrics by name, each a Metric with unit, median, min, max and values."""
-        return Metrics(self.stored)
-
-    @property
-    def caveats(self) -> Sequence[Mapping[str, Any]]:
-        """Why the metrics may not be what they seem: rule, text, value and number of repetitions of each."""
-        return self.stored.caveats
-
-    @property
-    def spec(self) -> "Spec | None":
-        """The bounds on its metrics, how many repetitions keep them, and its probability of failing them, `failing`.
-
-        None where it was made and found without bounds.
-        """
-        return self.stored.spec
-
-    @property
-    def config(self) -> Mapping[str, Any]:
-        """The whole config, resolved, in SI units."""
-        return self.stored.config
-
-    @property
-    def urdf(self) -> str:
-        """The URDF of the arm that was simulated."""
-        return self.stored.urdf
-
-    @property
-    def provenance(self) -> Mapping[str, Any]:
-        """Command, commit, versions, machine, seed, warnings and more."""
-        return self.stored.provenance
-
-    @property
-    def units(self) -> Mapping[str, str]:
-        """Unit of each column of the trace."""
-        return self.stored.units
 
     def to_frame(self) -> "pd.DataFrame":
         """Return the metrics as a table: a row for each, with unit, median, min, max and n, the number of values."""
@@ -129,7 +58,7 @@ class Run:
         """
         from runner.api.resimulate import signals_of
 
-        return signals_of(self.stored, repetition).frame
+        return signals_of(self, repetition).frame
 
     @public
     def plot(self, signal: str = "error", repetition: int = 0) -> "Figure":
@@ -145,7 +74,7 @@ class Run:
         from runner.api.plots import figure_of
         from runner.api.resimulate import signals_of
 
-        return figure_of(signals_of(self.stored, repetition), signal)
+        return figure_of(signals_of(self, repetition), signal)
 
     @public
     def sensitivity(self, parameters: str | Sequence[str] = (), repetition: int = 0) -> "Sensitivity":
@@ -164,7 +93,7 @@ class Run:
         from runner.analysis.sensitivity import GROUPS, of_run
 
         groups = [parameters] if isinstance(parameters, str) else parameters
-        return of_run(self.stored, groups or GROUPS, repetition)
+        return of_run(self, groups or GROUPS, repetition)
 
     @public
     def compare_recording(
@@ -185,7 +114,7 @@ class Run:
         """
         from runner.recordings.compare import compare_recording
 
-        return compare_recording(self.stored, Path(recording), Path(columns), fill_gaps)
+        return compare_recording(self, Path(recording), Path(columns), fill_gaps)
 
     def __repr__(self) -> str:
         told = "; ".join(f"{one.title} {one.value}" for one in self._key_metrics(_IN_TEXT))
@@ -216,14 +145,14 @@ class Run:
     def _key_metrics(self, most: int) -> "Sequence[KeyMetric]":
         from runner.reporting.key_metrics import key_metrics
 
-        return key_metrics(self.stored, most)
+        return key_metrics(self, most)
 
     def _picture(self) -> str:
         from runner.api.plots import svg_of
         from runner.api.resimulate import Signals
 
         try:
-            signals = Signals(self.stored.trace, self.stored.units)
+            signals = Signals(super().trace(), self.units)
         except RunnerError:
             return ""  # it kept no trace, or that is damaged: what is left is shown
         return page.picture(svg_of(signals, "error"), "tip position error of repetition 0 over time")

@@ -1,15 +1,14 @@
-"""Handle on a stored sweep."""
+"""Public class of a stored sweep: axes, cells, tables and comparisons."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from runner import store
 from runner.api import page
-from runner.api.boundary import public
+from runner.api.boundary import public, public_class
 from runner.api.run import Run
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import quantity
@@ -24,37 +23,21 @@ _CELLS_SHOWN, _METRICS_SHOWN = 20, 3
 _LEVELS = ("cells", "repetitions")
 
 
-class Sweep:
+class Sweep(store.Sweep):
     """A stored sweep: `runner.sweep` makes one, `runner.open_sweep` opens one.
 
-        >>> sweep = runner.sweep("noise=thesis", "trajectory=quintic", duration=0.1, repetitions=6, workers=0,
-        ...                      robot=["macro", "mini"], controller=["operational_space", "computed_torque"])
-        >>> len(sweep)
-        4
-        >>> sweep.to_frame(["max_tracking_error"])[["robot", "controller", "median", "low", "high", "n"]].shape
-        (4, 6)
-        >>> paired = sweep.compare(by="controller", within="robot", metrics=["max_tracking_error"])
-        >>> paired[["robot", "first", "second", "difference", "low", "high", "n"]].shape
-        (2, 7)
-        >>> sweep.run(robot="mini", controller="computed_torque").status
-        'ok'
-
-    Attributes:
-        stored: The sweep as it is stored, which other packages take.
+    >>> sweep = runner.sweep("noise=thesis", "trajectory=quintic", duration=0.1, repetitions=6, workers=0,
+    ...                      robot=["macro", "mini"], controller=["operational_space", "computed_torque"])
+    >>> len(sweep)
+    4
+    >>> sweep.to_frame(["max_tracking_error"])[["robot", "controller", "median", "low", "high", "n"]].shape
+    (4, 6)
+    >>> paired = sweep.compare(by="controller", within="robot", metrics=["max_tracking_error"])
+    >>> paired[["robot", "first", "second", "difference", "low", "high", "n"]].shape
+    (2, 7)
+    >>> sweep.run(robot="mini", controller="computed_torque").status
+    'ok'
     """
-
-    def __init__(self, stored: store.Sweep) -> None:
-        self.stored = stored
-
-    @property
-    def folder(self) -> Path:
-        """Where it is stored; its runs lie in `runs` and `shards` of the outputs folder."""
-        return self.stored.folder
-
-    @property
-    def command(self) -> str:
-        """The command that makes it and goes on with it."""
-        return self.stored.command
 
     @property
     def axes(self) -> Mapping[str, Sequence[float] | Sequence[str]]:
@@ -63,7 +46,7 @@ class Sweep:
 
     def __len__(self) -> int:
         """Return the number of cells, the combinations of the values."""
-        return len(self.stored.hashes)
+        return len(self.hashes)
 
     def runs(self) -> Iterator[Run]:
         """Open its runs, one after the other, in the order of the cells.
@@ -71,7 +54,7 @@ class Sweep:
         Raises:
             RunnerError: if one is missing or damaged.
         """
-        return map(Run, self.stored.runs())
+        return (public_class(Run, run) for run in super().runs())
 
     @public
     def run(self, **values: object) -> Run:
@@ -85,13 +68,13 @@ class Sweep:
             axis = find_axis(self._axes, name.replace("__", "."))
             chosen &= axis.level == axis.find_level(value)
         cells = np.flatnonzero(chosen)
-        if len({self.stored.hashes[cell] for cell in cells.tolist()}) > 1:
+        if len({self.hashes[cell] for cell in cells.tolist()}) > 1:
             others = [axis for axis in self._axes if len(np.unique(axis.level[cells])) > 1]
             left = "; ".join(f"{axis.name}: {few(axis.texts)}" for axis in others)
             raise RunnerError(f"{len(cells)} runs have these values; name one value of {left}")
         if not len(cells):
             raise RunnerError("no run of the sweep has these values together")
-        return Run(store.Finished(self.stored.outputs).open(self.stored.hashes[int(cells[0])]))
+        return public_class(Run, store.Finished(self.outputs).open(self.hashes[int(cells[0])]))
 
     @public
     def to_frame(
@@ -175,11 +158,11 @@ class Sweep:
         return answer_frame(compare_levels(self._measurements, by, inside, self._names(metrics) if metrics else ()))
 
     def __repr__(self) -> str:
-        told = _told(find_status(self.stored))
+        told = _told(find_status(self))
         return "\n  ".join(map(one_line, [f"Sweep of {len(self)} runs: {told}", *self._over(), str(self.folder)]))
 
     def _repr_html_(self) -> str:
-        status = find_status(self.stored)
+        status = find_status(self)
         parts = [page.heading("Sweep", f"{len(self)} runs: {_told(status)}"), page.listed("Swept over", self._over())]
         parts += [] if status.left else [self._cells()]
         return "".join([*parts, page.code(self.folder)])
@@ -214,12 +197,12 @@ class Sweep:
 
     @cached_property
     def _axes(self) -> Sequence[Axis]:
-        return axes_of(self.stored.overrides)[0]
+        return axes_of(self.overrides)[0]
 
     @cached_property
     def _measurements(self) -> Measurements:
         """The cells with their values; an incomplete sweep is read again each time."""
-        return measure_sweep(self.stored)
+        return measure_sweep(self)
 
 
 def _told(status: Status) -> str:

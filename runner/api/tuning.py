@@ -1,36 +1,23 @@
-"""Handle on a stored tuning."""
+"""Public class of a stored tuning: trials and the best run."""
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner import store
 from runner.api import page
-from runner.api.boundary import public
+from runner.api.boundary import public, public_class
 from runner.api.run import Run
 from runner.base.errors import RunnerError
 from runner.base.quantities import quantity
 from runner.base.sanitize import one_line
+from runner.sweeps.tuning import study
+from runner.sweeps.tuning.objective import best
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.sweeps.tuning.study import Tuning as StoredTuning
 
-
-class Tuning:
-    """A stored tuning: `runner.tune` makes one, `runner.open_tuning` opens one.
-
-    Attributes:
-        stored: The tuning as it is stored, which other packages take.
-    """
-
-    def __init__(self, stored: "StoredTuning") -> None:
-        self.stored = stored
-
-    @property
-    def folder(self) -> Path:
-        """Where it is stored."""
-        return self.stored.folder
+class Tuning(study.Tuning):
+    """A stored tuning: `runner.tune` makes one, `runner.open_tuning` opens one."""
 
     def to_frame(self) -> "pd.DataFrame":
         """Return the trials, a row for each: the tuned keys, the objectives, failure, hash of the run, and best.
@@ -40,13 +27,13 @@ class Tuning:
         import pandas as pd
 
         best = set(self._best())
-        objectives = [objective.metric for objective in self.stored.study.objectives]
+        objectives = [objective.metric for objective in self.study.objectives]
         rows = [
             {**trial.params, **dict(zip(objectives, trial.values, strict=True))}
             | {"failure": trial.failure, "hash": trial.run, "best": number in best}
-            for number, trial in enumerate(self.stored.trials)
+            for number, trial in enumerate(self.trials)
         ]
-        columns = [*(key.name for key in self.stored.study.keys), *objectives, "failure", "hash", "best"]
+        columns = [*(key.name for key in self.study.keys), *objectives, "failure", "hash", "best"]
         return pd.DataFrame(rows, columns=columns).rename_axis("trial")
 
     @public
@@ -59,15 +46,14 @@ class Tuning:
         best = self._best()
         if not best:
             raise RunnerError(f"{self.folder}: no trial ended well, so none is the best")
-        return Run(store.Finished(self.folder.parent.parent).open(self.stored.trials[best[0]].run))
+        return public_class(Run, store.Finished(self.folder.parent.parent).open(self.trials[best[0]].run))
 
     def _best(self) -> list[int]:
-        from runner.sweeps.tuning.objective import best
 
-        return best(self.stored.trials, self.stored.study.objectives)
+        return best(self.trials, self.study.objectives)
 
     def _lines(self) -> list[str]:
-        study, trials = self.stored.study, self.stored.trials
+        study, trials = self.study, self.trials
         failed = sum(bool(trial.failure) for trial in trials)
         lines = [f"{len(trials)} trials of {', '.join(key.name for key in study.keys)}, {failed} of them failed"]
         for number in self._best():

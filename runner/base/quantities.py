@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
 
 ROUNDING = 1e-12
 """What double precision leaves of zero after some operations on lengths, angles and torques of this size."""
@@ -152,19 +151,23 @@ def with_interval(value: float, half: float) -> tuple[str, str]:
     return f"{value:.{decimals}f}", f"± {half:.{decimals}f}"
 
 
-def spread(metric: Mapping[str, Any], beside: float | None = None) -> str:
-    """Return the median of a stored metric with the range over its repetitions, such as "1.56 s (1.53 to 2.80)".
+def spread(
+    unit: str, median: float | None, low: float | None, high: float | None, count: int, beside: float | None = None
+) -> str:
+    """Return the median of a metric with the range over its repetitions, such as "1.56 s (1.53 to 2.80)".
 
     Args:
-        metric: The stored metric.
-        beside: A printed value that it is compared with, of which it takes the unit; see `ranged`.
+        unit: The SI unit.
+        median: The median; None if it is beyond every number.
+        low: The smallest value; None if there is none.
+        high: The largest value; None if a value is missing.
+        count: Number of repetitions.
+        beside: A printed value next to which the text stands; its unit is used. See `ranged`.
     """
-    median, low, high = metric["median"], metric["min"], metric["max"]
-    varies = len(metric.get("values", "many")) >= 2 and not low == high is not None
-    if not varies:
-        factor, name = _shared((median,), str(metric["unit"]), median if beside is None else beside)
+    if count < 2 or low == high is not None:
+        factor, name = _shared((median,), unit, median if beside is None else beside)
         return _with_unit(_scaled(median, factor), name)
-    middle, ends, _ = with_ends(median, low, math.inf if high is None else high, str(metric["unit"]), beside)
+    middle, ends, _ = with_ends(median, low, math.inf if high is None else high, unit, beside)
     return f"{middle} ({ends})"
 
 

@@ -148,7 +148,7 @@ def _report(run: "Run", baseline: "Bands", findings: "Sequence[Finding]") -> str
     wrong = [finding for finding in findings if not finding.good]
     head = f"{run.folder}: {len(wrong)} of {len(findings)} metrics fall short of {baseline.name}"
     rows = [[f.metric, number(f.value), _range(f.band), f.band.reason] for f in wrong]
-    failure = [f"  {run.failure_text}"] if run.failure else []
+    failure = [f"  {run.failure}"] if run.failure else []
     return "\n".join([head, *failure, align_columns([["metric", "found", "band", "reason"], *rows])])
 
 

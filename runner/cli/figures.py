@@ -114,9 +114,7 @@ def _tell_failure(run: "Run") -> None:
     """
     if run.status == "ok":
         return
-    times = run.trace["t"] if (run.folder / "trace.parquet").exists() else ()
+    times = run.trace()["t"] if (run.folder / "trace.parquet").exists() else ()
     if len(times) < 2:
-        raise RunnerError(f"{run.folder}: the run {run.failure_text}; it has no trace to draw")
-    print(
-        f"runner: the run {run.failure_text}; its figures show repetition 0, up to {max(times):.4g} s", file=sys.stderr
-    )
+        raise RunnerError(f"{run.folder}: the run {run.failure}; it has no trace to draw")
+    print(f"runner: the run {run.failure}; its figures show repetition 0, up to {max(times):.4g} s", file=sys.stderr)

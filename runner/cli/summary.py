@@ -34,7 +34,7 @@ def print_run(run: "Run", made: bool, thresholds: Any) -> int:
         print(one_line(f"runner: warning: {warning}"), file=sys.stderr)
     _print_caveats(run, thresholds)
     if run.failure:
-        print(one_line(f"runner: {run.failure_text}"), file=sys.stderr)
+        print(one_line(f"runner: {run.failure}"), file=sys.stderr)
     print(run.folder)
     return 1 if run.failure else 0
 

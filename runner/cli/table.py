@@ -98,7 +98,7 @@ def _of_run(options: Namespace, chosen: str) -> int:
         raise RunnerError(f"--by and --where are for sweeps; {options.folder} is a run")
     run = store.open_run(options.folder)
     if not run.metrics:
-        raise RunnerError(f"the run has no metrics: it {run.failure_text}")
+        raise RunnerError(f"the run has no metrics: it {run.failure}")
     if chosen in ("", "markdown", "latex"):
         from runner.reporting.export.paper_table import of_run
 

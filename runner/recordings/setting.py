@@ -48,7 +48,7 @@ def setting_of(run: Run) -> Setting:
         RunnerError: if the run failed, is damaged, or can no longer be made by its config.
     """
     if run.failure is not None:
-        raise RunnerError(f"{run.folder}: {run.failure_text}; a recording is compared with a run that ended well")
+        raise RunnerError(f"{run.folder}: {run.failure}; a recording is compared with a run that ended well")
     try:
         config = validate(run.config, run.config_dirs)
     except ConfigError as error:
@@ -59,7 +59,7 @@ def setting_of(run: Run) -> Setting:
 
 
 def _stored_trace(run: Run, config: RunConfig) -> Trace:
-    frame, model = run.trace, config.arm.model
+    frame, model = run.trace(), config.arm.model
 
     def tip(stem: str) -> FloatArray:
         return np.asarray(frame[[f"{stem}_{axis}" for axis in AXES]].to_numpy())

@@ -28,7 +28,7 @@ def model_of(run: Run) -> RobotModel:
 
 def until_time(run: Run, end: float | None) -> pd.DataFrame:
     """Return the trace of a run up to a time, in s; None returns it all."""
-    trace = run.trace
+    trace = run.trace()
     return trace if end is None else trace[trace["t"] <= end + 1e-9]
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from runner.base.quantities import quantity, spread
+from runner.base.quantities import quantity
 from runner.reporting.metric_titles import title
 from runner.store import Run
 
@@ -54,9 +54,9 @@ def shared_range(runs: Sequence[Run]) -> tuple[str, str] | None:
     if len(names) != 1:
         return None
     (name,) = names
-    values = [found[name]["median"] for run in runs if name in (found := run.metrics)]
+    values = [found[name].median for run in runs if name in (found := run.metrics)]
     ends = [value for value in values if value is not None]
-    unit = next(run.metrics[name]["unit"] for run in runs if name in run.metrics)
+    unit = next(run.metrics[name].unit for run in runs if name in run.metrics)
     return (title(name), f"{quantity(min(ends), unit)} to {quantity(max(ends), unit)}") if ends else None
 
 
@@ -69,11 +69,11 @@ def key_names(run: Run) -> Sequence[str]:
 
 def _says_something(name: str, run: Run) -> bool:
     """Tell whether a run has a value of a metric; that it never settles is one."""
-    return name in run.metrics and (name == _SETTLING or run.metrics[name]["median"] is not None)
+    return name in run.metrics and (name == _SETTLING or run.metrics[name].median is not None)
 
 
 def _in_words(name: str, run: Run) -> KeyMetric:
-    if run.metrics[name]["median"] is None:
+    if run.metrics[name].median is None:
         return KeyMetric(title(name), "–", "not reached in half of the repetitions or more")
     count = run.record["repetitions"]
-    return KeyMetric(title(name), spread(run.metrics[name]), f"median of {count}" if count > 1 else "")
+    return KeyMetric(title(name), run.metrics[name].text, f"median of {count}" if count > 1 else "")

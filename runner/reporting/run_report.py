@@ -60,7 +60,7 @@ def _numbers_of_several(runs: Sequence[Run]) -> list[tuple[str, str, str]]:
 
 def _of_one(run: Run, date: str) -> Document:
     """Return the report on a single run: its name, the moving arm and four numbers first."""
-    shown = run.trace[[f"q{joint + 1}" for joint in range(len(run.provenance["joints"]))]]
+    shown = run.trace()[[f"q{joint + 1}" for joint in range(len(run.provenance["joints"]))]]
     return Document(
         title=_name(run),
         subtitle=_subtitle(run),
@@ -95,7 +95,7 @@ def _abstract(run: Run) -> str:
     """Return how the run ended, how often it keeps its spec, and whether it lies in the bands of its reference."""
     count = run.record["repetitions"]
     if run.status == "failed":
-        ended = f"The run {run.failure_text}."
+        ended = f"The run {run.failure}."
     else:
         ended = (
             "One repetition, which finished."
@@ -116,7 +116,7 @@ def _abstract(run: Run) -> str:
 
 def _cover(run: Run) -> Cover:
     """Return the arm in motion; a move that settles early is shown until it rests."""
-    settled = run.metrics.get("settling_time", {}).get("median")
+    settled = run.metrics["settling_time"].median if "settling_time" in run.metrics else None
     until = _AT_REST * settled if settled and run.config["trajectory"]["kind"] == "goal" else None
     if until is None or until >= run.config["duration"]:
         return cover(run, "The motion of repetition 0.")
@@ -142,7 +142,7 @@ def _overview(runs: Sequence[Run]) -> Table:
     for index, run in enumerate(runs, start=1):
         config = flatten(run.config)
         values = [
-            above_rounding(run.metrics[name]["median"], run.metrics[name]["unit"]) if name in run.metrics else "–"
+            above_rounding(run.metrics[name].median, run.metrics[name].unit) if name in run.metrics else "–"
             for name in names
         ]
         keys = (literal(str(config.get(key, "–"))) for key in varying)
@@ -155,14 +155,14 @@ def _overview(runs: Sequence[Run]) -> Table:
 def _blocks(run: Run) -> list[Block]:
     config = run.config
     blocks: list[Block] = []
-    if run.failure is not None:
-        joint = f", joint {run.failure['joint']}" if run.failure["joint"] else ""
+    if (failure := run.failure_record) is not None:
+        joint = f", joint {failure['joint']}" if failure["joint"] else ""
         blocks.append(
             Notice(
                 "failure",
                 "This run failed",
-                f"In repetition {run.failure['repetition']} at t = {number(run.failure['time'])} s{joint}: "
-                f"{with_powers(str(run.failure['reason']))}. The curves end there.",
+                f"In repetition {failure['repetition']} at t = {number(failure['time'])} s{joint}: "
+                f"{with_powers(str(failure['reason']))}. The curves end there.",
             )
         )
     blocks += caveat_notices(run)
@@ -190,12 +190,12 @@ def caveat_notices(run: Run) -> list[Block]:
 
 
 def _metrics(run: Run) -> Table:
-    many = all("quantiles" in metric for metric in run.metrics.values())
+    many = all(metric.quantiles for metric in run.metrics.values())
     levels, worth = _LEVELS if many else {}, (run.plant_error or {}).get("metrics", {})
     rows = []
     for name, m in run.metrics.items():
-        found = [m["median"], m["min"], *(m["quantiles"][level] for level in levels), m["max"]]
-        rows.append([title(name), name, *(above_rounding(value, m["unit"]) for value in found), *_of_step(worth, name)])
+        found = [m.median, m.min, *(m.quantiles[level] for level in levels), m.max]
+        rows.append([title(name), name, *(above_rounding(value, m.unit) for value in found), *_of_step(worth, name)])
     count = run.record["repetitions"]
     told = "; levels are quantiles, a repetition without a value counting as beyond every number" if many else ""
     header = ["metric", "name on the command line", "median", "smallest", *levels.values(), "largest"]

@@ -189,7 +189,7 @@ def check_run(run: Run, baseline: Bands) -> list[Finding]:
     """Compare the medians of a run with a baseline; every metric of a failed run falls short."""
     findings = []
     for metric, band in baseline.bands.items():
-        value = run.metrics.get(metric, {}).get("median")
+        value = run.metrics[metric].median if metric in run.metrics else None
         good = run.status == "ok" and value is not None and band.holds(value)
         findings.append(Finding(metric, value, band, good))
     return findings
@@ -204,10 +204,10 @@ def save_baseline(sweep: Sweep, path: Path) -> int:
     cells: dict[str, dict[str, Any]] = {}
     for cell, run in zip(cell_names(sweep), sweep.runs(), strict=True):
         if run.failure is not None:
-            raise StoreError(f"a failed run cannot be in a baseline: [{cell}] {run.failure_text}")
+            raise StoreError(f"a failed run cannot be in a baseline: [{cell}] {run.failure}")
         cells[cell] = {
             name: {**{key: metric[key] for key in ("unit", "median", "min", "max")}, "seeds": run.record["repetitions"]}
-            for name, metric in run.metrics.items()
+            for name, metric in run.record["metrics"].items()
         }
     text = yaml.dump({"schema": SCHEMA, "cells": cells}, sort_keys=False, width=120, Dumper=yaml.CSafeDumper)
     head = f"# Metrics of each cell over its seeds; written by `runner check DIR --save-baseline {path.name}` after\n"
@@ -228,7 +228,7 @@ def find_moves(sweep: Sweep, baseline: Cells) -> list[Move]:
         if cell not in baseline:
             moves.append(Move(cell, "", None, None, "is new", False))
         elif run.failure is not None:
-            moves.append(Move(cell, "", None, None, run.failure_text, True))
+            moves.append(Move(cell, "", None, None, run.failure, True))
         else:
             moves += _compare(cell, run, baseline[cell])
     return moves + [Move(cell, "", None, None, "is gone", True) for cell in baseline if cell not in found]
@@ -243,7 +243,7 @@ def cell_names(sweep: Sweep) -> list[str]:
 def _compare(cell: str, run: Run, baseline: Mapping[str, Spread]) -> Iterator[Move]:
     for name in dict.fromkeys([*baseline, *run.metrics]):
         was, metric = baseline.get(name), run.metrics.get(name)
-        value = None if metric is None else metric["median"]
+        value = None if metric is None else metric.median
         if was is None or metric is None:
             yield Move(cell, name, was, value, "", was is not None)
         elif not _same(was.median, value):

@@ -17,7 +17,7 @@ _NEEDED = ("estimates", "truth", "errors", "deviations", "measures", "consistenc
 Table = Literal["estimates", "errors", "deviations", "measures"]
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Calibration(Stored):
     """A stored calibration; its record is the content of result.json."""
 

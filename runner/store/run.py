@@ -3,7 +3,7 @@
 import itertools
 import shlex
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -15,6 +15,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.config.spec import Bound
 from runner.statistics.spec.history import settings, today
+from runner.store.metric import Metrics
 from runner.store.record import find_faults
 from runner.store.seal import DamagedError
 from runner.store.stored import MEND, Stored, read_job, write_job
@@ -27,9 +28,26 @@ if TYPE_CHECKING:
     from runner.statistics.spec.history import Histories
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run(Stored):
-    """A stored run; its record is the content of metrics.json."""
+    """A stored run; its record is the content of metrics.json.
+
+    Attributes:
+        text: URDF of a run without a trace, which has no folder of its own.
+        beside: Reads the values of a metric of such a run, if its record does not list them.
+    """
+
+    text: str | None = None
+    beside: Callable[[str], FloatArray] | None = None
+
+    @cached_property
+    def urdf(self) -> str:
+        """The URDF's text that was simulated.
+
+        Raises:
+            DamagedError: if the file is missing or damaged.
+        """
+        return super().urdf if self.text is None else self.text
 
     def made_by(self, command: str) -> "Run":
         """Return this run with another command that makes it, as equal configs can be reached in several ways."""
@@ -41,15 +59,20 @@ class Run(Stored):
         return str(self.record["status"])
 
     @property
-    def failure(self) -> Mapping[str, Any] | None:
-        """Reason, time, joint and repetition of a failed run; all but the reason None where it was cut short."""
+    def repetitions(self) -> int:
+        """Number of repetitions, each with other random draws."""
+        return int(self.record["repetitions"])
+
+    @property
+    def failure_record(self) -> Mapping[str, Any] | None:
+        """Reason, time, joint and repetition of a failed run; only the reason if it was cut short."""
         failure: Mapping[str, Any] | None = self.record.get("failure")
         return failure
 
     @property
-    def failure_text(self) -> str:
-        """When, where and why a failed run failed, in words; empty for a good one."""
-        return "" if self.failure is None else describe_failure(self.failure)
+    def failure(self) -> str | None:
+        """When, where and why the run failed, in words; None for a good run."""
+        return None if self.failure_record is None else describe_failure(self.failure_record)
 
     @property
     def config_dirs(self) -> Sequence[Path]:
@@ -64,10 +87,9 @@ class Run(Stored):
         return [after for before, after in itertools.pairwise(words) if "--" not in (before[:2], after[:2])]
 
     @property
-    def metrics(self) -> Mapping[str, Mapping[str, Any]]:
-        """Metrics by name: unit, median, min, max, and for many repetitions quantiles; `values` gives all values."""
-        metrics: Mapping[str, Mapping[str, Any]] = self.record["metrics"]
-        return metrics
+    def metrics(self) -> Metrics:
+        """Metrics by name, each a Metric with unit, median, min, max and values."""
+        return Metrics(self.record, self.values)
 
     def values(self, metric: str) -> FloatArray:
         """Return a metric in each repetition, shape (repetitions,), NaN where it has no value.
@@ -79,12 +101,10 @@ class Run(Stored):
             KeyError: if it has no such metric.
             DamagedError: if the values stand in a file of their own, and that is missing or damaged.
         """
-        stored = self.metrics[metric].get("values")
-        return self._values_beside(metric) if stored is None else np.array(stored, dtype=np.float64)  # None is NaN
-
-    def _values_beside(self, metric: str) -> FloatArray:
-        """Return the values of a metric that do not stand in the record; see `values`."""
-        return read_column(self._values_file, self.folder / VALUES_FILE, metric)
+        stored = self.record["metrics"][metric].get("values")
+        if stored is not None:
+            return np.array(stored, dtype=np.float64)  # None is NaN
+        return self.beside(metric) if self.beside else read_column(self._values_file, self.folder / VALUES_FILE, metric)
 
     @cached_property
     def _values_file(self) -> Any:
@@ -92,7 +112,7 @@ class Run(Stored):
 
     @property
     def caveats(self) -> Sequence[Mapping[str, Any]]:
-        """Why its metrics may not be what they seem: rule, text and value of each."""
+        """Reasons why the metrics may mislead: rule, text, value and number of repetitions of each."""
         caveats: Sequence[Mapping[str, Any]] = self.record["caveats"]
         return caveats
 
@@ -110,7 +130,10 @@ class Run(Stored):
 
     @cached_property
     def spec(self) -> "Spec | None":
-        """The bounds on its metrics, and how many repetitions keep them; None where there are no bounds."""
+        """Bounds on the metrics, how many repetitions keep them, and the probability of failing them, `failing`.
+
+        None for a run without bounds.
+        """
         from runner.statistics.spec import read_spec
 
         stored = self.record.get("spec")
@@ -126,19 +149,21 @@ class Run(Stored):
         from runner.statistics.spec import bounds_of, judge
         from runner.statistics.spec.history import merge_histories, settings
 
-        spec = judge(bounds, self.record["repetitions"], self.metrics, self.values)
+        spec = judge(bounds, self.record["repetitions"], self.record["metrics"], self.values)
         made_with = settings({**dict.fromkeys(later), **bounds_of(self.config)}, self.provenance["date"])
         history = merge_histories(made_with, self.record.get("spec", {}).get("history", {}), later)
         return replace(self, record={**self.record, "spec": {**spec.record(), "history": history}})
 
-    @property
     def trace(self) -> "pd.DataFrame":
-        """Signals of repetition 0, a row per tick; `units` tells the columns' units. What is changed in it stays there.
+        """Return the signals of repetition 0, a row per tick; `units` has the units of the columns.
+
+        A change of the table changes no later one.
 
         Raises:
             DamagedError: if the file is missing or damaged.
+            StoreError: if the run kept no trace.
         """
-        return self._frame.copy(deep=False)  # of which pandas copies what is written to
+        return self._frame.copy(deep=False)  # pandas copies what is written to
 
     @cached_property
     def _frame(self) -> "pd.DataFrame":
@@ -152,6 +177,11 @@ class Run(Stored):
 
     @cached_property
     def _table(self) -> Any:
+        if self.text is not None:
+            command = self.provenance["command"]
+            raise StoreError(
+                f"run {self.hash} kept no trace (sweep.trace); this simulates it again with one: {command}"
+            )
         path = self.folder / "trace.parquet"
         return read_table(open_parquet(self.read(path.name), path), path)
 

@@ -11,16 +11,15 @@ wrote shards, so that the later of two shards is known without a clock.
 import io
 import json
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
-from functools import cached_property, lru_cache, partial
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import StoreError
 from runner.base.limits import ExcessError, open_parquet
 from runner.metrics.summary import MOST_LISTED, over_repetitions
 from runner.store.arrow_columns import list_column, text_column, truth_column, whole_column
@@ -28,7 +27,7 @@ from runner.store.atomic import write_atomically
 from runner.store.json_texts import encode_finite
 from runner.store.names import Names
 from runner.store.record import find_faults
-from runner.store.run import Run, describe_failure
+from runner.store.run import Run
 from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest
 
 _COLUMNS = ("run", "config", "urdf", "record", "metrics")
@@ -64,33 +63,6 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class ShardRun(Run):
-    """A stored run without trace.
-
-    Attributes:
-        text: The URDF's text.
-        beside: Gives the values of a metric, of so many repetitions that its record does not list them.
-    """
-
-    text: str
-    beside: Callable[[str], FloatArray] | None = field(default=None, compare=False)
-
-    @cached_property
-    def urdf(self) -> str:
-        """The URDF's text that was simulated."""
-        return self.text
-
-    def _values_beside(self, metric: str) -> FloatArray:
-        assert self.beside is not None  # noqa: S101 - who makes one of many repetitions gives it
-        return self.beside(metric)
-
-    @cached_property
-    def _table(self) -> Any:
-        command = self.provenance["command"]
-        raise StoreError(f"run {self.hash} kept no trace (sweep.trace); this simulates it again with one: {command}")
-
-
-@dataclass(frozen=True)
 class ShardRow:
     """A run without trace as the row of a shard.
 
@@ -113,10 +85,8 @@ class ShardRow:
 
 def outcome(run: Run) -> Outcome:
     """Return how a run ended."""
-    failure = run.failure
-    if failure is None:
-        return Outcome(run.hash, "", False, len(run.caveats))
-    return Outcome(run.hash, describe_failure(failure), failure["time"] is None, len(run.caveats))
+    failure = run.failure_record
+    return Outcome(run.hash, run.failure or "", failure is not None and failure["time"] is None, len(run.caveats))
 
 
 def shard_files(outputs: Path) -> list[Path]:
@@ -140,15 +110,15 @@ def find_shards(outputs: Path, name: str) -> list[Path]:
     return sorted((outputs / "shards").glob(f"{name}.*parquet"))
 
 
-def _row_of(run: ShardRun) -> ShardRow:
-    metrics = tuple((name, str(metric["unit"])) for name, metric in run.metrics.items())
+def _row_of(run: Run) -> ShardRow:
+    metrics = tuple((name, metric.unit) for name, metric in run.metrics.items())
     values = np.array([run.values(name) for name in run.metrics]).T if metrics else np.zeros((0, 0))
     listed = len(values) <= MOST_LISTED
     record = {key: value for key, value in run.record.items() if key != "metrics" or not listed}
     return ShardRow(outcome(run), json.dumps(run.config), run.urdf, encode_finite(record), metrics, values)
 
 
-def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun | ShardRow]) -> Path:
+def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Path:
     """Store runs without trace in one file, and return it.
 
     Raises:
@@ -157,7 +127,7 @@ def write_shard(outputs: Path, name: str, runs: Sequence[ShardRun | ShardRow]) -
     import pyarrow
     import pyarrow.parquet
 
-    rows = [_row_of(run) if isinstance(run, ShardRun) else run for run in runs]
+    rows = [_row_of(run) if isinstance(run, Run) else run for run in runs]
     ends = [row.outcome for row in rows]
     columns = {
         "run": text_column([end.name for end in ends]),
@@ -233,7 +203,7 @@ def read_outcomes(path: Path) -> Outcomes:
         raise DamagedError(f"cannot read {path}: it is no shard: {error}; {_MEND}") from error
 
 
-def open_row(path: Path, row: int) -> ShardRun:
+def open_row(path: Path, row: int) -> Run:
     """Open the run in a row of a shard.
 
     Raises:
@@ -251,7 +221,7 @@ def open_row(path: Path, row: int) -> ShardRun:
     if fault:
         raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_MEND}")
     folder = path.parent.parent / "runs" / values["run"][row].as_py()
-    return ShardRun(folder, config, record, values["urdf"][row].as_py(), beside=partial(_values_in, path, row))
+    return Run(folder, config, record, values["urdf"][row].as_py(), beside=partial(_values_in, path, row))
 
 
 def _summarize(table: Any, row: int, names: Sequence[str]) -> dict[str, dict[str, object]]:

@@ -18,7 +18,7 @@ _NAMED = ("runs", "calibrations")  # folders in which a job's folder bears its n
 _UNUSUAL = re.compile(r"[&?]|\[(?!\])|\{(?!\})|^ {60}|(- ){4}", re.M)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Stored:
     """A job's folder, named by its content hash.
 

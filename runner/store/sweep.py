@@ -28,7 +28,7 @@ _MEND = "the sweep's command writes it again"
 _NO_SPEC: Mapping[str, Bound] = {}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sweep:
     """A stored sweep, at work or ended.
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.base.quantities import format_range, quantity, spread
+from runner.base.quantities import format_range, quantity
 from runner.metrics.positioning import STEADY_WINDOW
 from runner.reporting.document import Claim, ClaimResult
 from runner.reporting.equation import EquationVerdict
@@ -142,14 +142,14 @@ class _Claimed:
         claim, run, words = self._claim, self._run(_named(self._claim), preset), self._presets[preset]
         failed = run.status == "failed"
         if claim.extents:
-            shown = run.failure_text if failed else self._moved(run)
+            shown = run.failure or "" if failed else self._moved(run)
             return ClaimResult(preset, shown, self._of_motion(run), words)
         verdict = self._of_number(partial(self._median, preset), preset)
         if failed:
             undecided: Verdict = verdict if verdict == CONTRADICTION else "undecided"
-            return ClaimResult(preset, run.failure_text, undecided, words)
+            return ClaimResult(preset, run.failure or "", undecided, words)
         return ClaimResult(
-            preset, spread(run.metrics[claim.metric], claim.value), verdict, words, self._hangs(run, preset, verdict)
+            preset, run.metrics[claim.metric].beside(claim.value), verdict, words, self._hangs(run, preset, verdict)
         )
 
     def _hangs(self, run: Run, preset: str, verdict: Verdict) -> dict[str, str]:
@@ -189,12 +189,12 @@ class _Claimed:
         return self._of_number(lambda *key: value if key == own else self._median(preset, *key), preset)
 
     def _of_motion(self, run: Run) -> Verdict:
-        tip, desired = columns(run.trace, "tip"), columns(run.trace, "desired")
+        tip, desired = columns(run.trace(), "tip"), columns(run.trace(), "desired")
         return judge_motion(self._claim.extents, self._claim.fails, tip, desired)
 
     def _moved(self, run: Run) -> str:
         """Return where the tip moves along the axes that the claim speaks of."""
-        tip = columns(run.trace, "tip")
+        tip = columns(run.trace(), "tip")
         paths = {extent.axis: tip[:, "xyz".index(extent.axis)] for extent in self._claim.extents}
         return ", ".join(f"{axis} {path.min():.4f} to {path.max():.4f} m" for axis, path in paths.items())
 
@@ -244,7 +244,7 @@ def _named(claim: PublishedClaim) -> str:
 
 def _reach_lost(run: Run) -> tuple[float, float]:
     """Return when a run ends, and how long its target is out of a stage's reach, in s."""
-    end = float(run.trace["t"].iloc[-1])
+    end = float(run.trace()["t"].iloc[-1])
     return end, end * (median(run, "reach_loss_fraction") or 0.0)
 
 

@@ -71,7 +71,7 @@ def _numbers(run: Run) -> dict[str, object]:
     return {
         "run": run.hash,
         "status": run.status,
-        "metrics": _summaries(run.metrics),
+        "metrics": _summaries(run.record["metrics"]),
     }
 
 

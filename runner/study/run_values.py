@@ -12,6 +12,7 @@ from runner.reporting.document import Block, Notice
 from runner.reporting.figures import columns
 from runner.reporting.words import in_words
 from runner.store import Run
+from runner.store.metric import Metric
 from runner.study.measured import Measured
 
 
@@ -22,7 +23,7 @@ def median(run: Run, metric: str) -> float | None:
         RunnerError: if the run has metrics, and none of that name.
     """
     stored = _stored(run, metric)
-    return None if stored is None or stored["median"] is None else float(stored["median"])
+    return None if stored is None else stored.median
 
 
 def measured(run: Run, metric: str, name: str) -> Measured:
@@ -37,10 +38,10 @@ def measured(run: Run, metric: str, name: str) -> Measured:
         RunnerError: if the run has metrics, and none of that name.
     """
     stored = _stored(run, metric)
-    return Measured(name, median(run, metric), "1" if stored is None else str(stored["unit"]))
+    return Measured(name, median(run, metric), "1" if stored is None else stored.unit)
 
 
-def _stored(run: Run, metric: str) -> Mapping[str, Any] | None:
+def _stored(run: Run, metric: str) -> Metric | None:
     """Return a metric as stored; None where the run failed."""
     if run.metrics and metric not in run.metrics:
         raise RunnerError(f"run {run.hash} has no metric '{metric}'{nearest(metric, run.metrics)}")
@@ -59,7 +60,7 @@ def values(runs: Iterable[Run], metric: str) -> FloatArray:
 
 def clock(run: Run) -> FloatArray:
     """Return the times of a trace's rows, in s."""
-    return np.asarray(run.trace["t"].to_numpy())
+    return np.asarray(run.trace()["t"].to_numpy())
 
 
 def delay_of(run: Run) -> int:
@@ -70,8 +71,8 @@ def delay_of(run: Run) -> int:
 
 def distance(first: Run, second: Run, signal: str) -> FloatArray:
     """Return the distance between a tip signal of two runs at their common ticks, shape (T,), in m."""
-    rows = min(len(first.trace), len(second.trace))
-    difference = columns(first.trace[:rows], signal) - columns(second.trace[:rows], signal)
+    rows = min(len(first.trace()), len(second.trace()))
+    difference = columns(first.trace()[:rows], signal) - columns(second.trace()[:rows], signal)
     return np.asarray(np.linalg.norm(difference, axis=1))
 
 
@@ -79,10 +80,10 @@ def failures(runs: Mapping[str, Run]) -> list[Block]:
     """Return a notice that names each failed run with its failure; nothing where none failed."""
     reasons: dict[str, list[str]] = {}
     for name, run in runs.items():
-        if run.failure is not None:
-            joint = f", {run.failure['joint']}" if run.failure["joint"] else ""
-            where = f"{in_words(name.partition('/')[2])} (at {run.failure['time']:.4g} s{joint})"
-            reasons.setdefault(with_powers(str(run.failure["reason"])), []).append(where)
+        if (failure := run.failure_record) is not None:
+            joint = f", {failure['joint']}" if failure["joint"] else ""
+            where = f"{in_words(name.partition('/')[2])} (at {failure['time']:.4g} s{joint})"
+            reasons.setdefault(with_powers(str(failure["reason"])), []).append(where)
     if not reasons:
         return []
     count = sum(map(len, reasons.values()))
@@ -103,7 +104,7 @@ def trace_of(signal: Signal, *runs: Run) -> FloatArray:
     if callable(signal):
         return np.asarray(signal(*runs), dtype=float)
     check_signal(runs[0], signal)
-    return np.asarray(runs[0].trace[signal].to_numpy(), dtype=float)
+    return np.asarray(runs[0].trace()[signal].to_numpy(), dtype=float)
 
 
 def times_of(run: Run, rows: int) -> FloatArray:
@@ -139,6 +140,6 @@ def check_signal(run: Run, column: str) -> None:
     Raises:
         RunnerError: if its trace has no such column.
     """
-    if column not in run.trace.columns:
-        near = nearest(column, [str(name) for name in run.trace.columns])
+    if column not in run.trace().columns:
+        near = nearest(column, [str(name) for name in run.trace().columns])
         raise RunnerError(f"run {run.hash} has no signal '{column}'{near}")

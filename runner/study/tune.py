@@ -170,9 +170,9 @@ def _failure(run: Run | None, bounds: Mapping[str, float]) -> str:
 def _growth(run: Run | None) -> str:
     """Return why a longer run is not stable: the last period's error is above that after 8 or 16. Empty where it is."""
     metrics = {} if run is None else run.metrics
-    names = (f"{_ERROR}_period_{after}" for after in _SETTLED)
-    earlier = [metrics[name]["median"] for name in names if name in metrics]
-    last = metrics[f"{_ERROR}_last_period"]["median"] if earlier else 0.0
+    found = [metrics[name].median for after in _SETTLED if (name := f"{_ERROR}_period_{after}") in metrics]
+    earlier = [each for each in found if each is not None]
+    last = metrics[f"{_ERROR}_last_period"].median if earlier else 0.0
     return _GROWS if last is None or any(last > _GROWN * each for each in earlier) else ""
 
 

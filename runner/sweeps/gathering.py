@@ -52,14 +52,14 @@ class Gathered:
 
     def add_run(self, cell: int, run: Run) -> None:
         """Take the run of a cell."""
-        self.hashes[cell], self.failures[cell], self.caveats[cell] = run.hash, run.failure_text, run.caveats
+        self.hashes[cell], self.failures[cell], self.caveats[cell] = run.hash, run.failure or "", run.caveats
         self.seeds[cell] = int(run.provenance["seed"])
         self._count_rules(run.caveat_rules, 1)
         self._note(run)
         for name, metric in run.metrics.items():
             own = run.values(name)
             row = np.where(np.isnan(own), np.inf, own)
-            self._put(name, str(metric["unit"]), np.array([cell]), row[None])
+            self._put(name, metric.unit, np.array([cell]), row[None])
         self.configs.append((self._resolver.resolve(run), [np.array([cell])]))
 
     def add_shard(self, path: Path, rows: Cells, cells: Cells) -> None:

@@ -23,7 +23,7 @@ from runner.plugins.discovery import use_only
 from runner.simulation.batch_jobs import Job
 from runner.simulation.provenance import job_provenance
 from runner.simulation.result import RunResult
-from runner.store.shards import ShardRun, find_shards, outcome, read_outcomes, write_shard
+from runner.store.shards import find_shards, outcome, read_outcomes, write_shard
 from runner.store.writing import cut_short_record
 from runner.sweeps.batch import make_together
 from runner.sweeps.calibration_job import CALIBRATION, carry_out
@@ -168,7 +168,7 @@ def _check_folder(rules: Rules) -> None:
         raise StoreError(f"a worker does not see {rules.sweep}; outputs must be a folder that all workers share")
 
 
-def _make(name: str, composed: Composed, rules: Rules) -> RunResult | ShardRun:
+def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run:
     """Simulate one run; return what is to be stored, in a folder of its own or in a shard."""
     config = _checked(name, composed)
     result, reason, details = _try(lambda: simulate_job(config, composed), rules)
@@ -251,7 +251,7 @@ def give_up(chunk: Chunk, reason: str) -> Report:
     return Report([outcome(run)], "", 0.0)
 
 
-def cut_short(name: str, config: RunConfig, composed: Composed, rules: Rules, reason: str) -> ShardRun:
+def cut_short(name: str, config: RunConfig, composed: Composed, rules: Rules, reason: str) -> store.Run:
     """Return what is stored of a run that something else than its physics ended."""
     record = cut_short_record(reason, config.settings.repetitions, job_provenance(config, composed))
-    return ShardRun(rules.outputs / "runs" / name, composed.resolved, record, config.arm.urdf)
+    return store.Run(rules.outputs / "runs" / name, composed.resolved, record, config.arm.urdf)

@@ -9,7 +9,7 @@ from typing import Literal
 from runner import store
 from runner.simulation.result import RunResult
 from runner.store.atomic import write_atomically
-from runner.store.shards import ShardRow, ShardRun, outcome, write_shard
+from runner.store.shards import ShardRow, outcome, write_shard
 from runner.store.writing import make_record
 
 TraceKeeping = Literal["all", "sample", "failed", "never"]
@@ -88,11 +88,11 @@ class ResultWriter:
     def __init__(self, name: str, rules: Rules, disk: Executor, outcomes: list[store.Outcome]) -> None:
         self._name, self._rules, self._disk, self._outcomes = name, rules, disk, outcomes
         self._written: Future[store.Run] | None = None
-        self._traceless: list[ShardRun | ShardRow] = []
+        self._traceless: list[store.Run | ShardRow] = []
 
-    def put(self, name: str, made: RunResult | ShardRun) -> bool:
+    def put(self, name: str, made: RunResult | store.Run) -> bool:
         """Take a run, and tell whether it failed."""
-        if isinstance(made, ShardRun):
+        if isinstance(made, store.Run):
             self._traceless.append(made)
             self._outcomes.append(outcome(made))
             return bool(self._outcomes[-1].failure)
@@ -121,24 +121,24 @@ class ResultWriter:
             self._written = None
 
 
-def without_trace(name: str, result: RunResult, rules: Rules) -> RunResult | ShardRun:
+def without_trace(name: str, result: RunResult, rules: Rules) -> RunResult | store.Run:
     """Return a result as it is kept: whole, or without its trace; then a failure is written down, too."""
     if rules.keeps_trace(name, result.failure is not None):
         return result
     folder, record = rules.outputs / "runs" / name, make_record(result)
-    run = ShardRun(folder, result.resolved, record, result.urdf, beside=lambda metric: result.metrics[metric].values)
+    run = store.Run(folder, result.resolved, record, result.urdf, beside=lambda metric: result.metrics[metric].values)
     if run.failure:
         write_failure(run, "", rules)
     return run
 
 
-def write_failure(run: ShardRun, details: str, rules: Rules) -> None:
+def write_failure(run: store.Run, details: str, rules: Rules) -> None:
     """Write down why a run without a folder of its own failed.
 
     Raises:
         StoreError: if the disk does not take it.
     """
-    write_log(run.hash, f"{run.provenance['command']}\n{run.failure_text}\n{details}", rules)
+    write_log(run.hash, f"{run.provenance['command']}\n{run.failure}\n{details}", rules)
 
 
 def write_log(name: str, text: str, rules: Rules) -> None:

@@ -127,7 +127,7 @@ def test_workers_of_a_cluster_take_the_plug_ins_of_the_command_and_no_others(
     use_plugins([f"metric={tmp_path}/span.py"])
     remote, folder = Engine(0, cluster.address), pulls("pull", PULL)
     ended = sweep("environment=pull", "duration=0.1", "seed=0,1", engine=remote, config_dirs=[folder])
-    assert [run.metrics["span"]["median"] for run in store.open_sweep(ended.folder).runs()] == [0.1, 0.1]
+    assert [run.metrics["span"].median for run in store.open_sweep(ended.folder).runs()] == [0.1, 0.1]
     monkeypatch.setenv("RUNNER_PLUGINS", "")  # as in the next command
     ended = sweep("duration=0.1", "seed=0,1", engine=remote)
     assert ["span" in run.metrics for run in store.open_sweep(ended.folder).runs()] == [False, False]

@@ -90,7 +90,7 @@ def _told(run: Run) -> dict[str, Any]:
 
 
 def _trace(run: Run, digits: int) -> dict[str, tuple[str, list[float | None]]]:
-    frame, units = run.trace, run.units
+    frame, units = run.trace(), run.units
     long = (run.config["duration"] or 0.0) >= LONG
     rows = np.unique(np.linspace(0, len(frame) - 1, MORE_ROWS if long else ROWS).round().astype(int))
     return {name: (units[name], rounded(frame[name].to_numpy()[rows].tolist(), digits)) for name in frame}

@@ -95,7 +95,7 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
     together = Column("", Unit("1"), [own.cells[0] for own in each])
     notes = _of_numbers([together], [1])
     if run.status != "ok":
-        notes.append(f"The run {run.failure_text}.")
+        notes.append(f"The run {run.failure}.")
     if run.caveats:
         notes.append(f"Caveats: {', '.join(str(caveat['rule']) for caveat in run.caveats)}.")
     sources = [f"From: {run.provenance['command']}", f"Commit: {run.provenance['commit']}"]

@@ -5,7 +5,7 @@ from itertools import combinations
 
 import numpy as np
 
-from runner.base.quantities import quantity, spread
+from runner.base.quantities import quantity
 from runner.plugins.metric_units import units
 from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Curves, Origin, Panel, Section, Series, Table, Text
@@ -45,7 +45,7 @@ def _trial(subject: Subject, trial: int, objectives: Sequence[Objective], run: R
     ]
     goals = [objective.metric for objective in subject.objectives]
     names = dict.fromkeys([*goals, *(name for name in run.metrics if name in units())])
-    metrics = [[literal(title(name)), spread(run.metrics[name])] for name in names]
+    metrics = [[literal(title(name)), run.metrics[name].text] for name in names]
     blocks: list[Block] = [
         Table("Tuned keys.", ["key", "value", "range"], rows, (1, 2), Origin(command=command)),
         torque_and_error(run, "Torque of each joint and tip position error, repetition 0."),

@@ -209,7 +209,7 @@ def typical(runs: Mapping[str, Run], arm: str, law: str, condition: str, gains: 
 
 
 def _median(run: Run, metric: str) -> float:
-    median = run.metrics[metric]["median"] if metric in run.metrics else None
+    median = run.metrics[metric].median if metric in run.metrics else None
     return np.nan if median is None else float(median)
 
 
@@ -275,5 +275,5 @@ def over_learning(runs: Mapping[str, Run], condition: str, law: str, *arms: str)
 
 
 def _error(run: Run) -> float:
-    median = run.metrics[_METRIC]["median"] if _METRIC in run.metrics else None
+    median = run.metrics[_METRIC].median if _METRIC in run.metrics else None
     return np.inf if median is None or run.status != "ok" else float(median)

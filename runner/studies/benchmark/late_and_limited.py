@@ -94,7 +94,8 @@ def saturated(runs: Mapping[str, Run], caption: str) -> Maps:
 
 def _peaks(run: Run) -> list[float]:
     """Return the peak torque of each joint; none of a run that failed."""
-    return [run.metrics[name]["median"] for name in run.metrics if name.startswith("peak_torque_")]
+    found = [metric.median for name, metric in run.metrics.items() if name.startswith("peak_torque_")]
+    return [peak for peak in found if peak is not None]
 
 
 def _at_limit(runs: Mapping[str, Run], arm: str, law: str, condition: str) -> float:

@@ -23,7 +23,7 @@ def impact(run: Run) -> dict[str, float]:
     touching = np.flatnonzero(force > 0.0)
     first = int(touching[0])
     last = first + int(np.argmax(force[first:] <= 0.0)) - 1
-    speed, h = joint_columns(run.trace, "dq")[:, _ALONG], _step(run)
+    speed, h = joint_columns(run.trace(), "dq")[:, _ALONG], _step(run)
     before, after = float(speed[first - 1]), float(speed[last + 1])
     peak, drive = float(force[first : last + 1].max()), float(run.config["controller"]["torques"][_ALONG])
     asked = mass(run) * (before - after) + drive * h * (last + 1 - (first - 1))
@@ -84,7 +84,7 @@ def spring_force(run: Run) -> float:
     """Return the wall's stiffness times the depth of the tip at the end, in N."""
     wall = run.config["environment"]
     begin = float(run.config["trajectory"]["start"][0]) + float(wall["distance"])
-    return float(wall["stiffness"]) * max(float(columns(run.trace, "tip")[-1, 0]) - begin, 0.0)
+    return float(wall["stiffness"]) * max(float(columns(run.trace(), "tip")[-1, 0]) - begin, 0.0)
 
 
 def off_depth(run: Run) -> float:
@@ -109,7 +109,7 @@ def unrest(run: Run) -> float:
 
 
 def _wall_force(run: Run) -> FloatArray:
-    return np.asarray(-run.trace["external_force_x"].to_numpy(), dtype=float)
+    return np.asarray(-run.trace()["external_force_x"].to_numpy(), dtype=float)
 
 
 def _frequency(run: Run) -> float:

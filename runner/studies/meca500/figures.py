@@ -48,13 +48,13 @@ def once(function: Callable[[Run], T]) -> Callable[[Run], T]:
 def wrenches(run: Run, signal: str) -> FloatArray:
     """Return a signal such as "felt" at each tick, force in N and moment in N m, shape (T, 6)."""
     names = [f"{signal}_{kind}_{axis}" for kind, axis in product(("force", "moment"), AXES)]
-    return run.trace[names].to_numpy()
+    return run.trace()[names].to_numpy()
 
 
 @once
 def turns(run: Run) -> FloatArray:
     """Return the rotation vector of the tip since the first row, along the base's axes, shape (T, 3), in rad."""
-    model, rows = model_of(run), joint_columns(run.trace, "q")
+    model, rows = model_of(run), joint_columns(run.trace(), "q")
     first = model.tip_pose(rows[0])[:3, :3]
     return np.array([pin.log3(model.tip_pose(q)[:3, :3] @ first.T) for q in rows])
 
@@ -66,7 +66,7 @@ def turned(run: Run) -> float:
 
 def displacement(run: Run) -> FloatArray:
     """Return how far the tip has gone and turned since the first row, shape (T, 6), in m and rad."""
-    tip = columns(run.trace, "tip")
+    tip = columns(run.trace(), "tip")
     return np.hstack([tip - tip[0], turns(run)])
 
 
@@ -102,7 +102,7 @@ def servo_compliance(run: Run) -> FloatArray:
 
     .. math:: K_e = M (M + h D + h^2 K)^{-1} K, \qquad C = J K_e^{-1} J^T
     """
-    model, q = model_of(run), joint_columns(run.trace, "q")[0]
+    model, q = model_of(run), joint_columns(run.trace(), "q")[0]
     M, J = model.mass_matrix(q), model.tip_jacobian(q)
     kept = M @ np.linalg.inv(M + np.diag(added_inertia(run))) * float(run.config["plant"]["servo"]["stiffness"])
     return J @ np.linalg.solve(kept, J.T)
@@ -240,7 +240,7 @@ def forces(run: Run) -> dict[str, float]:
     felt, peak = float(-wrenches(run, "felt")[-1, 0]), float(-wrenches(run, "external")[:, 0].min())
     soft = float(servo_compliance(run)[0, 0]) if run.config["plant"]["kind"] != "kinematic" else 0.0
     series = way / (1.0 / float(law_of(run).stiffness[0]) + 1.0 / stiffness + soft)
-    off_depth = felt / (stiffness * (float(columns(run.trace, "tip")[-1, 0]) - begin)) - 1.0
+    off_depth = felt / (stiffness * (float(columns(run.trace(), "tip")[-1, 0]) - begin)) - 1.0
     return {"way": way, "felt": felt, "peak": peak, "first": peak / felt, "series": series, "off_depth": off_depth,
             "off_series": felt / series - 1.0}  # fmt: skip
 
@@ -250,7 +250,7 @@ _PEAK_OVER_MEAN = 1.875  # speed of a quintic from rest to rest
 
 def guided(run: Run) -> dict[str, float]:
     """Return the hand's way and how far from its end the tip is left, in m, and the damping at its peak speed, in N."""
-    hand, tip = run.config["environment"], columns(run.trace, "tip")
+    hand, tip = run.config["environment"], columns(run.trace(), "tip")
     way = float(np.linalg.norm(hand["displacement"]))
     damping = _PEAK_OVER_MEAN * way / float(hand["duration"]) * float(run.config["controller"]["damping"][0])
     return {
@@ -262,7 +262,7 @@ def guided(run: Run) -> dict[str, float]:
 
 def joint_speeds(runs: Runs, run: str) -> list[Series]:
     """Return the speeds of joints 1, 2, 3 and 5 as shares of their limits."""
-    shares = joint_columns(runs[run].trace, "dq") / model_of(runs[run]).velocity_limits
+    shares = joint_columns(runs[run].trace(), "dq") / model_of(runs[run]).velocity_limits
     return [Series(f"joint {joint}", clock(runs[run]), shares[:, joint - 1]) for joint in (1, 2, 3, 5)]
 
 
@@ -272,8 +272,8 @@ def limits(run: Run) -> dict[str, Any]:
     margin to a position limit in rad, below zero beyond it; as shares of the speed limit the largest speed and change
     of speed from tick to tick; the smallest singular value of the tip's Jacobian as a share of that at the start.
     """
-    model, q = model_of(run), joint_columns(run.trace, "q")
-    speeds = joint_columns(run.trace, "dq") / model.velocity_limits
+    model, q = model_of(run), joint_columns(run.trace(), "q")
+    speeds = joint_columns(run.trace(), "dq") / model.velocity_limits
     singular = [np.linalg.svd(model.tip_jacobian(own), compute_uv=False)[-1] for own in q[::10]]
     said = "; ".join(map(str, run.provenance["warnings"]))
     return {

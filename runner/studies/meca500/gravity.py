@@ -125,7 +125,7 @@ def weighed(runs: Runs, pattern: str, caption: str) -> Table:
     at_rest = [each.run for each in found(runs, pattern)]
     first = at_rest[0]
     flange = RobotModel(first.urdf, first.config["robot"]["tip"], first.config["gravity"])
-    orientations = np.array([flange.tip_pose(joint_columns(run.trace, "q")[-1])[:3, :3] for run in at_rest])
+    orientations = np.array([flange.tip_pose(joint_columns(run.trace(), "q")[-1])[:3, :3] for run in at_rest])
     reactions = np.array([wrenches(run, "reaction")[-1] for run in at_rest])
     no_errors = np.zeros((len(at_rest), 3, 3))
     done = identify_gravity(reactions, orientations, float(first.config["gravity"]), np.zeros(6), no_errors)

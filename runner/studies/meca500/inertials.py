@@ -90,5 +90,5 @@ def _gravity(run: Run) -> FloatArray:
     """Return gravity torques at random postures, the same for every run, shape (count, nq), in N m."""
     model = model_of(run)
     low, high = np.clip(model.position_limits, -np.pi, np.pi)
-    postures = np.random.default_rng(0).uniform(low, high, (_COUNT, joint_columns(run.trace, "q").shape[1]))
+    postures = np.random.default_rng(0).uniform(low, high, (_COUNT, joint_columns(run.trace(), "q").shape[1]))
     return np.array([model.gravity_torque(q) for q in postures])

@@ -35,7 +35,7 @@ def contact(run: Run) -> dict[str, float]:
     ideal, late = (stiffest_wall(own_law, period, 0, 0.0, delay) for delay in (0, 1))
     bound, radius = ideal, np.nan
     if run.config["plant"]["kind"] != "kinematic":
-        q = tuple(joint_columns(run.trace, "q")[0].tolist())
+        q = tuple(joint_columns(run.trace(), "q")[0].tolist())
         radius = contact_radius(_loop(run.config, q))
         any_wall = {**run.config, "environment": {**run.config["environment"], "stiffness": 1.0}}
         bound = _bound(json.dumps(any_wall, sort_keys=True), q)

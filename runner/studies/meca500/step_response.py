@@ -45,7 +45,7 @@ def kept(shorter: float) -> Callable[[Run], float]:
     """Return which share of its stiffness the last servo keeps, in per cent, with a period so many times as long."""
 
     def share(run: Run) -> float:
-        inertia = np.diagonal(model_of(run).mass_matrix(joint_columns(run.trace, "q")[0]))
+        inertia = np.diagonal(model_of(run).mass_matrix(joint_columns(run.trace(), "q")[0]))
         return float((100.0 * inertia / (inertia + added_inertia(run, shorter)))[-1])
 
     return share

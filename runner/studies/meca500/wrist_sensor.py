@@ -47,7 +47,7 @@ def parting(runs: Runs, pattern: str) -> list[Series]:
     """Return how far the forces are apart over the speed of the fastest joint, tick by tick."""
     series = []
     for each in found(runs, pattern):
-        speed = np.abs(joint_columns(each.run.trace, "dq")).max(axis=1)[1:]
+        speed = np.abs(joint_columns(each.run.trace(), "dq")).max(axis=1)[1:]
         apart = np.linalg.norm(_apart(each.run)[1:, :3], axis=1)
         moving = (speed > 1e-2) & (apart > 0.0)
         series.append(Series(f"{float(each.levels['lap']):g} s", speed[moving], apart[moving], "points"))
@@ -84,7 +84,7 @@ def shaken(runs: Runs, name: str, caption: str) -> Table:
     """Return the standard deviations of felt wrench and tip at rest, against those of the sampled law."""
     run = runs[name]
     Phi, Gamma = discretise(law_of(run), float(run.config["controller"]["period"]))
-    settled = slice(len(run.trace) // 6, None)
+    settled = slice(len(run.trace()) // 6, None)
     felt, tip = wrenches(run, "felt")[settled].std(axis=0), displacement(run)[settled].std(axis=0)
     rows = []
     for index, axis in enumerate(AXES):

@@ -50,8 +50,8 @@ def by_steps(runs: Mapping[str, Run], case: str, arm: str, plant: str) -> list[T
         if one.run.status == "failed":
             tried.append(Tried(float(step), np.nan, np.nan, np.nan))
             continue
-        joints = np.abs(joint_columns(one.run.trace, "q") - np.array(kept["q"])).max()
-        tip = np.linalg.norm(columns(one.run.trace, "tip") - np.array(kept["tip"]), axis=1).max()
+        joints = np.abs(joint_columns(one.run.trace(), "q") - np.array(kept["q"])).max()
+        tip = np.linalg.norm(columns(one.run.trace(), "tip") - np.array(kept["tip"]), axis=1).max()
         seconds = kept["compiled_seconds"][step] if plant == COMPILED else _seconds(one.run)
         tried.append(Tried(float(step), float(joints), float(tip), seconds))
     return tried
@@ -103,4 +103,4 @@ def _loaded(path: Path, _written: int) -> dict[str, Any] | None:
 
 
 def _seconds(run: Run) -> float:
-    return float(run.record["timing"]["tick_time_median"]) * (len(run.trace) - 1)
+    return float(run.record["timing"]["tick_time_median"]) * (len(run.trace()) - 1)

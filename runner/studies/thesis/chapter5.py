@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from runner.base.quantities import spread
 from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
 from runner.controllers.operational_space.whole_body_graph import whole_body_graph
 from runner.reporting.charts.block_diagram import block_diagram
@@ -88,4 +87,4 @@ def folded(run: Run) -> float:
 
 def spreads(runs: Mapping[str, Run], title: str, name: str, *metrics: str) -> list[str]:
     """Return the metrics of an experiment under each preset behind its title, as a row of a table."""
-    return [title, *(spread(runs[f"{name}/{preset}"].metrics[metric]) for preset in PRESETS for metric in metrics)]
+    return [title, *(runs[f"{name}/{preset}"].metrics[metric].text for preset in PRESETS for metric in metrics)]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import above_rounding, format_range, number, quantity, spread
+from runner.base.quantities import above_rounding, format_range, number, quantity
 from runner.metrics.caveats.torques import CHATTER
 from runner.reporting.charts.thinning import envelope
 from runner.reporting.document import Panel, Series
@@ -146,7 +146,7 @@ def _told(claim: PublishedClaim) -> str:
 
 
 def _at_rest(run: Run) -> FloatArray:
-    trace = run.trace
+    trace = run.trace()
     return columns(trace[trace["t"] >= trace["t"].iloc[-1] - 0.5 * _AT_REST], "error")
 
 
@@ -180,9 +180,7 @@ def _compared(metric: str, first: Run, second: Run) -> str:
     what, less, alike, more, by = _WORDS[metric]
     before, after = first.metrics.get(metric), second.metrics.get(metric)
     a, b = median(first, metric), median(second, metric)
-    values = [
-        "no value" if stored is None or stored["median"] is None else spread(stored) for stored in (after, before)
-    ]
+    values = ["no value" if stored is None or stored.median is None else stored.text for stored in (after, before)]
     if a is None or b is None or min(a, b) <= 0.0:
         return f"{what} {by} {values[0]} in place of {values[1]}"
     ratio = max(a, b) / min(a, b)
@@ -253,12 +251,12 @@ def _parted(words: str, run: Run, error: Mapping[str, Any], claims: Mapping[str,
 def _of_metric(metric: str, claim: int, run: Run, error: Mapping[str, Any]) -> str:
     """Return whether Runge-Kutta's value lies among the repetitions', and what it means for the verdict."""
     stored, other = run.metrics[metric], error["metrics"].get(metric, {}).get("value")
-    low, high, unit = stored["min"], stored["max"], str(stored["unit"])
+    low, high, unit = stored.min, stored.max, stored.unit
     if other is None or low is None or high is None:
         return ""
     inside = low <= other <= high
     printed = next(each.value for each in load_claims("thesis") if each.number == claim)
-    ours, theirs = (judge(printed or 0.0, value) for value in (stored["median"], other))
+    ours, theirs = (judge(printed or 0.0, value) for value in (stored.median, other))
     if ours == theirs and metric != "settling_time":
         return ""
     text = (

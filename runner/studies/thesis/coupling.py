@@ -75,8 +75,8 @@ def _averaged(run: Run, torques: FloatArray) -> FloatArray:
 
 
 def _difference(first: Run, second: Run, signal: str) -> FloatArray:
-    rows = min(len(first.trace), len(second.trace))
-    return np.asarray(joint_columns(first.trace[:rows], signal) - joint_columns(second.trace[:rows], signal))
+    rows = min(len(first.trace()), len(second.trace()))
+    return np.asarray(joint_columns(first.trace()[:rows], signal) - joint_columns(second.trace()[:rows], signal))
 
 
 def _inertial_torque(run: Run) -> FloatArray:
@@ -87,7 +87,7 @@ def _inertial_torque(run: Run) -> FloatArray:
     """
     model = model_of(run).pin_model
     data = model.createData()
-    q, dq = joint_columns(run.trace, "q"), joint_columns(run.trace, "dq")
+    q, dq = joint_columns(run.trace(), "q"), joint_columns(run.trace(), "dq")
     tick = float(np.diff(clock(run)).min()) if len(q) > 1 else 1.0
     ddq = np.diff(dq, axis=0) / tick  # torques are held, so this is the mean over the tick
     result = np.zeros_like(ddq)

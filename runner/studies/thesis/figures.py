@@ -123,12 +123,12 @@ def printed(claim: int, end: int, words: str) -> Measured:
 
 def rest_of_way(run: Run) -> FloatArray:
     """Return |x_d - x_E|, from the Macro's end point to the target, shape (T,), in m."""
-    return np.asarray(np.linalg.norm(columns(run.trace, "desired") - columns(run.trace, "macro_tip"), axis=1))
+    return np.asarray(np.linalg.norm(columns(run.trace(), "desired") - columns(run.trace(), "macro_tip"), axis=1))
 
 
 def extension(run: Run) -> FloatArray:
     """Return |p|, from the Macro's end point to the tip, shape (T,), in m."""
-    return np.asarray(np.linalg.norm(columns(run.trace, "tip") - columns(run.trace, "macro_tip"), axis=1))
+    return np.asarray(np.linalg.norm(columns(run.trace(), "tip") - columns(run.trace(), "macro_tip"), axis=1))
 
 
 def moved_by_bias(run: Run) -> float | None:
@@ -137,7 +137,7 @@ def moved_by_bias(run: Run) -> float | None:
     The controllers bring the tip that they believe to the goal: all of the Macro's joints are off by the bias, the
     Mini's are right. The largest axis of J_M b to first order, J_M the Macro's columns of the whole arm's tip Jacobian.
     """
-    q = joint_columns(run.trace, "q")[-1]
+    q = joint_columns(run.trace(), "q")[-1]
     if not np.isfinite(q).all():
         return None
     joints = sum(not joint.startswith("mini_") for joint in run.provenance["joints"])
@@ -147,7 +147,7 @@ def moved_by_bias(run: Run) -> float | None:
 
 def diverges_at(runs: Mapping[str, Run], run: str, words: str) -> Measured:
     """Return when a run diverges; no value where it does not."""
-    return Measured(words, (runs[run].failure or {}).get("time"), "s")
+    return Measured(words, (runs[run].failure_record or {}).get("time"), "s")
 
 
 def at_rest(run: Run) -> list[float]:
@@ -215,14 +215,14 @@ def excess(simulated: Callable[[Run], float | None], predicted: Callable[[Run], 
 def sag(run: Run) -> float:
     """Return |J M^-1 G| / omega_n^2 at the run's final true joint positions, in m."""
     model = model_of(run)
-    q = joint_columns(run.trace, "q")[-1]
+    q = joint_columns(run.trace(), "q")[-1]
     fall = model.tip_jacobian(q)[:3] @ np.linalg.solve(model.mass_matrix(q), model.gravity_torque(q))
     return float(np.linalg.norm(fall / run.config["controller"]["natural_frequency"] ** 2))
 
 
 def growth(runs: Mapping[str, Run], name: str, words: str) -> Measured:
     """Return the tip error at the end of a run, which may have diverged, over that at its start."""
-    error = np.linalg.norm(columns(runs[name].trace, "error"), axis=1)
+    error = np.linalg.norm(columns(runs[name].trace(), "error"), axis=1)
     return Measured(words, float(error[-1] / error[0]))
 
 
@@ -230,8 +230,8 @@ def most_apart(stem: str, times: float) -> Callable[[Run, Run], float]:
     """Return the largest difference of a signal of the Macro's joints and so many times the Mini's, at equal ticks."""
 
     def largest(macro: Run, mini: Run) -> float:
-        rows = min(len(macro.trace), len(mini.trace))
-        a, b = (joint_columns(run.trace[:rows], stem) for run in (macro, mini))
+        rows = min(len(macro.trace()), len(mini.trace()))
+        a, b = (joint_columns(run.trace()[:rows], stem) for run in (macro, mini))
         return float(np.abs(a - times * b).max())
 
     return largest
@@ -239,7 +239,7 @@ def most_apart(stem: str, times: float) -> Callable[[Run, Run], float]:
 
 def ten_times(column: str) -> Callable[[Run, Run], FloatArray]:
     """Return a signal of the Mini ten times as large, at the ticks of the Macro."""
-    return lambda macro, mini: 10.0 * mini.trace[column].to_numpy()[: len(macro.trace)]
+    return lambda macro, mini: 10.0 * mini.trace()[column].to_numpy()[: len(macro.trace())]
 
 
 def printed_range(claim: int, low: float, high: float) -> list[Series]:
@@ -278,7 +278,7 @@ def heavier_than(runs: Mapping[str, Run], name: str, payload: str) -> list[Measu
 
 def final_difference(run: Run, reference: Run) -> float:
     """Return the distance of the joint positions at the end of two runs, in rad."""
-    last, final = (joint_columns(each.trace, "q")[-1] for each in (run, reference))
+    last, final = (joint_columns(each.trace(), "q")[-1] for each in (run, reference))
     return float(np.linalg.norm(last - final))
 
 
@@ -316,12 +316,12 @@ def lag_along(axis: str, signed: bool = False) -> Callable[[Run], float]:
 def error_in_z_at_rest(run: Run) -> float:
     """Return the mean error in z at the end of a run, in m."""
     at_rest = clock(run) > clock(run)[-1] - _REST
-    return float(columns(run.trace, "error")[at_rest].mean(axis=0)[2])
+    return float(columns(run.trace(), "error")[at_rest].mean(axis=0)[2])
 
 
 def _lag(run: Run) -> FloatArray:
     """Return the largest lag along each axis, desired less true position, shape (3,), in m."""
-    controller, desired = run.config["controller"], columns(run.trace, "desired")
+    controller, desired = run.config["controller"], columns(run.trace(), "desired")
     factor = 2.0 * float(controller["damping_ratio"]) / float(controller["natural_frequency"])
     return np.asarray(factor * 1.875 * (desired[-1] - desired[0]) / float(run.config["trajectory"]["duration"]))
 
@@ -349,7 +349,7 @@ def effectiveness(runs: Mapping[str, Run]) -> list[list[str]]:
 
 def encoder_bound(run: Run) -> float | None:
     """Return the largest axis error of the Macro's end point as its encoders tell it at the last posture, in m."""
-    q, frame = joint_columns(run.trace, "q")[-1], run.provenance["stages"]["mini"]
+    q, frame = joint_columns(run.trace(), "q")[-1], run.provenance["stages"]["mini"]
     if not np.isfinite(q).all():
         return None
     model, step = model_of(run), 1e-6

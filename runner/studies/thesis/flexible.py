@@ -48,7 +48,7 @@ def grows(run: Run) -> bool:
     """Tell whether what moves at the end moves faster than half-way, as it does where a law is unstable."""
     if run.status == "failed":
         return True
-    speed = np.abs(joint_columns(run.trace, "dq")).max(axis=1)
+    speed = np.abs(joint_columns(run.trace(), "dq")).max(axis=1)
     tenth = max(1, len(speed) // 10)
     return bool(speed[-tenth:].max() > speed[5 * tenth : 6 * tenth].max())
 
@@ -110,12 +110,12 @@ def count_runs(run: Run) -> bool:
 
 def macro_off(run: Run) -> FloatArray:
     """Return how far the Macro's end point is from where it is to be, at each row, in m."""
-    return np.asarray(np.linalg.norm(columns(run.trace, "macro_error"), axis=1))
+    return np.asarray(np.linalg.norm(columns(run.trace(), "macro_error"), axis=1))
 
 
 def tip_off(run: Run) -> FloatArray:
     """Return how far the tip is from where it is to be, at each row, in m."""
-    return np.asarray(np.linalg.norm(columns(run.trace, "error"), axis=1))
+    return np.asarray(np.linalg.norm(columns(run.trace(), "error"), axis=1))
 
 
 def most(of: Callable[[Run], FloatArray], after: bool) -> Callable[[Run], float]:
@@ -145,19 +145,19 @@ def at_rest(run: Run) -> float:
 
 def acceleration_over_square(run: Run) -> float:
     """Return the largest desired acceleration over the square of the last stage's natural frequency, in m."""
-    asked = float(np.linalg.norm(columns(run.trace, "desired_acceleration"), axis=1).max())
+    asked = float(np.linalg.norm(columns(run.trace(), "desired_acceleration"), axis=1).max())
     return asked / float(run.config["controller"]["natural_frequency"]["mini"]) ** 2
 
 
 def displaced(run: Run) -> FloatArray:
     """Return how far the Macro's end point is from where it began, at each row, in m."""
-    point = columns(run.trace, "macro_tip")
+    point = columns(run.trace(), "macro_tip")
     return np.asarray(np.linalg.norm(point - point[0], axis=1))
 
 
 def stroke(run: Run) -> float:
     """Return how far the tip went from its place at the Macro's end point, at most, in m."""
-    apart = columns(run.trace, "tip") - columns(run.trace, "macro_tip")
+    apart = columns(run.trace(), "tip") - columns(run.trace(), "macro_tip")
     return float(np.linalg.norm(apart - apart[0], axis=1).max())
 
 
@@ -170,7 +170,7 @@ def rings_until(run: Run) -> float:
 
 def damping_ratio(run: Run, bare: Run) -> float:
     """Return the damping ratio of the first mode of the bare Macro as its peaks rise or fall; NaN of fewer than two."""
-    phi, t, q = _shape(bare), clock(run), joint_columns(run.trace, "q")[:, :_MACRO]
+    phi, t, q = _shape(bare), clock(run), joint_columns(run.trace(), "q")[:, :_MACRO]
     y = (q - q[0]) @ _mass(bare) @ phi
     peaks = 1 + np.flatnonzero((y[1:-1] > y[:-2]) & (y[1:-1] >= y[2:]))
     peaks = peaks[t[peaks] > _KICK]
@@ -238,7 +238,7 @@ def off_the_line(runs: Mapping[str, Run], pattern: str, unshaped: str, kind: Lit
 
 def rings_after(run: Run) -> float:
     """Return how far the tip is from where it rests, at most, once its desired motion has ended, in m; NaN before."""
-    error, t, ended = columns(run.trace, "error"), clock(run), _first_at_rest(run)
+    error, t, ended = columns(run.trace(), "error"), clock(run), _first_at_rest(run)
     if ended is None:
         return float("nan")
     away = error[ended:] - error[t > t[-1] - _REST].mean(axis=0)
@@ -263,13 +263,13 @@ def _rings(run: Run) -> float:
     stiffness = float(run.config["plant"]["flexible_joints"]["stiffness"])
     mode, t = Mode(float(np.sqrt(stiffness / _mass(run)[0, 0]) / (2.0 * np.pi)), 0.0), clock(run)
     ended = _first_at_rest(run)
-    return float("nan") if ended is None else mode.amplitude(t, joint_columns(run.trace, "q")[:, 0], float(t[ended]))
+    return float("nan") if ended is None else mode.amplitude(t, joint_columns(run.trace(), "q")[:, 0], float(t[ended]))
 
 
 def _first_at_rest(run: Run) -> int | None:
     """Return the first row after the desired motion; None of a run that ends before."""
-    moving = np.flatnonzero(np.abs(columns(run.trace, "desired_velocity")).max(axis=1) > _STILL)
-    return int(moving[-1]) + 1 if len(moving) and moving[-1] + 1 < len(run.trace) else None
+    moving = np.flatnonzero(np.abs(columns(run.trace(), "desired_velocity")).max(axis=1) > _STILL)
+    return int(moving[-1]) + 1 if len(moving) and moving[-1] + 1 < len(run.trace()) else None
 
 
 def _first_mode(run: Run, bare: Run) -> tuple[float, float]:
@@ -280,7 +280,7 @@ def _first_mode(run: Run, bare: Run) -> tuple[float, float]:
 
     .. math:: m / m_1 = \phi^T M_{Mm} J_m^{-1} J_M \phi / (\phi^T M \phi)
     """
-    phi, M, model, q = _shape(bare), _mass(bare), model_of(run), joint_columns(run.trace, "q")[0]
+    phi, M, model, q = _shape(bare), _mass(bare), model_of(run), joint_columns(run.trace(), "q")[0]
     whole, moves = model.tip_jacobian(q)[:3], model_of(bare).tip_jacobian(np.zeros(_MACRO))[:3] @ phi
     couples = model.mass_matrix(q)[:_MACRO, _MACRO:]
     stiffness = float(run.config["plant"]["flexible_joints"]["stiffness"]["macro"])

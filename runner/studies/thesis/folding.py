@@ -53,7 +53,7 @@ def time_of_closest(run: Run) -> str:
 def sag(run: Run) -> float:
     """Return the closed form of the Macro's sag at the end of a run, in m."""
     rate = float(run.config["controller"]["natural_frequency"]["macro"])
-    return missing_acceleration(run, len(run.trace) - 1) / rate**2
+    return missing_acceleration(run, len(run.trace()) - 1) / rate**2
 
 
 def farthest_at_rest(run: Run) -> float | None:
@@ -78,7 +78,7 @@ def at_rest_text(run: Run) -> str:
 
 def parting(first: Run, second: Run) -> FloatArray:
     """Return the distance between the joint positions of two runs at their common ticks, shape (T,), in rad."""
-    a, b = (joint_columns(run.trace, "q") for run in (first, second))
+    a, b = (joint_columns(run.trace(), "q") for run in (first, second))
     rows = min(len(a), len(b))
     return np.asarray(np.linalg.norm(a[:rows] - b[:rows], axis=1))
 
@@ -101,7 +101,7 @@ def _row(run: Run) -> int:
 
 def _singular_values(run: Run) -> FloatArray:
     """Return those of the Mini's columns of the whole arm's Jacobian, shape (T, 3): they depend on no frame."""
-    model, positions = model_of(run), joint_columns(run.trace, "q")
+    model, positions = model_of(run), joint_columns(run.trace(), "q")
     values, finite = np.full((len(positions), 3), np.nan), np.isfinite(positions).all(axis=1)
     jacobians = [model.tip_jacobian(q)[:3, 3:] for q in positions[finite]]
     values[finite] = np.linalg.svd(np.reshape(jacobians, (-1, 3, 3)), compute_uv=False)
@@ -111,7 +111,7 @@ def _singular_values(run: Run) -> FloatArray:
 def missing_acceleration(run: Run, row: int) -> float:
     """Return the acceleration of the Macro's end point by the gravity that its law leaves out, in m/s^2."""
     whole = model_of(run)
-    q = joint_columns(run.trace, "q")[row]
+    q = joint_columns(run.trace(), "q")[row]
     base = whole.pin_model.getFrameId(run.provenance["stages"]["mini"])
     data = whole.pin_model.createData()
     J = pin.computeFrameJacobian(whole.pin_model, data, q, base, pin.LOCAL_WORLD_ALIGNED)[:3, :3]

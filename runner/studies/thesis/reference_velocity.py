@@ -17,7 +17,7 @@ def speed_seen(run: Run) -> FloatArray:
 
 def speed_on_the_ground(run: Run) -> FloatArray:
     """Return the speed of x_d - x_E, likewise."""
-    return _speeds(run, np.broadcast_to(np.eye(3), (len(run.trace), 3, 3)))
+    return _speeds(run, np.broadcast_to(np.eye(3), (len(run.trace()), 3, 3)))
 
 
 def lag(run: Run) -> float | None:
@@ -35,7 +35,7 @@ def times_worse(zero: Run, full: Run) -> float | None:
 
 def _speeds(run: Run, frames: FloatArray) -> FloatArray:
     """Return the speed of x_d - x_E in frames with these rotations into the robot's, shape (T, 3, 3)."""
-    rest = columns(run.trace, "desired") - columns(run.trace, "macro_tip")
+    rest = columns(run.trace(), "desired") - columns(run.trace(), "macro_tip")
     steps = np.diff(np.einsum("tji,tj->ti", frames, rest), axis=0)
     return np.asarray(np.linalg.norm(steps / np.diff(clock(run))[:, None], axis=1))
 
@@ -45,8 +45,8 @@ def _wrist_rotations(run: Run) -> FloatArray:
     model = model_of(run)
     base = model.pin_model.getFrameId(run.provenance["stages"]["mini"])
     data = model.pin_model.createData()
-    rotations = np.full((len(run.trace), 3, 3), np.nan)
-    for row, q in zip(rotations, joint_columns(run.trace, "q"), strict=True):
+    rotations = np.full((len(run.trace()), 3, 3), np.nan)
+    for row, q in zip(rotations, joint_columns(run.trace(), "q"), strict=True):
         if np.isfinite(q).all():
             pin.forwardKinematics(model.pin_model, data, q)
             row[:] = pin.updateFramePlacement(model.pin_model, data, base).rotation

@@ -137,7 +137,7 @@ def _changes(run: Run, stage: str) -> FloatArray:
     t = clock(run)
     period = float(run.config["controller"]["period"][stage])
     every = max(1, round(period / float(np.diff(t).min()))) if len(t) > 1 else 1
-    error = columns(run.trace, "macro_error" if stage == "macro" else "error")[::every]
+    error = columns(run.trace(), "macro_error" if stage == "macro" else "error")[::every]
     return np.asarray(np.linalg.norm(np.diff(error, axis=0), axis=1))
 
 

@@ -50,7 +50,7 @@ def drift(run: Run) -> float | None:
     window = _window(run)
     if window is None:
         return None
-    (first, last), t, moved = window, clock(run), columns(run.trace, "macro_tip")
+    (first, last), t, moved = window, clock(run), columns(run.trace(), "macro_tip")
     return float(np.linalg.norm(moved[last] - moved[first]) / (t[last] - t[first]))
 
 
@@ -61,7 +61,7 @@ def _reach(run: Run) -> float:
 def _window(run: Run) -> tuple[int, int] | None:
     """Return first and last row of the time over which the drift is measured; None where the tip never rests."""
     t, lost = clock(run), lost_from(run)
-    good = (np.linalg.norm(columns(run.trace, "error"), axis=1) < _SETTLED) & (t <= (t[-1] if lost is None else lost))
+    good = (np.linalg.norm(columns(run.trace(), "error"), axis=1) < _SETTLED) & (t <= (t[-1] if lost is None else lost))
     resting = t[good]
     if not len(resting):
         return None

@@ -35,7 +35,7 @@ def margin(run: Run) -> float:
 
 def smallest_margin(run: Run) -> str:
     """Return the same with the joint that it is, as a cell of a table."""
-    joint = int(np.argmin(model_of(run).limit_margins(joint_columns(run.trace, "q")).min(axis=0)))
+    joint = int(np.argmin(model_of(run).limit_margins(joint_columns(run.trace(), "q")).min(axis=0)))
     return f"{number(margin(run))} (q{joint + 1})"
 
 
@@ -86,13 +86,13 @@ def plant_step(run: Run) -> float:
 
 def largest_error_at(run: Run) -> float:
     """Return when the largest axis error of the tip is the largest of the run, in s."""
-    error = np.abs(columns(run.trace, "error")).max(axis=1)
-    return float(run.trace["t"].to_numpy()[int(np.argmax(error))])
+    error = np.abs(columns(run.trace(), "error")).max(axis=1)
+    return float(run.trace()["t"].to_numpy()[int(np.argmax(error))])
 
 
 def error_at_end(run: Run) -> float:
     """Return the largest axis error of the tip at the end of a run, in m."""
-    return float(np.abs(columns(run.trace, "error")[-1]).max())
+    return float(np.abs(columns(run.trace(), "error")[-1]).max())
 
 
 def first_saturation(run: Run) -> tuple[int, float] | None:
@@ -101,7 +101,7 @@ def first_saturation(run: Run) -> tuple[int, float] | None:
     if not at_limit.any():
         return None
     row, joint = np.argwhere(at_limit)[0]
-    return int(joint), float(run.trace["t"].to_numpy()[row])
+    return int(joint), float(run.trace()["t"].to_numpy()[row])
 
 
 def first_at_limit(run: Run) -> str:
@@ -117,7 +117,7 @@ def ticks_at_a_limit(run: Run) -> str:
 
 def clipped_share(run: Run) -> float:
     """Return the share of the ticks at which a joint is at its effort limit, in per cent."""
-    return 100.0 * float(run.metrics["saturation_fraction"]["median"])
+    return 100.0 * float(run.metrics["saturation_fraction"].median or 0.0)
 
 
 def clipped_ticks(run: Run) -> float:
@@ -127,19 +127,19 @@ def clipped_ticks(run: Run) -> float:
 
 def last_clipped(run: Run) -> float | None:
     """Return the last time at which a joint is at its effort limit, in s; None if there is none."""
-    times = run.trace["t"].to_numpy()[:-1][_at_limits(run).any(axis=1)]
+    times = run.trace()["t"].to_numpy()[:-1][_at_limits(run).any(axis=1)]
     return float(times[-1]) if times.size else None
 
 
 def _at_limits(run: Run) -> np.ndarray:
     """Return at which ticks each joint is at its effort limit, shape (T, nq)."""
-    torques = np.abs(joint_columns(run.trace, "tau"))[:-1]
+    torques = np.abs(joint_columns(run.trace(), "tau"))[:-1]
     return np.asarray(torques >= model_of(run).effort_limits * (1.0 - 1e-9))
 
 
 def nearest_to_its_limit(run: Run) -> str:
     """Return which joint comes closest to its effort limit, or is the first at it, and how close, as a cell."""
-    torques = np.abs(joint_columns(run.trace, "tau"))[:-1].max(axis=0, initial=0.0)
+    torques = np.abs(joint_columns(run.trace(), "tau"))[:-1].max(axis=0, initial=0.0)
     shares = torques / model_of(run).effort_limits
     saturated = first_saturation(run)
     joint = int(np.argmax(shares)) if saturated is None else saturated[0]
@@ -150,20 +150,20 @@ def sag(run: Run) -> float:
     """Return |J K^-1 G|, the tip's sag by the arm's weight, its largest axis over the postures of a run, in m."""
     model = model_of(run)
     stiffness = float(run.config["plant"]["servo"]["stiffness"])
-    rows = joint_columns(run.trace, "q")[::50]
+    rows = joint_columns(run.trace(), "q")[::50]
     return max(float(np.abs(model.tip_jacobian(q)[:3] @ model.gravity_torque(q)).max()) / stiffness for q in rows)
 
 
 def flange_turn(run: Run) -> float:
     """Return the largest angle between the flange's orientation and the one it starts with, in rad."""
-    model, q = model_of(run), joint_columns(run.trace, "q")
+    model, q = model_of(run), joint_columns(run.trace(), "q")
     first = model.tip_pose(q[0])[:3, :3]
     return max(float(np.linalg.norm(pin.log3(first.T @ model.tip_pose(row)[:3, :3]))) for row in q[::10])
 
 
 def second_drift(run: Run) -> float:
     """Return how far the joints are in the end from where they were after the first period, the largest, in rad."""
-    q = joint_columns(run.trace, "q")
+    q = joint_columns(run.trace(), "q")
     after = int(np.searchsorted(clock(run), float(run.config["trajectory"]["duration"]) - 1e-9))
     return float(np.abs(q[-1] - q[after]).max())
 

@@ -25,13 +25,13 @@ def commands(run: Run) -> float:
 
 def travel(run: Run) -> float:
     """Return how far the joints have gone at the end: the largest of them, in rad."""
-    q = joint_columns(run.trace, "q")
+    q = joint_columns(run.trace(), "q")
     return float(np.abs(q[-1] - q[0]).max())
 
 
 def way(run: Run) -> FloatArray:
     """Return the distance of the tip from where it began, shape (T,), in m."""
-    tip = columns(run.trace, "tip")
+    tip = columns(run.trace(), "tip")
     return np.asarray(np.linalg.norm(tip - tip[0], axis=1))
 
 
@@ -47,14 +47,14 @@ def between_commands(run: Run) -> float | None:
     """
     if run.config["plant"]["kind"] != "kinematic":
         return None
-    model, q = model_of(run), joint_columns(run.trace, "q")
+    model, q = model_of(run), joint_columns(run.trace(), "q")
     between = model.tip_positions(0.5 * (q[1:] + q[:-1]))
-    return float(np.linalg.norm(between - columns(run.trace, "tip")[0], axis=1).max(initial=0.0))
+    return float(np.linalg.norm(between - columns(run.trace(), "tip")[0], axis=1).max(initial=0.0))
 
 
 def drifts(run: Run) -> FloatArray:
     """Return how far the joints are from where they were a cycle before, after each, shape (cycles,), in rad."""
-    return np.asarray(np.linalg.norm(np.diff(joint_columns(run.trace, "q")[:: _cycle(run)], axis=0), axis=1))
+    return np.asarray(np.linalg.norm(np.diff(joint_columns(run.trace(), "q")[:: _cycle(run)], axis=0), axis=1))
 
 
 def _cycle(run: Run) -> int:
@@ -79,7 +79,7 @@ def drift_in_all(run: Run) -> float:
 
 def way_from_the_start(run: Run) -> float:
     """Return how far the joints are in the end from where they began, in rad."""
-    q = joint_columns(run.trace, "q")
+    q = joint_columns(run.trace(), "q")
     return float(np.linalg.norm(q[-1] - q[0]))
 
 
@@ -91,7 +91,7 @@ def drift_by_cycle(runs: Mapping[str, Run], pattern: str) -> list[Series]:
 
 def in_last_cycle(signal: Signal) -> Callable[[Run], FloatArray]:
     """Return a signal of the last cycle alone."""
-    return lambda run: trace_of(signal, run)[max(len(run.trace) - _cycle(run) - 1, 0) :]
+    return lambda run: trace_of(signal, run)[max(len(run.trace()) - _cycle(run) - 1, 0) :]
 
 
 def least_at_last(signal: Signal) -> Callable[[Run], float]:
@@ -113,7 +113,7 @@ def gain(sought: Measured, plain: Measured) -> Measured:
 
 def aside(run: Run) -> float:
     """Return how far the joints that lead the elbow out of the arm's vertical plane are from zero at the start."""
-    return float(np.abs(joint_columns(run.trace, "q")[0, _ASIDE]).max())
+    return float(np.abs(joint_columns(run.trace(), "q")[0, _ASIDE]).max())
 
 
 def elbow_way(run: Run) -> float:
@@ -127,5 +127,5 @@ def elbow_half_way(run: Run) -> float:
 
 
 def _elbow(run: Run) -> FloatArray:
-    q = joint_columns(run.trace, "q")[:, _ELBOW]
+    q = joint_columns(run.trace(), "q")[:, _ELBOW]
     return np.asarray(np.abs(q - q[0]))

@@ -94,7 +94,7 @@ def asked(runs: Mapping[str, Run], group: str, largest: float) -> list[Series]:
 def _torques(runs: Mapping[str, Run], group: str) -> tuple[Run, FloatArray, FloatArray]:
     """Return the run without payload, the torques asked of it, and what each kilogram adds, shapes (T, nq)."""
     light, heavy = (one.run for one in found(runs, f"{group}/{{mass}}"))
-    unloaded, loaded = (joint_columns(run.trace, "tau") for run in (light, heavy))
+    unloaded, loaded = (joint_columns(run.trace(), "tau") for run in (light, heavy))
     rows = min(len(unloaded), len(loaded))
     kilograms = heavy.config["robot"]["payload"]["mass"] - light.config["robot"]["payload"]["mass"]
     return light, unloaded[:rows], (loaded[:rows] - unloaded[:rows]) / kilograms
@@ -102,8 +102,8 @@ def _torques(runs: Mapping[str, Run], group: str) -> tuple[Run, FloatArray, Floa
 
 def lost_when(run: Run) -> str:
     """Return when an axis error of the tip leaves the settling band for the first time, in s, as a cell of a table."""
-    beyond = (np.abs(columns(run.trace, "error")) > run.config["robot"]["settling_band"]).any(axis=1)
-    return f"{run.trace['t'].to_numpy()[int(np.argmax(beyond))]:.3g}" if beyond.any() else "not lost"
+    beyond = (np.abs(columns(run.trace(), "error")) > run.config["robot"]["settling_band"]).any(axis=1)
+    return f"{run.trace()['t'].to_numpy()[int(np.argmax(beyond))]:.3g}" if beyond.any() else "not lost"
 
 
 def beyond_the_rating(runs: Mapping[str, Run]) -> list[Block]:

@@ -16,7 +16,7 @@ _STILLS = (0.0, 0.25, 0.5)  # of the period: at A, half way, at B
 
 def sketch(runs: Mapping[str, Run], run: str) -> Picture:
     """Return the arm at A, half way and at B in one picture."""
-    trace, period = runs[run].trace, float(runs[run].config["trajectory"]["duration"])
+    trace, period = runs[run].trace(), float(runs[run].config["trajectory"]["duration"])
     rows = [int(np.searchsorted(trace["t"].to_numpy(), share * period - 1e-9)) for share in _STILLS]
     tip, desired = columns(trace, "tip"), columns(trace, "desired")
     times = trace["t"].to_numpy()[rows].tolist()
@@ -58,10 +58,10 @@ def home_tip(runs: Mapping[str, Run], run: str) -> list[float]:
 
 def reach(run: Run) -> float:
     """Return the largest distance of a run's tip from the shoulder, in m."""
-    return float(np.linalg.norm(columns(run.trace, "tip") - model_of(run).shoulder, axis=1).max())
+    return float(np.linalg.norm(columns(run.trace(), "tip") - model_of(run).shoulder, axis=1).max())
 
 
 def joint_range(runs: Mapping[str, Run], run: str, joint: str) -> str:
     """Return the least and the largest position of a joint, as a cell of a table."""
-    q = runs[run].trace[joint]
+    q = runs[run].trace()[joint]
     return f"{q.min():.3f} to {q.max():.3f}"

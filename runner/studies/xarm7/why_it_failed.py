@@ -127,7 +127,7 @@ def _all_singular_values(runs: Mapping[str, Run]) -> list[Series]:
 def _along(runs: Mapping[str, Run], task: str) -> FloatArray:
     """Return the right Jacobians along the line, from A to B, shape (N, 6, 7)."""
     run = runs[f"printed/{task}/working"]
-    return _true(model_of(run), joint_columns(run.trace, "q")[_to_b(run)])
+    return _true(model_of(run), joint_columns(run.trace(), "q")[_to_b(run)])
 
 
 def _true(model: RobotModel, postures: FloatArray) -> FloatArray:
@@ -142,7 +142,7 @@ def _to_b(run: Run) -> slice:
 
 def _y(run: Run) -> FloatArray:
     """Return the tip's y at the same rows, in m."""
-    return run.trace["tip_y"].to_numpy()[_to_b(run)]
+    return run.trace()["tip_y"].to_numpy()[_to_b(run)]
 
 
 def jacobians(model: RobotModel, postures: FloatArray, shifted: bool, mistaken: bool) -> FloatArray:
@@ -158,7 +158,7 @@ def compare(runs: Mapping[str, Run], run: str) -> dict[str, FloatArray]:
     `line_printed` and `line_true` along the line.
     """
     model = model_of(runs[run])
-    everywhere, line = random_postures(model, _COUNT, _SEED), joint_columns(runs[run].trace, "q")[::5]
+    everywhere, line = random_postures(model, _COUNT, _SEED), joint_columns(runs[run].trace(), "q")[::5]
     forms = {"as_printed": (True, True), "angles": (False, True), "shifted": (True, False), "mended": (False, False)}
     return {name: jacobians(model, everywhere, *wrong) for name, wrong in forms.items()} | {
         "true": _true(model, everywhere),
@@ -197,7 +197,7 @@ def _largest(difference: FloatArray) -> str:
 
 def column_errors(runs: Mapping[str, Run], run: str, shifted: bool) -> list[Series]:
     """Return the error of each column's linear part with mistaken angles from A to B, over the tip's y in m."""
-    model, line = model_of(runs[run]), joint_columns(runs[run].trace, "q")[_to_b(runs[run])]
+    model, line = model_of(runs[run]), joint_columns(runs[run].trace(), "q")[_to_b(runs[run])]
     off = np.linalg.norm((jacobians(model, line, shifted, True) - jacobians(model, line, False, False))[:, :3], axis=1)
     return [Series(f"column {k + 1}", _y(runs[run]), own) for k, own in enumerate(off.T)]
 
@@ -242,9 +242,12 @@ def outcomes(runs: Mapping[str, Run]) -> list[list[str]]:
 
 
 def _outcome(run: Run) -> list[str]:
-    if run.failure is None:
+    if (failure := run.failure_record) is None:
         return ["runs", *(cell(run, metric) for metric in _METRICS), smallest_margin(run)]
-    return [f"ends at {run.failure['time']:.4g} s: {str(run.failure['reason']).lower()}", *["–"] * (len(_METRICS) + 1)]
+    return [
+        f"ends at {failure['time']:.4g} s: {str(failure['reason']).lower()}",
+        *["–"] * (len(_METRICS) + 1),
+    ]
 
 
 def with_the_inverse(runs: Mapping[str, Run]) -> dict[str, int]:
@@ -257,4 +260,4 @@ def with_the_inverse(runs: Mapping[str, Run]) -> dict[str, int]:
 
 def unequal_speeds(run: Run) -> float:
     """Return the largest difference of the first two joints' speeds, in rad/s."""
-    return float((run.trace["dq1"] - run.trace["dq2"]).abs().max())
+    return float((run.trace()["dq1"] - run.trace()["dq2"]).abs().max())

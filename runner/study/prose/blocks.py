@@ -26,7 +26,7 @@ def metric(runs: Mapping[str, Run], run: str, name: str, words: str = "", end: s
     Conditions call it by the words, or by run and name.
     """
     found = run_values.measured(runs[run], name, words or f"{name} of {run}")
-    return replace(found, value=runs[run].metrics[name][end]) if name in runs[run].metrics else found
+    return replace(found, value=getattr(runs[run].metrics[name], end)) if name in runs[run].metrics else found
 
 
 def percent(share: Measured) -> Measured:

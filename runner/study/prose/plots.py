@@ -60,7 +60,7 @@ def line(
 
 def joints(runs: Mapping[str, Run], run: str, stem: str = "q", name: str = "q") -> list[Series]:
     """Return a signal of each joint over time: q, qd, tau or another that has a column for each joint."""
-    values = joint_columns(runs[run].trace, stem)
+    values = joint_columns(runs[run].trace(), stem)
     t = times_of(runs[run], len(values))
     return [Series(f"{name}{joint + 1}", t, column) for joint, column in enumerate(values.T)]
 
@@ -258,7 +258,7 @@ def _with_ends(what: Signal, runs: Sequence[Run], though_failed: bool) -> tuple[
     if value is None:
         return (np.nan,) * 3
     stored = runs[0].metrics[what] if isinstance(what, str) else None
-    low, high = (value, value) if stored is None else (stored["min"], stored["max"])
+    low, high = (value, value) if stored is None else (stored.min, stored.max)
     return value, value if low is None else float(low), value if high is None else float(high)
 
 

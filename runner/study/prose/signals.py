@@ -17,7 +17,7 @@ def norm(name: str) -> Callable[[Run], FloatArray]:
 
     def signal(run: Run) -> FloatArray:
         check_signal(run, f"{name}_x")
-        return np.asarray(np.linalg.norm(columns(run.trace, name), axis=1))
+        return np.asarray(np.linalg.norm(columns(run.trace(), name), axis=1))
 
     return signal
 
@@ -80,10 +80,10 @@ def smallest_singular_value(run: Run) -> FloatArray:
 
 def limit_margin(run: Run) -> FloatArray:
     """Return how far the joint nearest to a limit of its position is from it at each row, in rad or m."""
-    return np.asarray(model_of(run).limit_margins(joint_columns(run.trace, "q")).min(axis=1))
+    return np.asarray(model_of(run).limit_margins(joint_columns(run.trace(), "q")).min(axis=1))
 
 
 def _singular(run: Run) -> Sequence[FloatArray]:
     model, rows = model_of(run), 6 if run.config["controller"].get("task") == "pose" else 3
-    q = joint_columns(run.trace, "q")
+    q = joint_columns(run.trace(), "q")
     return [np.asarray(np.linalg.svd(model.tip_jacobian(row)[:rows], compute_uv=False), dtype=float) for row in q]

@@ -177,7 +177,7 @@ def _header(given: Column, rows: Sequence[Found]) -> str:
 
 
 def _unit(run: Run, metric: str) -> str:
-    return str(run.metrics[metric]["unit"]) if metric in run.metrics else "1"
+    return run.metrics[metric].unit if metric in run.metrics else "1"
 
 
 def _numeric(cells: Sequence[Sequence[str]]) -> tuple[int, ...]:

@@ -63,8 +63,7 @@ class Objective:
                 f"--{self.direction}: these runs have no '{self.metric}'{nearest(self.metric, run.metrics)}; "
                 f"they have: {', '.join(run.metrics)}"
             )
-        median: float | None = run.metrics[self.metric]["median"]
-        return median
+        return run.metrics[self.metric].median
 
 
 @dataclass(frozen=True)

@@ -46,7 +46,7 @@ def test_a_second_call_returns_the_stored_run_without_simulating(monkeypatch):
     monkeypatch.setattr(job, "simulate", None)
     second = runner.run(*SHORT)
     assert second.folder == first.folder
-    assert second.stored.record == first.stored.record
+    assert second.record == first.record
 
 
 def test_the_command_line_finds_what_python_stored(cli, monkeypatch):

@@ -71,12 +71,12 @@ def test_the_table_has_a_row_for_each_cell_and_metric(sweep):
     keys = ["robot", "controller", "seed"]
     assert list(tidy.columns) == [*keys, "metric", "unit", "median", "low", "high", "n", "status", "caveats"]
     assert len(tidy) == 16
-    wide = table(measure_sweep(sweep.stored))
+    wide = table(measure_sweep(sweep))
     for name in ("peak_torque", "energy"):
         part = tidy[tidy["metric"] == name].reset_index(drop=True)
         for column in ("median", "low", "high", "n"):
             np.testing.assert_array_equal(part[column], wide[f"{name}.{column}"])
-    assert set(sweep.to_frame()["metric"]) == set(measure_sweep(sweep.stored).values)
+    assert set(sweep.to_frame()["metric"]) == set(measure_sweep(sweep).values)
     assert sweep.to_frame("energy").equals(sweep.to_frame(["energy"]))
 
 

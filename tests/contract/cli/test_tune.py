@@ -57,7 +57,7 @@ def test_the_best_is_the_same_run_again_and_other_commands_take_a_tuning_for_a_s
     before = {path.name for path in (tmp_path / "outputs" / "runs").iterdir()}
     run = cli(*shlex.split(best.partition(" with ")[2])).folder
     assert run.name in before
-    assert float(f"{open_run(run).metrics['peak_torque']['median']:.5g}") == float(best.split()[2])
+    assert float(f"{open_run(run).metrics['peak_torque'].median:.5g}") == float(best.split()[2])
     (folder,) = (tmp_path / "outputs" / "tunings").iterdir()
     assert cli("status", folder).out.startswith("4 runs: 4 done, 0 left\n")
     assert cli("table", folder).code == 0

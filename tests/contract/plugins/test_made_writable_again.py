@@ -270,7 +270,7 @@ def test_an_array_made_writable_again_reaches_nothing(mine, cli, group, module):
         assert ending.code == 0, ending.err
         found[spoils] = open_run(ending.folder)
     assert found[True].metrics == found[False].metrics
-    np.testing.assert_array_equal(found[True].trace.to_numpy(), found[False].trace.to_numpy())
+    np.testing.assert_array_equal(found[True].trace().to_numpy(), found[False].trace().to_numpy())
 
 
 def test_a_calibration_reaches_no_bench_but_its_own(mine, cli):

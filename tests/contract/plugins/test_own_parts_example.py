@@ -33,17 +33,17 @@ def own(cli, monkeypatch):
 
 
 def test_a_cable_pulls_the_arm_from_its_path(own, cli):
-    error = {plant: own("environment", "cable", f"plant={plant}").metrics["max_tracking_error"]["median"]
+    error = {plant: own("environment", "cable", f"plant={plant}").metrics["max_tracking_error"].median
              for plant in ("rk4", "mujoco")}  # fmt: skip
-    alone = open_run(cli(*SHORT, "plant=rk4").folder).metrics["max_tracking_error"]["median"]
+    alone = open_run(cli(*SHORT, "plant=rk4").folder).metrics["max_tracking_error"].median
     assert error["rk4"] > 2.0 * alone
     assert error["mujoco"] == pytest.approx(error["rk4"], rel=0.05)
 
 
 def test_a_cable_without_pull_changes_nothing(own, cli):
     nothing = ("environment.stiffness=0", "environment.damping=0", "environment.bending=0", "plant=rk4")
-    with_cable = own("environment", "cable", *nothing).trace
-    alone = open_run(cli(*SHORT, "plant=rk4").folder).trace
+    with_cable = own("environment", "cable", *nothing).trace()
+    alone = open_run(cli(*SHORT, "plant=rk4").folder).trace()
     assert np.abs(with_cable["q1"] - alone["q1"]).max() < 1e-9
 
 
@@ -64,7 +64,7 @@ def test_encoders_with_backlash_run_and_disturb(own, cli):
     worse = own("noise", "backlash", *law)
     best = own("noise", "backlash", "noise.play=0", "noise.resolution=1e-9", *law)
     exact = open_run(cli(*SHORT, *law, "noise.velocity=finite_difference").folder)
-    error = [run.metrics["rms_tracking_error"]["median"] for run in (worse, best, exact)]
+    error = [run.metrics["rms_tracking_error"].median for run in (worse, best, exact)]
     assert error[0] > 2.0 * error[1]
     assert error[1] == pytest.approx(error[2], rel=1e-4)
     assert worse.config["noise"]["kind"] == "backlash"
@@ -86,7 +86,7 @@ def test_a_wrist_sensor_with_crosstalk(own):
     pushed = ("environment=push", "environment.force=[0,0,5]", "environment.start_time=0", "plant=rk4", "duration=0.1")
     run = own("wrist_sensor", "crosstalk", "wrist_sensor.share=0.1", *pushed)
     load, reading = (
-        run.trace[[f"{stem}_force_{axis}" for axis in "xyz"]].to_numpy()[-1] for stem in ("load", "reading")
+        run.trace()[[f"{stem}_force_{axis}" for axis in "xyz"]].to_numpy()[-1] for stem in ("load", "reading")
     )
     mixed = 0.9 * np.eye(3) + 0.1
     assert reading == pytest.approx(mixed @ load)
@@ -99,9 +99,9 @@ def test_torques_from_motor_currents_are_what_the_observer_reads(own, cli):
         "disturbance_observer.torque=measured",
     )  # fmt: skip
     sensed = ("joint_torque_sensor.constant=1", "joint_torque_sensor.resolution=0")
-    right = own("joint_torque_sensor", "motor_current", *observer, *sensed).metrics["rms_tracking_error"]["median"]
-    wrong = own("joint_torque_sensor", "motor_current", *observer).metrics["rms_tracking_error"]["median"]
-    ours = open_run(cli(*SHORT, *observer, "joint_torque_sensor=ideal").folder).metrics["rms_tracking_error"]["median"]
+    right = own("joint_torque_sensor", "motor_current", *observer, *sensed).metrics["rms_tracking_error"].median
+    wrong = own("joint_torque_sensor", "motor_current", *observer).metrics["rms_tracking_error"].median
+    ours = open_run(cli(*SHORT, *observer, "joint_torque_sensor=ideal").folder).metrics["rms_tracking_error"].median
     assert right == pytest.approx(ours)
     assert wrong > 2.0 * right
 
@@ -111,9 +111,9 @@ def test_a_wrong_link_is_what_ours_is_on_an_arm_of_one_wrong_link(own, cli):
     all_links = [
         own("mismatch", "one_link", *law, f"mismatch.joint={joint}", "mismatch.mass=0.8") for joint in (1, 2, 3)
     ]
-    error = [run.metrics["rms_tracking_error"]["median"] for run in all_links]
-    none = open_run(cli(*SHORT, *law).folder).metrics["rms_tracking_error"]["median"]
-    whole = open_run(cli(*SHORT, *law, "mismatch.mass=0.8").folder).metrics["rms_tracking_error"]["median"]
+    error = [run.metrics["rms_tracking_error"].median for run in all_links]
+    none = open_run(cli(*SHORT, *law).folder).metrics["rms_tracking_error"].median
+    whole = open_run(cli(*SHORT, *law, "mismatch.mass=0.8").folder).metrics["rms_tracking_error"].median
     assert error[0] == pytest.approx(none, rel=1e-6)  # link 1 of the Macro has no mass
     assert none < 0.1 * min(error[1:])
     assert max(error[1:]) < whole
@@ -134,7 +134,7 @@ def test_a_sweep_keeps_runs_with_and_without_a_plugin_apart(own, cli):
     runs = open_runs(ending.folder)
     assert [run.config["mismatch"].get("kind") for run in runs] == [None, "one_link"]
     assert runs[1].hash == alone.hash
-    error = [run.metrics["rms_tracking_error"]["median"] for run in runs]
+    error = [run.metrics["rms_tracking_error"].median for run in runs]
     assert error[1] > 2.0 * error[0]
 
 

@@ -27,7 +27,7 @@ def compared(stored, tmp_path):
     """Return what holds the run's own signals against it, by the text of a map."""
 
     def compare(columns, rows=slice(None), shift=0.0, change=lambda frame: frame):
-        trace = stored.trace.iloc[rows].copy()
+        trace = stored.trace().iloc[rows].copy()
         trace["t"] += shift
         names = {f"q{j}": f"a{j}" for j in (1, 2, 3)} | {f"tau{j}": f"c{j}" for j in (1, 2, 3)}
         change(trace.rename(columns={**names, "tip_x": "x", "tip_y": "y", "tip_z": "z"})).to_csv(
@@ -49,7 +49,7 @@ def test_a_run_held_against_itself_is_the_same(stored, compared):
     chatter = {name for name in stored.metrics if "chatter" in name}
     assert set(found.metrics) == set(stored.metrics) - chatter - {n for n in stored.metrics if "saturation" in n}
     for name, (simulated, recorded) in found.metrics.items():
-        assert simulated == stored.metrics[name]["median"]
+        assert simulated == stored.metrics[name].median
         assert recorded == pytest.approx(simulated, rel=0.01, abs=2e-5), name
 
 

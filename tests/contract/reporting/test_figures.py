@@ -31,13 +31,13 @@ def test_an_origin_names_the_command_that_makes_the_run(stored):
 
 
 def test_the_model_is_that_of_the_stored_urdf(stored):
-    q = joint_columns(stored.trace, "q")
-    assert np.allclose(model_of(stored).tip_positions(q), columns(stored.trace, "tip"), atol=1e-12)
+    q = joint_columns(stored.trace(), "q")
+    assert np.allclose(model_of(stored).tip_positions(q), columns(stored.trace(), "tip"), atol=1e-12)
 
 
 def test_joint_columns_leave_out_signals_with_the_same_beginning(stored):
-    assert joint_columns(stored.trace, "q").shape == (201, 3)
-    assert np.array_equal(joint_columns(stored.trace, "dq")[:, 2], stored.trace["dq3"])
+    assert joint_columns(stored.trace(), "q").shape == (201, 3)
+    assert np.array_equal(joint_columns(stored.trace(), "dq")[:, 2], stored.trace()["dq3"])
 
 
 def test_torque_and_error_are_the_trace(stored):
@@ -46,8 +46,8 @@ def test_torque_and_error_are_the_trace(stored):
     assert [series.name for series in torque.series] == ["1", "2", "3"]
     assert [series.name for series in error.series] == ["x", "y", "z"]
     assert (torque.y_label, error.y_label) == ("torque (N m)", "error (m)")
-    assert np.array_equal(torque.series[1].y, stored.trace["tau2"])
-    assert np.array_equal(error.series[2].y, stored.trace["desired_z"] - stored.trace["tip_z"])
+    assert np.array_equal(torque.series[1].y, stored.trace()["tau2"])
+    assert np.array_equal(error.series[2].y, stored.trace()["desired_z"] - stored.trace()["tip_z"])
 
 
 def test_a_figure_ends_where_it_is_told_to(stored):
@@ -87,7 +87,7 @@ def test_a_playback_thins_the_frames_but_not_the_path(stored):
 def test_a_playback_of_a_diverged_run_leaves_out_what_is_no_number(runs):
     failed = replace(runs["failed"])
     assert failed.status == "failed"
-    trace = failed.trace
+    trace = failed.trace()
     trace.loc[len(trace) - 1, "q1"] = np.nan
     failed.__dict__["_frame"] = trace
     shown = playback(failed, "caption")

@@ -82,9 +82,9 @@ def test_steps_of_a_plant_stand_together_and_seeds_in_a_row_are_a_range(finished
 
 def test_a_failed_run_says_when_and_where(diverged):
     document = run_document([diverged])
-    assert document.abstract.startswith(f"The run {diverged.failure_text}.")
+    assert document.abstract.startswith(f"The run {diverged.failure}.")
     (notice,) = [block for block in blocks_of(document, Notice) if block.kind == "failure"]
-    time, joint = diverged.failure["time"], diverged.failure["joint"]
+    time, joint = diverged.failure_record["time"], diverged.failure_record["joint"]
     assert 0.0 < time < 4.0
     assert joint in ("q1", "q2", "q3")
     assert f"In repetition 0 at t = {time:.3g} s, joint {joint}: diverged" in notice.text
@@ -96,7 +96,7 @@ def test_a_sweep_is_led_by_what_distinguishes_its_runs(finished, diverged, tmp_p
     assert document.abstract == "3 runs, 1 of them failed."
     count, failed, found = document.key_numbers
     assert (count[1], failed[1:]) == ("3", ("1", "run 3"))
-    error = [one.metrics["max_tracking_error"]["median"] for one in (finished, other)]
+    error = [one.metrics["max_tracking_error"].median for one in (finished, other)]
     ends = " to ".join(quantity(end, "m") for end in (min(error), max(error)))
     assert found == ("largest tracking error", ends, "medians of the runs")
     overview = blocks_of(document, Table)[0]

@@ -147,7 +147,7 @@ def test_the_shares_add_up_to_the_way(run):
     done, due = (series.y for series in figure.panels[1].series)
     np.testing.assert_allclose(end_point + done, tip, atol=1e-15)
     np.testing.assert_allclose(end_point + due, desired, atol=1e-15)
-    np.testing.assert_array_equal(desired, run.trace["desired_x"])
+    np.testing.assert_array_equal(desired, run.trace()["desired_x"])
     assert figure.caption
     assert "<svg" in draw(figure)
 

@@ -11,7 +11,8 @@ from runner.metrics.caveats import Caveat, Found
 from runner.plugins.metric_units import unit_of
 from runner.store import Finished, Outcome
 from runner.store.json_texts import JsonTexts
-from runner.store.shards import ShardRow, ShardRun, read_columns, read_outcomes, shard_name, write_shard
+from runner.store.run import Run
+from runner.store.shards import ShardRow, read_columns, read_outcomes, shard_name, write_shard
 from runner.store.writing import make_record, record_texts
 
 NAMES = ("settling_time", "peak_torque_q1", "macro_overshoot", "energy", "saturation_fraction")
@@ -73,7 +74,7 @@ def test_rows_of_texts_stand_in_a_shard_beside_runs(tmp_path, repetitions):
     ]
     alone = record_alone(metrics, 3, found[3], provenances[3])
     path = write_shard(
-        tmp_path, shard_name(1, 1), [*rows[:3], ShardRun(tmp_path / "runs" / "a3", config, alone, "<robot/>")]
+        tmp_path, shard_name(1, 1), [*rows[:3], Run(tmp_path / "runs" / "a3", config, alone, "<robot/>")]
     )
     assert list(read_outcomes(path)) == [row.outcome for row in rows]
     columns = read_columns(path, ["run"])

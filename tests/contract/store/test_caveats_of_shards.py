@@ -1,7 +1,8 @@
 """Caveats of stored runs without a trace."""
 
 from runner.store import Finished
-from runner.store.shards import ShardRun, read_outcomes, shard_name, write_shard
+from runner.store.run import Run
+from runner.store.shards import read_outcomes, shard_name, write_shard
 
 MADE_BY = {
     "date": "2026-01-02", "command": "runner a", "commit": None, "versions": {}, "machine": "m", "seed": 3,
@@ -12,7 +13,7 @@ CAVEAT = {"rule": "chatter", "text": "it chatters", "value": 0.5}
 
 
 def make(outputs, name, **record):
-    return ShardRun(outputs / "runs" / name, {"seed": 3}, {**RECORD, **record}, "<robot/>")
+    return Run(outputs / "runs" / name, {"seed": 3}, {**RECORD, **record}, "<robot/>")
 
 
 def test_a_shard_carries_them(tmp_path):

@@ -42,7 +42,7 @@ def test_another_spec_is_worked_out_from_the_stored_values(tmp_path, median, cap
     again = open_run(made.folder)  # its digests are right, and all else is as it was
     assert again.spec == found.spec
     assert {**again.record, "spec": None} == {**made.record, "spec": None}
-    assert again.trace.equals(made.trace)
+    assert again.trace().equals(made.trace())
     assert (made.folder / "trace.parquet").stat().st_mtime_ns == trace
     run(*SHORT, f"outputs={tmp_path}", f"spec.metrics.{METRIC}.min=0")
     assert "stored before with another spec" in capsys.readouterr().err

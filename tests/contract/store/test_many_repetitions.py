@@ -41,7 +41,7 @@ def test_up_to_two_thousand_stand_in_the_record_and_more_beside_it(cli, many):
         assert values.shape == (MANY,)
         # A repetition's numbers follow from its seed alone.
         assert np.array_equal(values[:-1], few.values(name), equal_nan=True)
-        listed = few.metrics[name]["values"]
+        listed = few.metrics[name].values
         assert np.array_equal(few.values(name), np.array(listed, dtype=float), equal_nan=True)
         if not np.isnan(values).any():
             assert (metric["median"], metric["min"], metric["max"]) == (np.median(values), values.min(), values.max())
@@ -55,7 +55,7 @@ def test_the_file_has_a_column_for_each_metric_and_null_for_none(many):
     assert {str(kind) for kind in table.schema.types} == {"double"}
     assert table["steady_state_error"].null_count == MANY  # the run ends before half a second
     assert np.isnan(many.values("steady_state_error")).all()
-    assert many.metrics["steady_state_error"]["quantiles"]["0.01"] is None
+    assert many.metrics["steady_state_error"].quantiles["0.01"] is None
     assert table["energy"].null_count == 0
 
 
@@ -68,8 +68,8 @@ def test_failed_repetitions_have_no_value(cli):
     failed = open_run(ending.folder)
     lost = np.isnan(failed.values("energy"))
     assert 0 < lost.sum() < MANY
-    assert failed.failure["repetition"] == np.flatnonzero(lost)[0]
-    assert failed.metrics["energy"]["max"] is None
+    assert failed.failure_record["repetition"] == np.flatnonzero(lost)[0]
+    assert failed.metrics["energy"].max is None
 
 
 @pytest.mark.parametrize("spoil", ["flip", "remove"])
@@ -103,7 +103,7 @@ def test_commands_read_it(cli, many):
 def test_python_reads_it(many):
     found = runner.Run(many)
     metric = found.metrics["energy"]
-    assert metric.quantiles == many.metrics["energy"]["quantiles"]
+    assert metric.quantiles == many.metrics["energy"].quantiles
     assert list(metric.values) == many.values("energy").tolist()
     assert str(metric).count("J") == 1
     assert found.metrics["steady_state_error"].values == (None,) * MANY
@@ -117,7 +117,7 @@ def test_cells_of_a_sweep_have_the_values_that_each_has_alone(cli, many, trace):
         *("-m", "hydra.sweeper.workers=0", *SHORT, f"repetitions={MANY}", "seed=0,1", f"sweep.trace={trace}"),
         "outputs=swept",
     )
-    sweep = runner.open_sweep(swept.folder).stored
+    sweep = runner.open_sweep(swept.folder)
     runs = list(sweep.runs())
     assert [each.folder.exists() for each in runs] == [trace == "all"] * 2
     found = measure_sweep(sweep)

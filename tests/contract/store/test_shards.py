@@ -9,9 +9,9 @@ import pytest
 
 from runner.base.errors import StoreError
 from runner.store import DamagedError, Finished, Outcome, SchemaError, shards
+from runner.store.run import Run
 from runner.store.shards import (
     ShardRow,
-    ShardRun,
     find_shards,
     next_number,
     open_row,
@@ -32,7 +32,7 @@ CUT_SHORT = {"reason": "too long", "time": None, "joint": None, "repetition": No
 def make(outputs, name, failure=None, **record):
     more = {"status": "failed", "failure": failure} if failure else {}
     content = {**RECORD, **more, **record, "provenance": {**MADE_BY, "command": f"runner {name}"}}
-    return ShardRun(outputs / "runs" / name, {"seed": 3, "noise": {"position": 1e-4}}, content, "<robot/>")
+    return Run(outputs / "runs" / name, {"seed": 3, "noise": {"position": 1e-4}}, content, "<robot/>")
 
 
 def test_what_goes_in_comes_out(tmp_path):
@@ -85,7 +85,7 @@ def test_of_two_alike_the_later_counts(tmp_path):
 def test_a_run_without_trace_says_how_to_get_one(tmp_path):
     write_shard(tmp_path, "s", [make(tmp_path, "a")])
     with pytest.raises(StoreError, match=r"run a kept no trace \(sweep.trace\); .* with one: runner a"):
-        _ = Finished(tmp_path).open("a").trace
+        _ = Finished(tmp_path).open("a").trace()
 
 
 @pytest.mark.parametrize("content", [b"", b"PAR1", b"no parquet at all", "other"])

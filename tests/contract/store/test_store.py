@@ -46,7 +46,7 @@ def test_the_record_follows_its_schema(run):
 
 
 def test_the_trace_carries_units(run):
-    assert list(run.trace.columns[:4]) == ["t", "q1", "q2", "q3"]
+    assert list(run.trace().columns[:4]) == ["t", "q1", "q2", "q3"]
     assert {run.units[name] for name in ("t", "q1", "dq1", "tau1", "tip_x", "error_z")} == {
         "s",
         "rad",
@@ -54,8 +54,8 @@ def test_the_trace_carries_units(run):
         "N m",
         "m",
     }
-    np.testing.assert_allclose(run.trace["t"], np.arange(6) * 0.01, rtol=1e-12)
-    np.testing.assert_array_equal(run.trace["error_x"], run.trace["desired_x"] - run.trace["tip_x"])
+    np.testing.assert_allclose(run.trace()["t"], np.arange(6) * 0.01, rtol=1e-12)
+    np.testing.assert_array_equal(run.trace()["error_x"], run.trace()["desired_x"] - run.trace()["tip_x"])
 
 
 def test_a_copied_run_is_read_elsewhere(run, tmp_path):
@@ -64,7 +64,7 @@ def test_a_copied_run_is_read_elsewhere(run, tmp_path):
     assert copy.metrics == run.metrics
     assert copy.config["robot"]["name"] == "macro"
     assert copy.urdf.startswith("<robot")
-    assert len(copy.trace) == 6
+    assert len(copy.trace()) == 6
 
 
 @pytest.mark.parametrize(
@@ -124,7 +124,7 @@ def test_a_damaged_trace_is_said_and_made_again(cli, run, content):
     good = path.read_bytes()
     path.unlink() if content is None else path.write_bytes(good[:1000] if content == b"cut" else content)
     with pytest.raises(StoreError, match=r"cannot read .*trace\.parquet: .*; run it again to mend it"):
-        _ = open_run(run.folder).trace
+        _ = open_run(run.folder).trace()
     ending = cli("report", run.folder)
     assert ending.code == 2
     assert "run it again to mend it" in ending.err
@@ -182,19 +182,19 @@ def test_a_record_that_somebody_made_up_is_told_though_its_digests_are_right(cli
 
 
 def test_who_changes_a_trace_changes_a_copy(run):
-    before = run.trace.copy()
-    changed = run.trace
+    before = run.trace().copy()
+    changed = run.trace()
     changed["q1"] = 0.0
     changed.loc[:, "q2"] += 1.0
-    assert run.trace.equals(before)
+    assert run.trace().equals(before)
     assert not changed.equals(before)
 
 
 def test_a_failed_run_says_why_in_words(run):
     failure = {"repetition": 1, "time": 0.12345, "joint": None, "reason": "singular"}
     failed = Run(run.folder, run.config, {**run.record, "status": "failed", "failure": failure})
-    assert run.failure_text == ""
-    assert failed.failure_text == "failed in repetition 1 at t = 0.1235 s: singular"
+    assert run.failure is None
+    assert failed.failure == "failed in repetition 1 at t = 0.1235 s: singular"
 
 
 @pytest.mark.parametrize("place", ["a_file", "/proc/nowhere", "a_file/below"])

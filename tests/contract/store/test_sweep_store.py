@@ -7,8 +7,9 @@ from fixtures.stored import RUNS
 
 from runner.base.errors import StoreError
 from runner.store import is_run, is_sweep, open_runs, open_sweep, write_sweep
+from runner.store.run import Run
 from runner.store.seal import sealed_json
-from runner.store.shards import ShardRun, write_shard
+from runner.store.shards import write_shard
 from runner.store.stored import write_job
 
 
@@ -89,9 +90,7 @@ def test_a_sweep_in_another_sweeps_folder_is_damaged(sweep):
 
 def test_a_good_run_in_a_shard_counts_before_a_failed_one_with_a_folder(sweep):
     first = open_runs(sweep)[0]
-    write_shard(
-        first.folder.parent.parent, "1-1", [ShardRun(first.folder, first.config, dict(first.record), "<robot/>")]
-    )
+    write_shard(first.folder.parent.parent, "1-1", [Run(first.folder, first.config, dict(first.record), "<robot/>")])
     assert open_runs(sweep)[0].urdf != "<robot/>"
     failure = {"reason": "killed", "time": None, "joint": None, "repetition": None}
     record = {**first.record, "status": "failed", "failure": failure}

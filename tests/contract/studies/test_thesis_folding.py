@@ -52,11 +52,11 @@ def test_repetitions_that_diverge_are_counted_and_the_others_told(
 
 def test_two_draws_part_when_their_joints_are_a_radian_apart(runs: Mapping[str, Run]) -> None:
     first, second = (replace(runs[NAME]) for _ in range(2))
-    parting = first.trace["t"][3]
-    apart = np.where(first.trace["t"] < parting, 1e-12, 2.0)
-    second.__dict__["_frame"] = first.trace.assign(q2=first.trace["q2"] + apart)
+    parting = first.trace()["t"][3]
+    apart = np.where(first.trace()["t"] < parting, 1e-12, 2.0)
+    second.__dict__["_frame"] = first.trace().assign(q2=first.trace()["q2"] + apart)
     assert folding.parted_at(first, second) == pytest.approx(parting)
     assert folding.largest_parting(first, second) == pytest.approx(2.0)
     assert folding.parted_at(first, first) is None
-    second.__dict__["_frame"] = second.trace[:3]  # diverged
+    second.__dict__["_frame"] = second.trace()[:3]  # diverged
     assert len(folding.parting(first, second)) == 3

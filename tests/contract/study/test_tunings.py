@@ -100,7 +100,7 @@ def test_gains_go_from_trials_into_runs_and_what_is_not_tuned_stays(paper, tmp_p
     first = capsys.readouterr().err.splitlines()[0]  # of one law 2 times 4 trials, of the other, not tuned, 2 times 1
     assert first.startswith("runner: 2 laws on 1 arm: 10 trials in 3 rounds, some 12 long runs, then 3 runs: about ")
     before, after = (runs[f"moves/pd/{gains}"] for gains in ("untuned", "tuned"))
-    assert after.metrics["rms_tracking_error"]["median"] < before.metrics["rms_tracking_error"]["median"]
+    assert after.metrics["rms_tracking_error"].median < before.metrics["rms_tracking_error"].median
     assert (
         1.0 < after.config["controller"]["natural_frequency"] / before.config["controller"]["natural_frequency"] <= 2.0
     )

@@ -88,7 +88,7 @@ def test_failed_runs_keep_their_traces_when_asked(tmp_path):
     (failed,) = [end.name for end in work.work(chunk).outcomes if end.failure]
     assert [path.name for path in (tmp_path / "runs").iterdir()] == [failed]
     run = store.open_run(tmp_path / "runs" / failed)
-    assert run.trace["t"].iloc[-1] == pytest.approx(run.failure["time"])
+    assert run.trace()["t"].iloc[-1] == pytest.approx(run.failure_record["time"])
 
 
 def test_runs_that_cannot_be_stored_together_are_made_one_by_one(tmp_path, batches, monkeypatch):

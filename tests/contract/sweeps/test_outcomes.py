@@ -2,7 +2,8 @@
 
 from runner.store import Finished, Outcome
 from runner.store.names import Names
-from runner.store.shards import ShardRun, write_shard
+from runner.store.run import Run
+from runner.store.shards import write_shard
 from runner.sweeps.outcomes import Ends
 
 NAMES = Names.of(["b" * 24, "a" * 24, "b" * 24, "c" * 24])
@@ -25,7 +26,7 @@ def test_ends_are_found_by_name_and_cells_of_one_run_are_counted_together():
 def test_ends_of_shards_are_taken_whole(tmp_path):
     failure = {"reason": "diverged", "time": 0.5, "joint": "q1", "repetition": 0}
     runs = [
-        ShardRun(
+        Run(
             tmp_path / "runs" / (letter * 24),
             {},
             {"status": "failed", "caveats": [], "metrics": {}, "failure": found},

@@ -109,7 +109,7 @@ def test_traces_are_kept_as_asked_and_metrics_always(sweep, tmp_path):
             assert store.simulated_part(run.config) == store.simulated_part(whole.config)
         for run in [run for run in found if not run.folder.exists()]:
             with pytest.raises(StoreError, match=r"kept no trace \(sweep\.trace\); this simulates it again with one: "):
-                _ = run.trace
+                _ = run.trace()
     assert "more in" not in ended.failures[0][2].read_text()  # that of the last policy, "never"
     assert "diverged" in ended.failures[0][2].read_text()
 
@@ -161,7 +161,7 @@ def test_a_run_in_a_shard_counts_unless_its_trace_is_wanted(sweep, simulated_run
     assert len(simulated_runs) == 2
     ended = sweep("seed=0,1", "sweep.trace=all")
     assert len(simulated_runs) == 4
-    assert all(len(run.trace) > 1 for run in runs(ended))
+    assert all(len(run.trace()) > 1 for run in runs(ended))
 
 
 @pytest.mark.costs(2)

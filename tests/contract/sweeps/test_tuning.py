@@ -22,8 +22,8 @@ def test_every_trial_is_a_stored_run(tuned, tmp_path):
     for trial in tuning.trials:
         run = store.open_run(tmp_path / "outputs" / "runs" / trial.run)
         assert run.config["controller"]["natural_frequency"] == trial.params["controller.natural_frequency"]
-        assert trial.values == (run.metrics["peak_torque"]["median"],)
-        assert len(run.trace) > 1
+        assert trial.values == (run.metrics["peak_torque"].median,)
+        assert len(run.trace()) > 1
     assert open_tuning(tuning.folder) == tuning
 
 
@@ -95,7 +95,7 @@ def test_a_failed_run_is_the_worst(tuned, simulated_runs):
     assert failed
     for trial in tuning.trials:
         run = store.open_run(tuning.folder.parent.parent / "runs" / trial.run)
-        assert trial.failure == run.failure_text
+        assert trial.failure == (run.failure or "")
     assert all(trial.values == (-np.inf, np.inf) for trial in failed)
     assert len(simulated_runs) == len({trial.run for trial in tuning.trials}) < 20
     assert open_tuning(tuning.folder) == tuning

@@ -103,7 +103,7 @@ def test_a_push_against_a_joint_limit_stops_the_joint_smoothly_and_is_told(cli, 
     ending = cli(*hard)
     assert ending.code == 0
     assert "has held the tool back, first at t =" in ending.err
-    trace, model = open_run(ending.folder).trace, checked_config(*hard).arm.model
+    trace, model = open_run(ending.folder).trace(), checked_config(*hard).arm.model
     q, dq = (trace[[f"{name}{joint}" for joint in range(1, 7)]].to_numpy() for name in ("q", "dq"))
     assert (q >= model.position_limits[0]).all()
     assert (q <= model.position_limits[1]).all()

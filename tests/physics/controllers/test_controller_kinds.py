@@ -59,7 +59,7 @@ def test_a_module_says_that_its_laws_command_positions(own_part, cli):
     own = law(own_part, "turning", POSITIONS)
     given = ("--config-dir", own, "robot=macro", "controller=turning", "plant=kinematic", *QUINTIC)
     run = open_run(cli(*given).folder)
-    np.testing.assert_allclose(np.diff(run.trace["q1"]), 0.001, atol=1e-12)
+    np.testing.assert_allclose(np.diff(run.trace()["q1"]), 0.001, atol=1e-12)
 
 
 def test_a_module_that_says_its_laws_follow_paths_has_its_path_checked(own_part, cli):
@@ -78,7 +78,7 @@ def test_a_module_may_choose_the_posture_at_the_start(own_part, cli):
     own = law(own_part, "choosing", TORQUES, more=START + "robot.home + 0.1")
     run = open_run(cli("--config-dir", own, "robot=macro", "controller=choosing", *QUINTIC).folder)
     home = run.config["robot"]["home"]
-    np.testing.assert_allclose(run.trace[["q1", "q2", "q3"]].to_numpy()[0], np.array(home) + 0.1)
+    np.testing.assert_allclose(run.trace()[["q1", "q2", "q3"]].to_numpy()[0], np.array(home) + 0.1)
 
 
 @pytest.mark.parametrize(
@@ -101,7 +101,7 @@ def test_a_config_with_a_reach_has_the_share_of_time_beyond_it_told(own_part, cl
     for reach, share in ((1e-6, 1.0), (1e3, 0.0)):
         given = ("robot=combined", "controller=riding", f"controller.reach={reach}", *QUINTIC)
         run = open_run(cli("--config-dir", own, *given).folder)
-        assert run.metrics["reach_loss_fraction"]["values"] == [share]
+        assert run.metrics["reach_loss_fraction"].values == (share,)
     own = law(own_part, "without", TORQUES)
     run = open_run(cli("--config-dir", own, "robot=combined", "controller=without", *QUINTIC).folder)
     assert "reach_loss_fraction" not in run.metrics
@@ -154,7 +154,7 @@ def test_a_law_that_wants_its_torque_limits_is_told_them(own_part, cli):
     own = law(own_part, "limit_taker", LIMITED)
     given = ("robot=macro", "controller=limit_taker", "torque_limits.max=[3,2,1]", *QUINTIC)
     run = open_run(cli("--config-dir", own, *given).folder)
-    np.testing.assert_array_equal(run.trace[["tau1", "tau2", "tau3"]].to_numpy()[0], [3.0, 2.0, 1.0])
+    np.testing.assert_array_equal(run.trace()[["tau1", "tau2", "tau3"]].to_numpy()[0], [3.0, 2.0, 1.0])
 
 
 def test_a_law_that_raises_at_its_torque_limits_is_refused(own_part, cli):

@@ -55,13 +55,13 @@ def test_contact_plant_gets_the_wall_and_its_wrench_is_what_the_tip_feels(own_pa
     ending = cli("--config-dir", own, *WALL, "plant=touching", f"plant.friction.viscous={friction}")
     assert ending.code == 0, ending.err
     run = open_run(ending.folder)
-    assert run.status == "ok", run.failure_text
+    assert run.status == "ok", run.failure
     # the wall's normal is -x, its stiffness 1e4 N/m: what the loop would add of its own is not there
-    np.testing.assert_allclose(run.trace["external_force_x"], -10.0, rtol=1e-12)
-    about_tip = run.trace[["external_moment_x", "external_moment_y", "external_moment_z"]].to_numpy()
-    point = run.trace["tip_x"].iloc[0] + 0.005 + run.config["robot"]["tool"]["tip_radius"]
+    np.testing.assert_allclose(run.trace()["external_force_x"], -10.0, rtol=1e-12)
+    about_tip = run.trace()[["external_moment_x", "external_moment_y", "external_moment_z"]].to_numpy()
+    point = run.trace()["tip_x"].iloc[0] + 0.005 + run.config["robot"]["tool"]["tip_radius"]
     force = np.array([-10.0, 0.0, 0.0])
-    tips = run.trace[["tip_x", "tip_y", "tip_z"]].to_numpy()
+    tips = run.trace()[["tip_x", "tip_y", "tip_z"]].to_numpy()
     np.testing.assert_allclose(about_tip, [point, 20.0, 0.0] - np.cross(tips, force), atol=1e-12)
 
 
@@ -69,7 +69,7 @@ def test_contact_plant_that_goes_wrong_is_told_with_its_place(own_part, cli):
     own = torque_plant(own_part, "short", CONTACT.replace("damping, 0.0]", "damping]"))
     ending = cli("--config-dir", own, *WALL, "plant=short")
     assert ending.code == 1
-    failure = open_run(ending.folder).failure_text
+    failure = open_run(ending.folder).failure
     assert re.search(r"Own.contact_wrench \(short.py, line \d+\) gave an array of shape \(5,\)", failure)
     own = torque_plant(own_part, "refusing", CONTACT.replace("self.wall = point", "self.wall = 1 / 0, point"))
     ending = cli("--config-dir", own, *WALL, "plant=refusing")
@@ -81,7 +81,7 @@ def test_contact_plant_that_goes_wrong_is_told_with_its_place(own_part, cli):
 def test_tool_reaction_plant_has_its_reading_in_the_trace(own_part, cli):
     own = torque_plant(own_part, "reading", REACTION)
     run = open_run(cli("--config-dir", own, *WALL, "plant=reading").folder)
-    reaction = run.trace[["reaction_force_x", "reaction_force_y", "reaction_force_z"]].to_numpy()
+    reaction = run.trace()[["reaction_force_x", "reaction_force_y", "reaction_force_z"]].to_numpy()
     np.testing.assert_allclose(np.linalg.norm(reaction, axis=1), 3.0, rtol=1e-12)
     np.testing.assert_allclose(reaction[0], [0.0, 0.0, -3.0] @ flange_rotation(run, 0), atol=1e-9)
 
@@ -90,7 +90,7 @@ def flange_rotation(run, row):
     from runner.robots.model import RobotModel
 
     arm = RobotModel(run.urdf, "tool_flange" if "tool_flange" in run.urdf else run.provenance["tip_frame"])
-    q = run.trace[[f"q{joint + 1}" for joint in range(arm.nq)]].to_numpy()[row]
+    q = run.trace()[[f"q{joint + 1}" for joint in range(arm.nq)]].to_numpy()[row]
     return arm.tip_pose(q)[:3, :3]
 
 
@@ -198,6 +198,6 @@ def test_a_config_says_whether_bases_turn_and_where_it_does_not_they_do(own_part
     for plant in (["plant=silent"], ["plant=turning"], ["plant=turning", "plant.wrist_rotation=parallel"]):
         ending = cli("--config-dir", own, *given, *plant)
         assert ending.code == 0, ending.err
-        tips[plant[-1]] = open_run(ending.folder).trace["tip_x"].to_numpy()
+        tips[plant[-1]] = open_run(ending.folder).trace()["tip_x"].to_numpy()
     np.testing.assert_array_equal(tips["plant=silent"], tips["plant=turning"])
     assert np.abs(tips["plant.wrist_rotation=parallel"] - tips["plant=turning"]).max() > 1e-4

@@ -173,11 +173,11 @@ def test_the_stored_run_tells_its_stages(cli):
     ending = cli("robot=combined", "duration=0.05")
     assert (ending.code, without_caveats(without_results(ending.err))) == (0, "")
     run = open_run(ending.folder)
-    columns = set(run.trace.columns)
+    columns = set(run.trace().columns)
     assert {"q6", "dq6", "tau6", "tip_x", "error_z", "macro_tip_x", "macro_error_z"} <= columns
     assert "mini_tip_x" not in columns
     assert run.provenance["stages"] == {"macro": None, "mini": "mini_base"}
-    error = run.trace["macro_error_y"] - (run.trace["desired_y"] - 0.1 - run.trace["macro_tip_y"])
+    error = run.trace()["macro_error_y"] - (run.trace()["desired_y"] - 0.1 - run.trace()["macro_tip_y"])
     assert np.abs(error).max() < 1e-12
 
 

@@ -71,7 +71,7 @@ def test_repetitions_together_are_those_one_by_one(tmp_path, checked_config):
     overrides = (*JOINTS, "controller=computed_torque", "noise.position=1e-4", "noise.distribution=uniform")
     made = run(*overrides, "repetitions=3", f"outputs={tmp_path}")
     config = checked_config(*overrides)
-    for repetition, stored in enumerate(made.metrics["rms_joint_error"]["values"]):
+    for repetition, stored in enumerate(made.metrics["rms_joint_error"].values):
         loop = assemble(config, repetition)
         trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, repetition))
         loop.close()

@@ -91,7 +91,7 @@ def test_stages_that_ride_carry_it_too():
 
 def test_repetitions_are_run_one_by_one_and_begin_alike(tmp_path):
     made = run(*HELD, "plant=rk4", "duration=0.7", PICKED_UP, "repetitions=2", f"outputs={tmp_path}")
-    values = made.metrics["max_joint_error"]["values"]
+    values = made.metrics["max_joint_error"].values
     assert values[0] == values[1]
 
 

@@ -62,12 +62,12 @@ def test_what_is_compared_is_the_run_on_runge_kutta(tmp_path):
     error = own.plant_error
     assert (error["plant"], error["step"], error["parted"]) == ("rk4", 0.01, None)
     for name, worth in error["metrics"].items():
-        value, first = twin.metrics[name]["median"], own.values(name)[0]
+        value, first = twin.metrics[name].median, own.values(name)[0]
         assert worth["value"] == value
         assert worth["difference"] == abs(first - value)
         assert worth["share"] == (abs(first - value) / abs(first) if first else 0.0)
     rows = min(len(own.trace), len(twin.trace))
-    tips = [stored.trace[["tip_x", "tip_y", "tip_z"]].to_numpy()[:rows] for stored in (own, twin)]
+    tips = [stored.trace()[["tip_x", "tip_y", "tip_z"]].to_numpy()[:rows] for stored in (own, twin)]
     distance = np.linalg.norm(tips[0] - tips[1], axis=1)
     assert error["largest"] == distance.max()
     assert error["end"] == distance[-1]
@@ -78,7 +78,7 @@ def test_noise_is_the_same_on_both_plants(tmp_path):
     error = measured(tmp_path, f"plant={OTHER}", "noise=thesis").plant_error
     other = run(*CASE, "plant=rk4", "noise=thesis", "seed=1", f"outputs={tmp_path}")
     same = run(*CASE, "plant=rk4", "noise=thesis", f"outputs={tmp_path}")
-    tips = [stored.trace[["tip_x", "tip_y", "tip_z"]].to_numpy() for stored in (other, same)]
+    tips = [stored.trace()[["tip_x", "tip_y", "tip_z"]].to_numpy() for stored in (other, same)]
     by_noise = np.linalg.norm(tips[0] - tips[1], axis=1)
     assert error["end"] < 0.1 * by_noise[-1]
 

@@ -61,7 +61,7 @@ def test_the_tip_stands_still_at_1_rad_per_s_by_rk4_alone(planned: Make) -> None
     fastest = {rule: planned(f"null_space/{rule}/1.0") for rule in ("euler", "midpoint", "rk4")}
     moved = {rule: largest_of(way)(run) or 0.0 for rule, run in fastest.items()}
     assert moved["rk4"] < NULL_SPACE_BOUND < moved["midpoint"] < moved["euler"]
-    assert fastest["rk4"].metrics["peak_joint_speed"]["median"] == pytest.approx(1.0, abs=1e-3)
+    assert fastest["rk4"].metrics["peak_joint_speed"].median == pytest.approx(1.0, abs=1e-3)
 
 
 def test_between_commands_the_tip_bulges_with_the_square_of_the_period(planned: Make) -> None:
@@ -82,7 +82,7 @@ def test_the_shortest_motion_drifts_around_a_circle_and_not_along_a_line(planned
 @pytest.mark.parametrize("rate", [25, 100])
 def test_the_lag_is_the_closed_form(planned: Make, rate: int) -> None:
     run = planned(f"rates/kinematic/as_reported/{rate}")
-    assert run.metrics["max_axis_error"]["median"] == pytest.approx(lag(run, rate), rel=2e-3)
+    assert run.metrics["max_axis_error"].median == pytest.approx(lag(run, rate), rel=2e-3)
 
 
 def test_the_sag_is_the_closed_form_where_the_servo_is_stiff(planned: Make) -> None:
@@ -140,6 +140,6 @@ def test_the_torque_laws_hold_the_line_without_load_and_lose_it_above_what_the_s
     planned: Make, law: str
 ) -> None:
     unloaded = planned(f"torque/{law}/0")
-    assert unloaded.metrics["max_axis_error"]["median"] < TORQUE_BOUND
+    assert unloaded.metrics["max_axis_error"].median < TORQUE_BOUND
     assert first_saturation(unloaded) is None
-    assert planned(f"torque/{law}/3.5").metrics["max_axis_error"]["median"] > TORQUE_BOUND
+    assert planned(f"torque/{law}/3.5").metrics["max_axis_error"].median > TORQUE_BOUND

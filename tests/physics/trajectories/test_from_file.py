@@ -233,7 +233,7 @@ def test_every_law_runs_along_it(written, macro, tmp_path, controller):
     for file in (written("xyz", tip), written(JOINTS[:3], POSTURE, "joints.csv")):
         overrides = ("robot=macro", f"controller={controller}", "trajectory=from_file", f"trajectory.file={file}")
         made = run(*overrides, f"outputs={tmp_path}")
-        assert made.metrics["max_tracking_error"]["median"] < 0.02
+        assert made.metrics["max_tracking_error"].median < 0.02
 
 
 def test_a_small_parquet_of_huge_cells_is_refused(tmp_path):

@@ -83,7 +83,7 @@ def test_what_is_of_the_size_of_rounding_errors_is_told_as_such(value, text):
     ],
 )
 def test_spread_tells_the_range_over_the_repetitions(values, median, low, high, text):
-    assert spread({"unit": "s", "values": values, "median": median, "min": low, "max": high}) == text
+    assert spread("s", median, low, high, len(values)) == text
 
 
 @pytest.mark.parametrize(
@@ -98,8 +98,7 @@ def test_spread_tells_the_range_over_the_repetitions(values, median, low, high, 
 )
 def test_a_value_has_the_unit_of_the_printed_one_where_that_needs_no_power_of_ten(metric, printed, text):
     median, low, high = metric
-    stored = {"unit": "m", "values": [low, median, high], "median": median, "min": low, "max": high}
-    assert spread(stored, printed) == text
+    assert spread("m", median, low, high, 3, printed) == text
 
 
 @pytest.mark.parametrize(

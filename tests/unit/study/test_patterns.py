@@ -50,7 +50,7 @@ def test_each_run_gives_a_value_that_conditions_call_by_words_with_axes_or_by_it
         ("error at 1 Hz", 0.5, "m"),
         ("error at 2 Hz", None, "m"),
     ]
-    (twice,) = each(runs, "twice the error", lambda one: 2.0 * one.metrics["error"]["median"], "m", "line/1")
+    (twice,) = each(runs, "twice the error", lambda one: 2.0 * one.metrics["error"].median, "m", "line/1")
     assert (twice.name, twice.value) == ("twice the error of line/1", 1.0)
     slow, _ = each(runs, "error, {rate}", "error", "m", "line/{rate}", levels={"1": "slow"})
     assert slow.name == "error, slow"
