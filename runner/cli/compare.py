@@ -194,7 +194,7 @@ def _run_lines(
 
     a, b = (side.name for side in sides)
     for side, run in zip(sides, runs, strict=True):
-        yield one_line(f"{side.name}  {run.folder}  {run.failure_text or run.status}")
+        yield one_line(f"{side.name}  {run.folder}  {run.failure or run.status}")
     yield ""
     yield one_line(find_differences(match(*sides)).in_words(a, b))
     yield _changed_keys("config", [simulated_part(run.config) for run in runs], [a, b])

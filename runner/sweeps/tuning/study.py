@@ -60,7 +60,7 @@ class Study:
         write_jobs(folder, [(self.trial_overrides(trial), trial.run) for trial in trials if trial.run], self.command)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Tuning:
     """A stored tuning, at work or ended.
 

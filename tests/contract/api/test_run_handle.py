@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import runner
-from runner import store
 from runner.api.page import code, heading, line, listed, picture, table
 
 ONE_ARM = """\
@@ -138,7 +137,7 @@ def test_changed_code_gives_no_other_repetition(run, monkeypatch):
 def test_a_repetition_with_other_metrics_is_refused(run):
     metrics = {name: dict(metric) for name, metric in run.record["metrics"].items()}
     metrics["energy"]["values"] = [0.0, 0.0, 0.0]
-    other = runner.Run(store.Run(run.folder, run.config, {**run.record, "metrics": metrics}))
+    other = runner.Run(run.folder, run.config, {**run.record, "metrics": metrics})
     with pytest.raises(runner.RunnerError, match=r"simulated again, differs: energy is .*, stored is 0\.0"):
         other.trace(1)
 

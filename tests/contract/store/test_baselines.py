@@ -24,8 +24,10 @@ def load(tmp_path):
 
 
 def stored(tmp_path, status="ok", **medians):
-    metrics = {name: {"unit": "1", "median": median} for name, median in medians.items()}
-    return Run(tmp_path, {}, {"status": status, "metrics": metrics, "failure": None, "provenance": {}})
+    metrics = {name: {"unit": "1", "median": median, "min": median, "max": median} for name, median in medians.items()}
+    return Run(
+        tmp_path, {}, {"status": status, "repetitions": 1, "metrics": metrics, "failure": None, "provenance": {}}
+    )
 
 
 def problems(load, text):

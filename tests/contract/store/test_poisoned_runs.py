@@ -47,12 +47,12 @@ def forged(runs, tmp_path):
 
 def hostile(run):
     """A record that holds every payload wherever a record holds text."""
-    metric = next(iter(run.metrics.values()))
+    metric = next(iter(run.record["metrics"].values()))
     more = {text: {**metric, "unit": text} for text in HOSTILE.values()}
     return {
         "status": "failed",
         "failure": {"reason": TEXT, "time": 0.01, "joint": TEXT, "repetition": 0},
-        "metrics": {**run.metrics, **more},
+        "metrics": {**run.record["metrics"], **more},
         "caveats": [{"rule": text, "text": text, "value": 1.0, "repetitions": 1} for text in HOSTILE.values()],
         "provenance": {**run.provenance, "command": f"runner {TEXT}", "commit": TEXT},
     }

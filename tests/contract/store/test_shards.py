@@ -72,7 +72,7 @@ def test_shards_are_numbered_without_a_clock(tmp_path):
 def test_of_two_outcomes_the_better_counts_whichever_is_later(tmp_path, numbers, worse, better):
     for number, failure in zip(numbers, (worse, better), strict=True):
         write_shard(tmp_path, shard_name(number, 1), [make(tmp_path, "a", failure), make(tmp_path, f"b{number}")])
-    assert Finished(tmp_path).open("a").failure == better
+    assert Finished(tmp_path).open("a").failure_record == better
 
 
 def test_of_two_alike_the_later_counts(tmp_path):
