@@ -9,7 +9,7 @@ from runner.api.boundary import public
 from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.base.errors import RunnerError
-from runner.store.latest import find_folder
+from runner.store.kinds import find_folder
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,13 +40,15 @@ def compare(
     Raises:
         RunnerError: if runs and sweeps are mixed, if two share no seed, cell or metric, or if one is damaged.
     """
-    from runner.reporting.comparison.sweeps import answer_frame, compare_sweeps, open_compared
+    from runner.reporting.comparison.sweeps import answer_frame, compare_sweeps, measure_compared
 
-    folders = [thing.folder if isinstance(thing, Run | Sweep) else find_folder(thing, ("run", "sweep"))
-               for thing in (first, second, *others)]  # fmt: skip
-    if len(set(map(store.is_sweep, folders))) > 1:
+    things = [thing if isinstance(thing, Run | Sweep) else store.open_stored(find_folder(thing, ("run", "sweep")))
+              for thing in (first, second, *others)]  # fmt: skip
+    runs = [thing for thing in things if isinstance(thing, store.Run)]
+    sweeps = [thing for thing in things if isinstance(thing, store.Sweep)]
+    if runs and sweeps:
         raise RunnerError("runs and sweeps cannot be compared with each other; give only runs or only sweeps")
-    one, *rest = sides = open_compared(folders)
+    one, *rest = sides = measure_compared(runs or sweeps)
     if damage := [text for side in sides for text in side.damage]:
         raise RunnerError("; ".join(damage))
     names = [metrics] if isinstance(metrics, str) else metrics

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from runner import store
 from runner.api.boundary import public, public_class
-from runner.store.latest import find_folder
+from runner.store.kinds import find_folder
 
 if TYPE_CHECKING:
     from runner.api.run import Run

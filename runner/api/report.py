@@ -10,7 +10,7 @@ from runner.api.run import Run
 from runner.api.sweep import Sweep
 from runner.api.tuning import Tuning
 from runner.base.errors import RunnerError
-from runner.store.latest import Kind, find_folder
+from runner.store.kinds import Kind, find_folder
 
 Thing = Run | Sweep | Tuning | str | Path
 _KINDS: Sequence[Kind] = ("run", "sweep", "tuning")

@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.former_names import OPTIONS
-from runner.store.latest import Kind, find_folder
+from runner.store.kinds import Kind, find_folder
 
 
 class Stored:

@@ -51,6 +51,7 @@ def run(options: argparse.Namespace) -> int:
     markdown = options.format == ["markdown"]
     from runner import store
     from runner.store.baselines import Bands, cell_names, load_baseline, save_baseline
+    from runner.store.kinds import kind_of
 
     if options.save_baseline:
         count = save_baseline(store.open_sweep(options.folder), options.save_baseline)
@@ -69,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
             "and no --baseline"
         )
     if judged:
-        cells = cell_names(store.open_sweep(options.folder)) if store.is_sweep(options.folder) else []
+        cells = [] if kind_of(options.folder) == "run" else cell_names(store.open_sweep(options.folder))
         return _check_spec(runs, cells, options.max_failure_probability)
     return _check_bands(runs, baseline)
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from runner.reporting.answers import Answer, Asked
     from runner.reporting.comparison.differences import Value
     from runner.reporting.comparison.sweeps import SweepComparison
-    from runner.store import Run
+    from runner.store import Run, Sweep
     from runner.sweeps.measurements import Measurements
 
 # Possible causes of a difference besides the config; date, machine and command do not affect the physics.
@@ -78,33 +78,33 @@ def run(options: Namespace) -> int:
 
 def _compare(options: Namespace) -> None:
     """Print a comparison of levels, runs or sweeps."""
-    from runner import store
-    from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, open_compared
+    from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, measure_compared
+    from runner.store import Run, Sweep, open_stored
     from runner.sweeps.measurements import check_metrics
 
-    metrics, folders = options.metrics or (), options.folders
-    sweeps = [store.is_sweep(folder) for folder in folders]
+    metrics, things = options.metrics or (), list(map(open_stored, options.folders))
+    runs = [thing for thing in things if isinstance(thing, Run)]
+    sweeps = [thing for thing in things if isinstance(thing, Sweep)]
     if options.within and not options.by:
         raise RunnerError("--within goes with --by AXIS, which says what is compared")
-    if options.by and (len(folders) > 1 or not sweeps[0]):
+    if options.by and (len(things) > 1 or runs):
         raise RunnerError("--by is for one sweep: `runner compare SWEEP --by AXIS`")
-    if len(folders) == 1 and not options.by:
-        raise RunnerError(_explain_alone(folders[0], sweeps[0]))
-    if any(sweeps) != all(sweeps):
-        raise RunnerError(_explain_mixture(folders[sweeps.index(False)], folders[sweeps.index(True)]))
-    first, *others = sides = open_compared(folders)
+    if len(things) == 1 and not options.by:
+        raise RunnerError(_explain_alone(*runs, *sweeps))
+    if runs and sweeps:
+        raise RunnerError(_explain_mixture(runs[0], sweeps[0]))
+    first, *others = sides = measure_compared(runs or sweeps)
     for side in sides:
         for damage in side.damage:
             print(f"runner: {damage}", file=sys.stderr)
     if options.by:
         answers = compare_levels(first, options.by, options.within or None, metrics)
         texts = ["\n".join(_level_lines(first, options.by, answers))]
-    elif all(sweeps) or options.json:
+    elif sweeps or options.json:
         found = [compare_sweeps(first, other, metrics) for other in others]
         answers = [answer for one in found for answer in one.answers]
         texts = ["\n".join(_sweep_lines(one)) for one in found]
     else:
-        runs = [store.open_run(folder) for folder in folders]
         check_metrics(metrics, [name for side in sides for name in side.values])
         texts = ["\n".join(_run_lines((runs[0], run), (first, other), metrics))
                  for run, other in zip(runs[1:], others, strict=True)]  # fmt: skip
@@ -276,15 +276,15 @@ def _head(one: "Asked") -> list[str]:
     return [one.metric, one.unit, *map(number, one.comparison.medians)]
 
 
-def _explain_alone(folder: Path, is_sweep: bool) -> str:
-    """Return the reason why one folder is not enough."""
-    from runner import store
+def _explain_alone(thing: "Run | Sweep") -> str:
+    """Return the reason why one run or sweep is not enough."""
+    from runner.store import Run
     from runner.sweeps.measurements import axes_of
 
-    if not is_sweep:
-        store.open_run(folder)  # an error if it is not a run either
+    folder = thing.folder
+    if isinstance(thing, Run):
         return f"{folder} is one run alone; give a second one to compare it with: `runner compare {folder} OTHER`"
-    axes, _ = axes_of(store.open_sweep(folder).overrides)
+    axes, _ = axes_of(thing.overrides)
     known = ", ".join(axis.name for axis in axes) or "nothing"
     return (
         f"{folder} is one sweep alone; compare the levels of one of its axes (it was swept over: {known}) by "
@@ -292,13 +292,10 @@ def _explain_alone(folder: Path, is_sweep: bool) -> str:
     )
 
 
-def _explain_mixture(one: Path, folder: Path) -> str:
+def _explain_mixture(run: "Run", sweep: "Sweep") -> str:
     """Return the reason why a run and a sweep are not compared, and an alternative."""
-    from runner import store
-
-    run, sweep = store.open_run(one), store.open_sweep(folder)
+    folder, names = sweep.folder, list(sweep.hashes)
     what = f"{run.folder} is a run and {folder} a sweep; compare runs with runs, and sweeps with sweeps"
-    names = list(sweep.hashes)
     if run.hash in names:
         cell = " ".join(sweep.overrides[names.index(run.hash)])
         return (
@@ -325,7 +322,7 @@ def _seconds(text: str) -> float:
 
 
 def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], options: Namespace) -> None:
-    from runner import store
+    from runner.store.kinds import kind_of
 
     folders = [path for path in given if path not in recordings]
     if len(recordings) != 1 or len(folders) != 1:
@@ -334,7 +331,7 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
         raise RunnerError(
             f"{recordings[0]} is a recording; say by --columns FILE which signal each column holds (docs/recordings.md)"
         )
-    if store.is_sweep(folders[0]):
+    if kind_of(folders[0]) != "run":
         raise RunnerError(f"{folders[0]} is a sweep; a recording is compared with one run")
     if options.by or options.within or options.metrics:
         raise RunnerError("--by, --within and --metrics are not for recordings")
@@ -348,7 +345,7 @@ def _print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: fl
     from runner.recordings.compare import compare_recording
     from runner.reporting.recording_report import recording_document, report_folder
     from runner.reporting.render import write_report
-    from runner.store.latest import note
+    from runner.store.kinds import note
 
     progress.begin("reading runs")
     found = compare_recording(store.open_run(folder), recording, columns, fill_gaps)

@@ -84,8 +84,9 @@ def _document(path: Path) -> "tuple[Document, Path]":
         return _of_study(*study)
     from runner import store
     from runner.reporting.stored import compose_report
+    from runner.store.kinds import kind_of
 
-    if store.is_run(path) and not store.is_sweep(path):
+    if kind_of(path) == "run":
         _tell_failure(store.open_run(path))
     return compose_report([path])
 

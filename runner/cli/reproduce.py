@@ -21,7 +21,7 @@ from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
 from runner.plugins.discovery import in_use, named_parts
-from runner.store.latest import note
+from runner.store.kinds import note
 from runner.study.changes import FILE
 from runner.study.names import find_study, study_names
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from runner.base.sanitize import one_line
 from runner.config.compose.user_settings import outputs_dir
-from runner.store.latest import WORD
+from runner.store.kinds import WORD
 
 if TYPE_CHECKING:
     from runner.store import Run

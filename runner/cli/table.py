@@ -39,9 +39,10 @@ def run(options: Namespace) -> int:
     chosen = _format(options)
     quiet_environment()
     from runner import store
+    from runner.store.kinds import kind_of
     from runner.sweeps.measurements import measure_sweep
 
-    if store.is_run(options.folder) and not store.is_sweep(options.folder):
+    if kind_of(options.folder) == "run":
         return _of_run(options, chosen)
     sweep = store.open_sweep(options.folder)
     measurements = measure_sweep(sweep)

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 
 from runner.base.quantities import above_rounding, label_with_unit, quantity
-from runner.config.compose.user_settings import outputs_dir
 from runner.plugins.metric_units import unit_of
 from runner.recordings import files_of, words
 from runner.recordings.compare import RecordingComparison
@@ -18,6 +17,7 @@ from runner.reporting.figures import origin
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.run_report import provenance
+from runner.store.kinds import outputs_of
 
 _MOST_POINTS = 600
 _RECORDED, _SIMULATED = 0, 1  # colours
@@ -46,13 +46,11 @@ def recording_document(found: RecordingComparison) -> Document:
 
 def report_folder(found: RecordingComparison) -> Path:
     """Return the folder of the report, which follows from the run and the content of the recording."""
-    place = found.run.folder.resolve().parent
-    outputs = found.run.folder.parent.parent if place.name == "runs" else outputs_dir()
     recording = found.recording
     said = (found.run.hash, found.offset.start, recording.torque_shift, recording.filled, dict(recording.units))
     content = hashlib.sha256(f"recording {said!r} ".encode())
     content.update(_bytes_of(recording))
-    return outputs / "reports" / content.hexdigest()[:24]
+    return outputs_of(found.run.folder) / "reports" / content.hexdigest()[:24]
 
 
 def _abstract(found: RecordingComparison) -> str:

@@ -8,7 +8,6 @@ from pathlib import Path
 from runner import store
 from runner.base import progress
 from runner.base.errors import RunnerError
-from runner.config.compose.user_settings import outputs_dir
 from runner.reporting import render
 from runner.reporting.comparison.report import comparison_document
 from runner.reporting.comparison.sweeps import letter
@@ -16,9 +15,9 @@ from runner.reporting.document import Document
 from runner.reporting.run_report import run_document
 from runner.reporting.sweep.report import sweep_document
 from runner.reporting.tuning.report import tuning_document
-from runner.store.latest import note
+from runner.store.kinds import kind_of, note, outputs_of
 from runner.sweeps.measurements import measure_stored
-from runner.sweeps.tuning.study import is_tuning, open_tuning
+from runner.sweeps.tuning.study import Tuning, open_tuning
 
 
 def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str]) -> Path:
@@ -49,32 +48,26 @@ def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> tupl
         RunnerError: If metrics are given for what is no sweep, or are none of its.
         StoreError: If a run is missing or damaged.
     """
-    tunings = [is_tuning(folder) for folder in folders]
-    sweeps = [store.is_sweep(folder) for folder in folders]
-    if len(folders) > 1 and (any(tunings) or any(sweeps) != all(sweeps)):
-        what = "a tuning has a report of its own" if any(tunings) else "runs and sweeps have no report together"
+    things = [open_tuning(folder) if kind_of(folder) == "tuning" else store.open_stored(folder) for folder in folders]
+    sweeps = [thing for thing in things if isinstance(thing, store.Sweep)]
+    runs = [thing for thing in things if isinstance(thing, store.Run)]
+    first, reports = things[0], outputs_of(folders[0]) / "reports"
+    if len(things) > 1 and len(things) not in (len(sweeps), len(runs)):
+        tuned = any(isinstance(thing, Tuning) for thing in things)
+        what = "a tuning has a report of its own" if tuned else "runs and sweeps have no report together"
         raise RunnerError(f"{what}; give runs alone, sweeps alone, or one folder")
-    if metrics and (any(tunings) or not all(sweeps)):
+    if metrics and not sweeps:
         raise RunnerError("--metrics is for the report on sweeps")
-    reports = _outputs(folders[0]) / "reports"
     names = [folder.resolve().name for folder in folders]
-    if any(tunings):
-        document, name = tuning_document(open_tuning(folders[0]), reports / "any"), names[0]
-    elif not all(sweeps):
+    if isinstance(first, Tuning):
+        document, name = tuning_document(first, reports / "any"), names[0]
+    elif runs:
         progress.begin("reading runs")
-        runs = [run for folder in folders for run in store.open_runs(folder)]
         document, name = run_document(runs), "".join(run.hash for run in runs)
     elif len(sweeps) == 1:
-        sweep = store.open_sweep(folders[0])
-        address = os.path.relpath(sweep.outputs / "runs", reports / "any") + "/"
-        document, name = sweep_document(sweep, metrics, address), " ".join([sweep.folder.name, *metrics])
+        address = os.path.relpath(sweeps[0].outputs / "runs", reports / "any") + "/"
+        document, name = sweep_document(sweeps[0], metrics, address), " ".join([sweeps[0].folder.name, *metrics])
     else:
-        sides = [measure_stored(folder, letter(place)) for place, folder in enumerate(folders)]
+        sides = [measure_stored(sweep, letter(place)) for place, sweep in enumerate(sweeps)]
         document, name = comparison_document(sides, metrics), " ".join(["compared", *names, *metrics])
     return document, reports / hashlib.sha256(name.encode()).hexdigest()[:24]
-
-
-def _outputs(folder: Path) -> Path:
-    """Return the outputs folder that a run or sweep lies in; ./outputs for a copy that lies elsewhere."""
-    place = folder.resolve().parent
-    return folder.parent.parent if place.name in ("runs", "sweeps", "tunings") else outputs_dir()

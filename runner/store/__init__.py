@@ -7,10 +7,11 @@ if TYPE_CHECKING:
     from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
     from runner.store.finished import Finished, find_outcome, find_run
     from runner.store.identity import run_hash, run_hashes, simulated_part
-    from runner.store.run import Run, is_run, judge_run, open_run
+    from runner.store.kinds import open_stored
+    from runner.store.run import Run, judge_run, open_run
     from runner.store.seal import DamagedError, SchemaError
     from runner.store.shards import Outcome
-    from runner.store.sweep import Sweep, is_sweep, open_runs, open_sweep, write_grid, write_sweep
+    from runner.store.sweep import Sweep, open_runs, open_sweep, write_grid, write_sweep
     from runner.store.writing import prepare, write_run
 
 __all__ = [
@@ -24,12 +25,11 @@ __all__ = [
     "find_calibration",
     "find_outcome",
     "find_run",
-    "is_run",
-    "is_sweep",
     "judge_run",
     "open_calibration",
     "open_run",
     "open_runs",
+    "open_stored",
     "open_sweep",
     "prepare",
     "run_hash",
@@ -43,11 +43,12 @@ __all__ = [
 _MODULES = {
     "calibration": "Calibration find_calibration open_calibration write_calibration",
     "finished": "Finished find_outcome find_run",
+    "kinds": "open_stored",
     "identity": "run_hash run_hashes simulated_part",
-    "run": "Run is_run judge_run open_run",
+    "run": "Run judge_run open_run",
     "seal": "DamagedError SchemaError",
     "shards": "Outcome",
-    "sweep": "Sweep is_sweep open_runs open_sweep write_grid write_sweep",
+    "sweep": "Sweep open_runs open_sweep write_grid write_sweep",
     "writing": "prepare write_run",
 }
 

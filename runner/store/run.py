@@ -15,6 +15,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.config.spec import Bound
 from runner.statistics.spec.history import settings, today
+from runner.store.kinds import kind_of
 from runner.store.metric import Metrics
 from runner.store.record import find_faults
 from runner.store.seal import DamagedError
@@ -204,11 +205,6 @@ def describe_failure(failure: Mapping[str, Any]) -> str:
     return f"failed in repetition {repetition} at t = {time:.4g} s{where}: {reason}"
 
 
-def is_run(folder: Path) -> bool:
-    """Tell whether a folder looks like a run's, finished or not."""
-    return any((folder / name).exists() for name in ("metrics.json", "config.yaml", "trace.parquet"))
-
-
 def open_run(folder: Path) -> Run:
     """Open a finished run.
 
@@ -219,8 +215,8 @@ def open_run(folder: Path) -> Run:
     if not folder.is_dir():
         raise StoreError(f"no folder {folder}")
     if not (folder / "metrics.json").exists():
-        what = "a run that did not finish" if is_run(folder) else "no stored run"
-        what = "a sweep, not a single run" if (folder / "sweep.json").exists() else what
+        found = {"run": "a run that did not finish", "sweep": "a sweep, not a single run"}
+        what = found.get("sweep" if kind_of(folder) == "tuning" else kind_of(folder) or "", "no stored run")
         raise StoreError(
             f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` makes a run and prints its folder"
         )

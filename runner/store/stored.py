@@ -38,6 +38,11 @@ class Stored:
         return self.folder.name
 
     @property
+    def outputs(self) -> Path:
+        """The outputs folder that holds it."""
+        return self.folder.parent.parent
+
+    @property
     def provenance(self) -> Mapping[str, Any]:
         """Commit, versions, machine, seed, command, warnings, and what more its kind of job tells."""
         provenance: Mapping[str, Any] = self.record["provenance"]

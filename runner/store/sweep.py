@@ -17,6 +17,7 @@ from runner.statistics.spec.history import Histories, merge_histories, settings,
 from runner.store.atomic import write_atomically
 from runner.store.axes import Axes, read_axes
 from runner.store.finished import Finished
+from runner.store.kinds import kind_of
 from runner.store.names import Names
 from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError, digest, head, read_file, read_json, seal_text
@@ -186,11 +187,6 @@ def _name(rows: Iterable[str]) -> str:
     return found.hexdigest()[:24]
 
 
-def is_sweep(folder: Path) -> bool:
-    """Tell whether a folder is a sweep's."""
-    return (folder / _FILE).exists()
-
-
 def open_sweep(folder: Path) -> Sweep:
     """Open a stored sweep.
 
@@ -265,4 +261,4 @@ def open_runs(folder: Path) -> list[Run]:
     Raises:
         StoreError: if it is neither, unfinished or damaged.
     """
-    return list(open_sweep(folder).runs()) if is_sweep(folder) else [open_run(folder)]
+    return list(open_sweep(folder).runs()) if kind_of(folder) in ("sweep", "tuning") else [open_run(folder)]

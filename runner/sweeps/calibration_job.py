@@ -18,7 +18,7 @@ from runner.calibration.procedures import Outcome
 from runner.config.calibration import CalibrationConfig, validate_calibration
 from runner.config.compose.compose import Composed, compose
 from runner.simulation import provenance
-from runner.store.latest import note
+from runner.store.kinds import note
 
 CALIBRATION = "calibrate"
 """Root of a calibration's config; that of a run is "config"."""

@@ -29,7 +29,7 @@ from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.provenance import job_provenance
 from runner.simulation.result import RunResult, timing
 from runner.simulation.sensors import make_sensors
-from runner.store.latest import note
+from runner.store.kinds import note
 
 PROBED_TICKS = 50
 """Ticks from which the time for a tick is measured, of a run that is simulated alone."""

@@ -15,7 +15,7 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.sanitize import few, quoted
-from runner.store import DamagedError, Finished, Run, Sweep, open_sweep
+from runner.store import DamagedError, Finished, Run, Sweep
 from runner.store.axes import Axes, is_simulated, override_value
 from runner.store.finer import finer_names, read_finer
 from runner.store.sweep import InShard
@@ -298,19 +298,20 @@ def measure_sweep(sweep: Sweep) -> Measurements:
     return replace(measured, folder=sweep.folder, command=sweep.command)
 
 
-def measure_stored(folder: Path, name: str = "") -> Measurements:
+def measure_stored(sweep: Sweep, name: str = "") -> Measurements:
     """Read what is stored of a sweep, ended or not.
 
     Raises:
-        StoreError: If the folder is not a sweep, or no cell is stored.
+        StoreError: If no cell is stored.
         DamagedError: If it is damaged.
     """
-    sweep = open_sweep(folder)
     part, damage = stored_part(sweep)
     if not len(part.hashes):
-        raise StoreError(f"{folder}: none of its {len(sweep.hashes)} cells is stored; continue with: {sweep.command}")
+        raise StoreError(
+            f"{sweep.folder}: none of its {len(sweep.hashes)} cells is stored; continue with: {sweep.command}"
+        )
     missing = len(sweep.hashes) - len(part.hashes)
-    return replace(measure_sweep(part), name=name, folder=folder, missing=missing, damage=damage)
+    return replace(measure_sweep(part), name=name, folder=sweep.folder, missing=missing, damage=damage)
 
 
 def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:

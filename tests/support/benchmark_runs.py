@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from support.study_plans import benchmark_kind
@@ -57,19 +58,23 @@ def _with_errors(name: str, kind: Run) -> Run:
     if (plan, law, task, gains) == ("first", "joint_pd", ["circle"], "untuned"):
         errors[: -(-len(errors) // 4)] = [None] * -(-len(errors) // 4)
     metrics = {
-        "rms_tracking_error": {"unit": "m", "values": errors},
-        "torque_chatter": {"unit": "N m", "median": 1e3 * size},
-        "rms_torque": {"unit": "N m", "median": 10.0},
-        "rms_tracking_error_last_period": {"unit": "m", "median": size},
+        "rms_tracking_error": _metric("m", None, values=errors),
+        "torque_chatter": _metric("N m", 1e3 * size),
+        "rms_torque": _metric("N m", 10.0),
+        "rms_tracking_error_last_period": _metric("m", size),
     }
     if plan in ("learned", "changed"):
         later = LATER.get(condition, {}).get(arm, 1.0) if law == "adaptive" else 1.0
         for after, grown in ((4, 1.0), (8, later), (16, later)):
             values = [each if each is None else grown * each for each in errors]
-            metrics[f"rms_tracking_error_period_{after}"] = {"unit": "m", "values": values}
-    metrics |= {f"peak_torque_q{joint}": {"median": need} for joint, need in enumerate(NEEDS.get(arm, ()), 1)}
+            metrics[f"rms_tracking_error_period_{after}"] = _metric("m", None, values=values)
+    metrics |= {f"peak_torque_q{joint}": _metric("N m", need) for joint, need in enumerate(NEEDS.get(arm, ()), 1)}
     record = {**kind.record, "metrics": metrics, "repetitions": len(errors)}
     return replace(kind, record=record, config={**kind.config, "repetitions": len(errors)})
+
+
+def _metric(unit: str, median: float | None, **values: Any) -> dict[str, Any]:
+    return {"unit": unit, "median": median, "min": median, "max": median, **values}
 
 
 def _size(plan: str, arm: str, law: str, condition: str) -> float:

@@ -29,6 +29,7 @@ def made_up_run(
     """Return a run with these contents; a failed one diverged at 0.5 s."""
     record = {
         "status": "failed" if failed else "ok",
+        "repetitions": max((len(metric["values"]) for metric in (metrics or {}).values()), default=1),
         "metrics": metrics or {},
         "failure": FAILURE if failed else None,
         "caveats": caveats,

@@ -33,17 +33,10 @@ class RecordedRun(Run):
     """A run whose files are kept elsewhere than in its folder.
 
     Attributes:
-        text: The URDF's text.
         signals: Unit and values of each column of the trace.
     """
 
-    text: str = ""
     signals: Mapping[str, tuple[str, list[float]]] = None  # type: ignore[assignment]
-
-    @cached_property
-    def urdf(self) -> str:
-        """The URDF's text that was simulated."""
-        return self.text
 
     @cached_property
     def _table(self) -> Any:
@@ -59,7 +52,7 @@ def recorded(study: str, outputs: Path) -> dict[str, Run]:
     content = json.loads(lzma.decompress((FOLDER / f"{study}.json.xz").read_bytes()))
     return {
         name: RecordedRun(outputs / "runs" / each["hash"], each["config"], each["record"],
-                          content["urdfs"][each["urdf"]], each["trace"])
+                          text=content["urdfs"][each["urdf"]], signals=each["trace"])
         for name, each in content["runs"].items()
     }  # fmt: skip
 

@@ -3,7 +3,6 @@
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from runner.reporting.answers import Answer, Asked, ask, judge
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
 from runner.reporting.comparison.pairs import Label, Pairs, keep_common_seeds, label_text, level_pairs, match
 from runner.reporting.sweep.subject import first_screen, is_part, whole_metrics
-from runner.store import is_sweep, open_run, open_sweep
+from runner.store import Run, Sweep
 from runner.sweeps.measurements import (
     Measurements,
     check_metrics,
@@ -94,7 +93,7 @@ class SweepComparison:
                 yield f"{failed} of {side.name} failed; a failed repetition counts as beyond every number"
 
 
-def open_compared(folders: Sequence[Path]) -> list[Measurements]:
+def measure_compared(things: Sequence[Run | Sweep]) -> list[Measurements]:
     """Read the runs or sweeps of a comparison, named A, B and so on.
 
     The effect of a finer step of the plant is computed first, if it is not stored.
@@ -105,14 +104,13 @@ def open_compared(folders: Sequence[Path]) -> list[Measurements]:
     from runner.sweeps.finer_step import work_out, work_out_sweep
 
     sides = []
-    for place, folder in enumerate(folders):
-        if is_sweep(folder):
-            work_out_sweep(stored_part(open_sweep(folder))[0])
-            sides.append(measure_stored(folder, letter(place)))
+    for place, thing in enumerate(things):
+        if isinstance(thing, Sweep):
+            work_out_sweep(stored_part(thing)[0])
+            sides.append(measure_stored(thing, letter(place)))
         else:
-            run = open_run(folder)
-            work_out(run.folder.parent.parent, [run])
-            sides.append(measure_run(run, letter(place)))
+            work_out(thing.outputs, [thing])
+            sides.append(measure_run(thing, letter(place)))
     return sides
 
 

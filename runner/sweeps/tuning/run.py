@@ -18,7 +18,7 @@ from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.options import groups
 from runner.config.compose.overrides import prepare
 from runner.store.axes import is_simulated
-from runner.store.latest import note
+from runner.store.kinds import note
 from runner.store.names import Names
 from runner.sweeps.check import Checked, check
 from runner.sweeps.plan import Grid, Plan

@@ -101,18 +101,13 @@ def journal_path(folder: Path) -> Path:
     return folder / "journal.log"
 
 
-def is_tuning(folder: Path) -> bool:
-    """Tell whether a folder is a tuning's."""
-    return (folder / _FILE).exists()
-
-
 def open_tuning(folder: Path) -> Tuning:
     """Open a stored tuning.
 
     Raises:
         DamagedError: if the folder is no tuning or damaged.
     """
-    from runner.sweeps.tuning.journal import read_trials  # Optuna, which `is_tuning` answers without
+    from runner.sweeps.tuning.journal import read_trials  # imports Optuna
 
     path, journal = folder / _FILE, journal_path(folder)
     try:

@@ -6,8 +6,7 @@ import pytest
 from fixtures.stored import RUNS
 
 from runner.base.errors import StoreError
-from runner.store import is_run, is_sweep, open_runs, open_sweep, write_sweep
-from runner.store.run import Run
+from runner.store import Run, Sweep, open_runs, open_stored, open_sweep, write_sweep
 from runner.store.seal import sealed_json
 from runner.store.shards import write_shard
 from runner.store.stored import write_job
@@ -33,9 +32,9 @@ def test_a_run_opens_as_a_list_of_one(sweep):
 
 def test_folders_tell_what_they_are(sweep, tmp_path):
     run = next(open_sweep(sweep).runs()).folder
-    assert (is_sweep(sweep), is_run(sweep)) == (True, False)
-    assert (is_sweep(run), is_run(run)) == (False, True)
-    assert (is_sweep(tmp_path), is_run(tmp_path)) == (False, False)
+    assert [type(open_stored(folder)) for folder in (sweep, run)] == [Sweep, Run]
+    with pytest.raises(StoreError, match="is no stored run: it has no metrics"):
+        open_stored(tmp_path)
 
 
 def test_the_same_jobs_are_the_same_sweep(tmp_path):

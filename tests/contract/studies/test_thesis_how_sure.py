@@ -39,8 +39,9 @@ def with_values(some: Run, **values: list[float | None]) -> Run:
     metrics = {}
     for name, own in values.items():
         ordered = sorted(np.inf if value is None else value for value in own)
-        middle = float(np.median(ordered))
-        metrics[name] = {"unit": "m", "values": own, "median": middle if np.isfinite(middle) else None}
+        ends = (float(np.median(ordered)), ordered[0], ordered[-1])
+        median, low, high = (end if np.isfinite(end) else None for end in ends)
+        metrics[name] = {"unit": "m", "values": own, "median": median, "min": low, "max": high}
     changed = replace(some, record={**some.record, "metrics": metrics})
     changed.__dict__["config"] = {**some.config, "repetitions": OWN}
     return changed

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import StoreError
-from runner.store import Run
+from runner.store import Run, open_sweep
 from runner.sweeps.measurements import measure, measure_run, measure_stored
 
 
@@ -16,7 +16,8 @@ def stored(name, metrics, status="ok"):
     record = {
         "status": status,
         "repetitions": 2,
-        "metrics": {metric: {"unit": "m", "values": values} for metric, values in metrics.items()},
+        "metrics": {metric: {"unit": "m", "values": values, "median": None, "min": None, "max": None}
+                    for metric, values in metrics.items()},
         "caveats": [],
         "provenance": {"plant_step": 0.001, "commit": None, "seed": 0, "machine": name, "versions": {"numpy": "2"},
                        "date": "2026-11-21"},
@@ -115,21 +116,21 @@ def test_the_same_repetition_of_one_seed_has_the_same_draws():
 
 def test_what_is_stored_of_a_sweep_is_opened_and_what_is_missing_counted(copy_run, copy_sweep):
     folder = copy_sweep("goal", "other seed")
-    whole = measure_stored(folder, "A")
+    whole = measure_stored(open_sweep(folder), "A")
     assert (len(whole.hashes), whole.missing, whole.failed) == (2, 0, 0)
     gone = copy_run("other seed")
     shutil.rmtree(gone)
-    part = measure_stored(folder, "A")
+    part = measure_stored(open_sweep(folder), "A")
     assert (part.hashes, part.missing) == ([copy_run("goal").name], 1)
     shutil.rmtree(gone.parent)
     with pytest.raises(StoreError, match="none of its 2 cells is stored; continue with: runner -m "):
-        measure_stored(folder, "A")
+        measure_stored(open_sweep(folder), "A")
 
 
 def test_a_damaged_cell_is_left_out_and_told(copy_run, copy_sweep):
     folder = copy_sweep("goal", "other seed")
     (copy_run("other seed") / "metrics.json").write_text("{")
-    part = measure_stored(folder, "A")
+    part = measure_stored(open_sweep(folder), "A")
     assert part.missing == 1
     assert "metrics.json" in " ".join(part.damage)
 

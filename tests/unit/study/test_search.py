@@ -22,7 +22,8 @@ def search(ranges, bounds=None, trials=32, seed=1, longer=()):
 
 
 def a_run(status="ok", **medians):
-    return SimpleNamespace(status=status, metrics={name: {"median": value} for name, value in medians.items()})
+    metrics = {name: SimpleNamespace(median=value) for name, value in medians.items()}
+    return SimpleNamespace(status=status, metrics=metrics)
 
 
 def test_the_first_round_begins_with_the_values_as_they_are_and_fills_the_ranges_evenly():

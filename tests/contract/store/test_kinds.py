@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from runner.base.errors import RunnerError
-from runner.store.latest import find_folder, kind_of, note
+from runner.store.kinds import find_folder, kind_of, note
 
 _FILES = {
     "runs": "metrics.json", "sweeps": "sweep.json", "tunings": "tuning.json", "calibrations": "result.json",
@@ -45,7 +45,7 @@ def test_of_several_kinds_latest_is_the_last_of_all():
 
 def test_the_order_stays_where_the_clock_is_set_back(monkeypatch):
     made("sweeps", "s")
-    monkeypatch.setattr("runner.store.latest.time.time_ns", lambda: 0)
+    monkeypatch.setattr("runner.store.kinds.time.time_ns", lambda: 0)
     assert find_folder("latest", ["run", "sweep"]) != (run := made("runs", "r"))
     assert find_folder("latest", ["run", "sweep"]) == run
 

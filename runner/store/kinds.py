@@ -1,36 +1,49 @@
-"""The name `latest`: the most recent folder of each kind in an outputs folder."""
+"""Kinds of stored things: folder, files and command of each, the name `latest`, and one way to open a folder."""
 
 import json
 import sys
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from runner.base.errors import RunnerError, StoreError
 from runner.config.compose.user_settings import outputs_dir
 
+if TYPE_CHECKING:
+    from runner.store.calibration import Calibration
+    from runner.store.run import Run
+    from runner.store.sweep import Sweep
+
 Kind = Literal["run", "sweep", "tuning", "calibration", "report"]
 WORD = "latest"
 
-_NOTES = "newest"  # folder in an outputs folder: a file for each kind, so that two processes spoil nothing
-_FOLDERS: Mapping[Kind, str] = {
-    "run": "runs", "sweep": "sweeps", "tuning": "tunings", "calibration": "calibrations", "report": "reports",
-}  # fmt: skip
-# Files by which a folder is told, in this order: a tuning is a sweep, too, and all jobs have a config.
-_FILES: Mapping[Kind, Sequence[str]] = {
-    "tuning": ("tuning.json",),
-    "sweep": ("sweep.json",),
-    "calibration": ("result.json",),
-    "run": ("metrics.json", "config.yaml", "trace.parquet"),
-    "report": ("report.html", "report.pdf"),
-}
-_MADE_BY: Mapping[Kind, str] = {
-    "run": "runner OVERRIDES",
-    "sweep": "runner -m OVERRIDES",
-    "tuning": "runner tune",
-    "calibration": "runner calibrate",
-    "report": "runner report",
+_NOTES = "newest"  # folder in an outputs folder: a file for each kind, so that two processes cannot damage one file
+
+
+@dataclass(frozen=True)
+class StoredKind:
+    """How a kind of thing is stored.
+
+    Attributes:
+        folder: Folder in the outputs folder that its folders are in.
+        files: Files by which its folder is recognized, the record first.
+        command: Command that makes it.
+    """
+
+    folder: str
+    files: Sequence[str]
+    command: str
+
+
+# In the order in which a folder is recognized: a tuning is also a sweep, and all jobs have a config.
+KINDS: Mapping[Kind, StoredKind] = {
+    "tuning": StoredKind("tunings", ("tuning.json",), "runner tune"),
+    "sweep": StoredKind("sweeps", ("sweep.json",), "runner -m OVERRIDES"),
+    "calibration": StoredKind("calibrations", ("result.json",), "runner calibrate"),
+    "run": StoredKind("runs", ("metrics.json", "config.yaml", "trace.parquet"), "runner OVERRIDES"),
+    "report": StoredKind("reports", ("report.html", "report.pdf"), "runner report"),
 }
 
 
@@ -43,9 +56,9 @@ def note(folder: Path) -> None:
 
     place = folder.resolve()
     outputs, kind = place.parent.parent, place.parent.name
-    if kind not in _FOLDERS.values():
+    if all(each.folder != kind for each in KINDS.values()):
         return  # a copy that lies elsewhere
-    order = max([time.time_ns(), *(known + 1 for known, _ in _notes(outputs, tuple(_FOLDERS)))])
+    order = max([time.time_ns(), *(known + 1 for known, _ in _notes(outputs, tuple(KINDS)))])
     try:
         content = json.dumps({"name": place.name, "order": order}).encode()
         write_atomically(outputs / _NOTES / f"{kind}.json", content, flush=False)
@@ -77,14 +90,32 @@ def find_folder(text: str | Path, kinds: Sequence[Kind]) -> Path:
     return path
 
 
-def folder_of(kind: Kind) -> str:
-    """Return the name of the folder in an outputs folder that a kind of thing lies in."""
-    return _FOLDERS[kind]
-
-
 def kind_of(folder: Path) -> Kind | None:
     """Return what a folder holds, finished or not, by the names of its files; None for any other folder."""
-    return next((kind for kind, files in _FILES.items() if any((folder / name).exists() for name in files)), None)
+    return next((kind for kind, of in KINDS.items() if any((folder / name).exists() for name in of.files)), None)
+
+
+def outputs_of(folder: Path) -> Path:
+    """Return the outputs folder that a stored thing lies in; ./outputs for a copy that lies elsewhere."""
+    stored = any(of.folder == folder.resolve().parent.name for of in KINDS.values())
+    return folder.parent.parent if stored else outputs_dir()
+
+
+def open_stored(folder: Path) -> "Run | Sweep | Calibration":
+    """Open a folder; a tuning is opened as the sweep of its trials.
+
+    Raises:
+        StoreError: if the folder is none of these, or its run was not finished.
+        DamagedError: if it is damaged.
+    """
+    from runner.store.calibration import open_calibration
+    from runner.store.run import open_run
+    from runner.store.sweep import open_sweep
+
+    kind = kind_of(folder)
+    if kind in ("sweep", "tuning"):
+        return open_sweep(folder)
+    return open_calibration(folder) if kind == "calibration" else open_run(folder)
 
 
 def _newest(outputs: Path, kinds: Sequence[Kind]) -> Path:
@@ -102,14 +133,14 @@ def _notes(outputs: Path, kinds: Sequence[Kind]) -> Iterator[tuple[int, Path]]:
     """Yield the order and the folder of what was last of some kinds; what cannot be read is as if it were not there."""
     for kind in kinds:
         try:
-            content = json.loads((outputs / _NOTES / f"{_FOLDERS[kind]}.json").read_bytes())
+            content = json.loads((outputs / _NOTES / f"{KINDS[kind].folder}.json").read_bytes())
             order, name = int(content["order"]), str(content["name"])
         except (OSError, ValueError, TypeError, KeyError):
             continue
         if name == Path(name).name:  # none that leads out of the folder
-            yield order, outputs / _FOLDERS[kind] / name
+            yield order, outputs / KINDS[kind].folder / name
 
 
 def _needed(kinds: Sequence[Kind]) -> str:
-    named = ", ".join(f"a {kind} (`{_MADE_BY[kind]}` prints it)" for kind in kinds)
+    named = ", ".join(f"a {kind} (`{KINDS[kind].command}` prints it)" for kind in kinds)
     return f"the folder of {named}, or the word {WORD}"
