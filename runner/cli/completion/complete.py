@@ -20,7 +20,7 @@ from runner.base.errors import RunnerError, nearest
 from runner.cli.arguments import Names, Parser, Stored
 from runner.cli.commands import COMMANDS, build_parser
 from runner.cli.completion.overrides import Typed, metric_names, override_words
-from runner.store.latest import WORD, Kind, folder_of
+from runner.store.kinds import KINDS, WORD, Kind
 
 _MOST = 1000  # words
 _FEW = 50  # stored folders
@@ -168,7 +168,7 @@ def _stored_folders(word: str, kinds: Sequence[Kind]) -> Iterator[str]:
     """
     yield WORD
     for kind in kinds:
-        above = f"outputs/{folder_of(kind)}/"
+        above = f"outputs/{KINDS[kind].folder}/"
         found = [entry.name for entry in _entries(above) if entry.is_dir() and not entry.name.startswith(".")]
         if len(found) <= _FEW or word.startswith(above):
             yield from (above + name for name in found)
