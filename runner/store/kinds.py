@@ -24,7 +24,7 @@ _NOTES = "newest"  # folder in an outputs folder: a file for each kind, so that 
 
 @dataclass(frozen=True)
 class StoredKind:
-    """How a kind of thing is stored.
+    """Folder, files and command of a kind of stored thing.
 
     Attributes:
         folder: Folder in the outputs folder that its folders are in.
@@ -48,16 +48,16 @@ KINDS: Mapping[Kind, StoredKind] = {
 
 
 def note(folder: Path) -> None:
-    """Keep that a folder, such as outputs/runs/NAME, is what was made or found last of its kind.
+    """Record that a folder, such as outputs/runs/NAME, is the latest of its kind.
 
-    An outputs folder that cannot be written still gives what is stored in it: that is told, and nothing else.
+    An outputs folder that cannot be written to causes a message, not an error.
     """
-    from runner.store.atomic import write_atomically  # a room that reading a note does without
+    from runner.store.atomic import write_atomically  # not needed to read a note
 
     place = folder.resolve()
     outputs, kind = place.parent.parent, place.parent.name
     if all(each.folder != kind for each in KINDS.values()):
-        return  # a copy that lies elsewhere
+        return  # a copy in another place
     order = max([time.time_ns(), *(known + 1 for known, _ in _notes(outputs, tuple(KINDS)))])
     try:
         content = json.dumps({"name": place.name, "order": order}).encode()
@@ -69,14 +69,14 @@ def note(folder: Path) -> None:
 def find_folder(text: str | Path, kinds: Sequence[Kind]) -> Path:
     """Return the folder that a user names: by its path, by `latest`, or by OUTPUTS/latest in another outputs folder.
 
-    A folder that has the name `latest` is that folder. All is told from the names of files, without reading them.
+    A folder with the name `latest` is that folder. The kind follows from the names of files; no file is read.
 
     Args:
-        text: What was typed.
-        kinds: What it may be the folder of.
+        text: The name as typed.
+        kinds: Allowed kinds.
 
     Raises:
-        RunnerError: if there is no such folder, or it is of another kind; if nothing was made yet, or is gone.
+        RunnerError: if the folder is missing or of another kind; if there is no latest folder.
     """
     path = Path(text)
     if path.name == WORD and not path.exists():
@@ -91,12 +91,12 @@ def find_folder(text: str | Path, kinds: Sequence[Kind]) -> Path:
 
 
 def kind_of(folder: Path) -> Kind | None:
-    """Return what a folder holds, finished or not, by the names of its files; None for any other folder."""
+    """Return the kind of a folder, finished or not, from the names of its files; None for any other folder."""
     return next((kind for kind, of in KINDS.items() if any((folder / name).exists() for name in of.files)), None)
 
 
 def outputs_of(folder: Path) -> Path:
-    """Return the outputs folder that a stored thing lies in; ./outputs for a copy that lies elsewhere."""
+    """Return the outputs folder of a stored thing; ./outputs for a copy in another place."""
     stored = any(of.folder == folder.resolve().parent.name for of in KINDS.values())
     return folder.parent.parent if stored else outputs_dir()
 
@@ -130,7 +130,7 @@ def _newest(outputs: Path, kinds: Sequence[Kind]) -> Path:
 
 
 def _notes(outputs: Path, kinds: Sequence[Kind]) -> Iterator[tuple[int, Path]]:
-    """Yield the order and the folder of what was last of some kinds; what cannot be read is as if it were not there."""
+    """Yield the order and the folder of the latest of some kinds; notes that cannot be read are ignored."""
     for kind in kinds:
         try:
             content = json.loads((outputs / _NOTES / f"{KINDS[kind].folder}.json").read_bytes())

@@ -51,7 +51,7 @@ class Run(Stored):
         return super().urdf if self.text is None else self.text
 
     def made_by(self, command: str) -> "Run":
-        """Return this run with another command that makes it, as equal configs can be reached in several ways."""
+        """Return this run with another command: several commands can give equal configs."""
         return replace(self, record={**self.record, "provenance": {**self.provenance, "command": command}})
 
     @property
@@ -66,7 +66,7 @@ class Run(Stored):
 
     @property
     def failure_record(self) -> Mapping[str, Any] | None:
-        """Reason, time, joint and repetition of a failed run; only the reason if it was cut short."""
+        """Reason, time, joint and repetition of a failed run; only the reason of an aborted run."""
         failure: Mapping[str, Any] | None = self.record.get("failure")
         return failure
 
@@ -119,13 +119,13 @@ class Run(Stored):
 
     @property
     def plant_error(self) -> Mapping[str, Any] | None:
-        """What the plant's step is worth in repetition 0, as docs/stored_runs.md says; None where nobody asked."""
+        """Integration error of the plant in repetition 0 (docs/stored_runs.md); None if it was not requested."""
         error: Mapping[str, Any] | None = self.record.get("plant_error")
         return error
 
     @property
     def caveat_rules(self) -> Mapping[str, Any] | None:
-        """Digest of the rules, and thresholds, that found its caveats; None of a run that was cut short."""
+        """Digest and thresholds of the rules that found the caveats; None for an aborted run."""
         rules: Mapping[str, Any] | None = self.record.get("caveat_rules")
         return rules
 
@@ -228,10 +228,10 @@ def open_run(folder: Path) -> Run:
 
 
 def judge_run(run: Run, bounds: Mapping[str, Bound], date: str = "") -> Run:
-    """Return a run with the shares of its repetitions that keep some bounds, stored with it; new ones are told.
+    """Return a run judged by some bounds; new counts are stored and reported.
 
-    Nothing is simulated: the shares follow from the stored values. Without bounds those that it was judged by stay.
-    It is stored, too, when each bound was first set.
+    Nothing is simulated: the counts follow from the stored values. Without bounds the run stays as it is. The date on
+    which each bound was first set is also stored.
 
     Args:
         run: The run.

@@ -31,10 +31,10 @@ from runner.store.run import Run
 from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest
 
 _COLUMNS = ("run", "config", "urdf", "record", "metrics")
-_SHARED = ["failure", "urdf", "metrics"]  # columns of which many rows are the same
+_SHARED = ["failure", "urdf", "metrics"]  # columns with many equal rows
 _CUT_SHORT = 2  # the rank of that
 METRIC = "metric "
-"""What the name of a metric's column begins with."""
+"""Prefix of the name of a metric's column."""
 
 _HEX = 24  # digits of the digest in a name
 _MEND = "remove it, and the sweep's command makes its runs again"
@@ -42,7 +42,7 @@ _MEND = "remove it, and the sweep's command makes its runs again"
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a finished run ended.
+    """Outcome of a finished run.
 
     Attributes:
         name: Its hash.
@@ -58,7 +58,7 @@ class Outcome:
 
     @property
     def rank(self) -> int:
-        """Which of two outcomes of one run counts, the lower: 0 for a good one, 1 for a failed, 2 for a cut short."""
+        """Rank: of two outcomes of one run the lower counts. 0 is a good run, 1 a failed run, 2 an aborted run."""
         return _CUT_SHORT if self.cut_short else 1 if self.failure else 0
 
 
@@ -84,7 +84,7 @@ class ShardRow:
 
 
 def outcome(run: Run) -> Outcome:
-    """Return how a run ended."""
+    """Return the outcome of a run."""
     failure = run.failure_record
     return Outcome(run.hash, run.failure or "", failure is not None and failure["time"] is None, len(run.caveats))
 
@@ -154,7 +154,7 @@ def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Pat
 
 
 class Outcomes(Sequence[Outcome]):
-    """How the runs of a shard ended, row by row.
+    """Outcomes of the runs of a shard, row by row.
 
     Args:
         names: Name of each.
@@ -189,7 +189,7 @@ class Outcomes(Sequence[Outcome]):
 
 
 def read_outcomes(path: Path) -> Outcomes:
-    """Return how the runs of a shard ended.
+    """Return the outcomes of the runs of a shard.
 
     Raises:
         DamagedError: if it cannot be read, or is not as it was written.
@@ -295,7 +295,7 @@ def _read_metrics(path: Path) -> Any:
 
 
 def _read(path: Path, columns: Sequence[str], start: str | None = None) -> Any:
-    """Return columns of a shard, and all whose names begin with a text."""
+    """Return columns of a shard, and the columns whose names have a prefix."""
     import pyarrow
 
     try:

@@ -61,7 +61,7 @@ def write_run(outputs: Path, name: str, result: RunResult) -> Run:
 
 
 def make_record(result: RunResult) -> dict[str, Any]:
-    """Return what metrics.json holds of a run, but for schema and digests."""
+    """Return the content of metrics.json, without schema and digests."""
     record: dict[str, Any] = {
         "status": "ok" if result.failure is None else "failed",
         "repetitions": result.repetitions,
@@ -96,7 +96,7 @@ def record_texts(
         found: Caveats of each run.
         timing: Measured times, the same for each run.
         provenances: Provenance of each run.
-        texts: Keeps the texts of common values.
+        texts: Keeps the strings of common values.
     """
     clocked = encode_finite(timing)
     records = []
@@ -111,7 +111,7 @@ def record_texts(
 
 
 def cut_short_record(reason: str, repetitions: int, provenance: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what is stored of a run that something else than its physics ended."""
+    """Return the record of an aborted run."""
     failure = {"reason": reason, "time": None, "joint": None, "repetition": None}
     return {
         "status": "failed",
