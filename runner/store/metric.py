@@ -72,6 +72,11 @@ class Metrics(Mapping[str, Metric]):
         ends = found["unit"], found["median"], found["min"], found["max"]
         return Metric(*ends, found.get("quantiles", {}), self._count, partial(self._values, name))
 
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Metrics) and self._stored == other._stored
+
+    __hash__ = None  # type: ignore[assignment]
+
     def __contains__(self, name: object) -> bool:
         return name in self._stored
 

@@ -35,7 +35,7 @@ def period(one):
 def test_a_metric_has_ends(runs):
     name, stored = "steady_state_error", runs["step/3.0/slow"].metrics["steady_state_error"]
     values = [metric(runs, "step/3.0/slow", name, "error", end).value for end in ("min", "median", "max")]
-    assert values == [stored[end] for end in ("min", "median", "max")]
+    assert values == [stored.min, stored.median, stored.max]
     assert metric(runs, "step/3.5/slow", name, "error", "max").value is None
 
 

@@ -78,7 +78,7 @@ def same(made: Run, kept: Run) -> bool:
     """Tell whether a run has the config, columns and metrics of a recorded one."""
     alike = {**made.config, "outputs": kept.config["outputs"]} == kept.config and made.units == kept.units
     ours, theirs = (
-        {name: float("nan") if each["median"] is None else each["median"] for name, each in run.metrics.items()}
+        {name: float("nan") if each.median is None else each.median for name, each in run.metrics.items()}
         for run in (made, kept)
     )
     return alike and made.status == kept.status and ours == pytest.approx(theirs, nan_ok=True, **CLOSE)

@@ -112,9 +112,9 @@ def test_the_table_of_a_stored_sweep_holds_what_its_runs_hold(cli, tmp_path):
     assert frame["hash"].tolist() == [stored.hash for stored in runs]
     assert runs[1].metrics
     for name, metric in runs[1].metrics.items():
-        median = np.nan if metric["median"] is None else metric["median"]
+        median = np.nan if metric.median is None else metric.median
         assert frame[f"{name}.median"].iloc[1] == pytest.approx(median, rel=1e-15, nan_ok=True)
-        assert frame[f"{name}.n"].iloc[1] == 3 - metric["values"].count(None)
+        assert frame[f"{name}.n"].iloc[1] == 3 - metric.values.count(None)
 
 
 @pytest.mark.parametrize(
