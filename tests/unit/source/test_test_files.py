@@ -92,6 +92,7 @@ SHARED = {
     "store/finer": "contract/sweeps/test_finer_step.py",
     "store/finished": "contract/sweeps/test_outcomes.py",
     "store/physics": "unit/store/test_physics_modules.py",
+    "store/metric": "contract/api/test_run_handle.py",
     "store/run": "contract/store/test_runs.py",
     "store/stored": "contract/store/test_store.py",
     "store/sweep": "contract/store/test_sweep_store.py",
