@@ -31,7 +31,7 @@ def precision_runs(names: Iterable[str], kinds: Mapping[str, Run], outputs: Path
     for name in names:
         case, arm, plant, step = name.split("/")
         kind = kinds[f"{case}/{arm}"]
-        trace = kind.trace.copy()
+        trace = kind.trace().copy()
         for column in ("q1", "tip_x"):
             trace[column] += np.linspace(0.0, error(plant, float(step)), len(trace))
         made[name] = replace(kind)
@@ -40,8 +40,8 @@ def precision_runs(names: Iterable[str], kinds: Mapping[str, Run], outputs: Path
         steps = [name.rpartition("/")[2] for name in made if name.startswith(f"{base}/{measure.PLANT}/")]
         errors = {step: error(measure.PLANT, float(step)) for step in steps}
         cases[base] = {
-            "q": exact.trace.filter(regex=r"^q\d+$").to_numpy().tolist(),
-            "tip": exact.trace[["tip_x", "tip_y", "tip_z"]].to_numpy().tolist(),
+            "q": exact.trace().filter(regex=r"^q\d+$").to_numpy().tolist(),
+            "tip": exact.trace()[["tip_x", "tip_y", "tip_z"]].to_numpy().tolist(),
             "apart": {"tolerance": 2e-15, "collocation": 1e-15},
             "energy": 1e-15 if base.startswith("free") else None,
             "compiled_seconds": {step: 1e-6 / float(step) for step in steps},

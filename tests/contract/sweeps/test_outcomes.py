@@ -29,7 +29,7 @@ def test_ends_of_shards_are_taken_whole(tmp_path):
         Run(
             tmp_path / "runs" / (letter * 24),
             {},
-            {"status": "failed", "caveats": [], "metrics": {}, "failure": found},
+            {"status": "failed", "repetitions": 1, "caveats": [], "metrics": {}, "failure": found},
             "",
         )
         for letter, found in (("a", None), ("b", failure), ("d", failure))

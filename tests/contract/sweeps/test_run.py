@@ -173,7 +173,7 @@ def test_a_run_that_takes_too_long_is_cut_short(sweep, simulated_runs):
     assert why == "cut short: no result within sweep.time_limit, 30 s"
     assert log.read_text().startswith("runner robot=macro duration=10000.0")
     long, short = runs(ended)
-    assert (long.status, long.metrics, short.status) == ("failed", {}, "ok")
+    assert (long.status, dict(long.metrics), short.status) == ("failed", {}, "ok")
     assert sweep("duration=1e4,0.05", "sweep.time_limit=30").failures == ended.failures
     assert len(simulated_runs) == 2  # it is not tried again
 

@@ -112,7 +112,7 @@ def test_a_delay_in_its_config_is_heeded(own_part, cli):
     own = own_part("plant", "late", module, "step: null\ncomputation: {delay: 0, jitter: null, miss: null}\n")
     given = ("--config-dir", own, "robot=macro", "trajectory=quintic", "duration=0.2", "plant=late")
     taus = {
-        delay: open_run(cli(*given, f"plant.computation.delay={delay}").folder).trace["tau2"].to_numpy()
+        delay: open_run(cli(*given, f"plant.computation.delay={delay}").folder).trace()["tau2"].to_numpy()
         for delay in (0, 3)
     }
     assert len(np.unique(taus[0][:5])) == 5
@@ -151,10 +151,10 @@ FOLLOWING = """
 def test_position_plant_gets_commands_and_the_worlds_load_and_tells_its_torques(own_part, cli):
     own = own_part("plant", "following", FOLLOWING, "step: null\n")
     given = ("--config-dir", own, "robot=meca500", "plant=following", "controller=admittance", "duration=0.2")
-    free = open_run(cli(*given).folder).trace
+    free = open_run(cli(*given).folder).trace()
     np.testing.assert_array_equal(free["q3"].to_numpy()[1:], free["q3_command"].to_numpy()[:-1])
     np.testing.assert_array_equal(free["tau3"].to_numpy(), 7.0)
-    pushed = open_run(cli(*given, "environment=push", "environment.start_time=0.1").folder).trace
+    pushed = open_run(cli(*given, "environment=push", "environment.start_time=0.1").folder).trace()
     assert pushed["tau2"].nunique() > 1
 
 

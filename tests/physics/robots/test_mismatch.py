@@ -197,7 +197,7 @@ def test_each_repetition_draws_anew_from_seed_and_repetition_alone(checked_confi
             closed.plant.close()
 
     values = run(*overrides, "repetitions=3", f"outputs={tmp_path}").metrics["peak_torque"].values
-    assert values == [float(np.abs(trace(repetition).tau).max()) for repetition in range(3)]
+    assert list(values) == [float(np.abs(trace(repetition).tau).max()) for repetition in range(3)]
     assert len(set(values)) == 3
     first, again = trace(2), trace(2)
     np.testing.assert_array_equal(first.q, again.q)

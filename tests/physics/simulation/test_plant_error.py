@@ -66,7 +66,7 @@ def test_what_is_compared_is_the_run_on_runge_kutta(tmp_path):
         assert worth["value"] == value
         assert worth["difference"] == abs(first - value)
         assert worth["share"] == (abs(first - value) / abs(first) if first else 0.0)
-    rows = min(len(own.trace), len(twin.trace))
+    rows = min(len(own.trace()), len(twin.trace()))
     tips = [stored.trace()[["tip_x", "tip_y", "tip_z"]].to_numpy()[:rows] for stored in (own, twin)]
     distance = np.linalg.norm(tips[0] - tips[1], axis=1)
     assert error["largest"] == distance.max()

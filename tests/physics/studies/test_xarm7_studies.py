@@ -45,7 +45,7 @@ def test_of_a_tall_matrix_the_printed_inverse_is_right() -> None:
 
 def test_equal_columns_get_equal_speeds(planned: Make) -> None:
     """Columns 1 and 2 of the printed Jacobian are one and the same, so its shortest motion shares between them."""
-    trace = planned("printed/position/columns alone").trace
+    trace = planned("printed/position/columns alone").trace()
     np.testing.assert_allclose(trace["dq1"], trace["dq2"], atol=1e-12)
     assert trace["dq1"].abs().max() > 0.01
 
@@ -87,7 +87,7 @@ def test_the_lag_is_the_closed_form(planned: Make, rate: int) -> None:
 
 def test_the_sag_is_the_closed_form_where_the_servo_is_stiff(planned: Make) -> None:
     stiff = planned("stiffness/7500/false/commanded")
-    error = float(np.abs(stiff.trace[["error_x", "error_y", "error_z"]].to_numpy()[-1]).max())
+    error = float(np.abs(stiff.trace()[["error_x", "error_y", "error_z"]].to_numpy()[-1]).max())
     assert error == pytest.approx(sag(stiff), rel=0.02)
 
 
@@ -100,12 +100,12 @@ def test_a_payload_meets_each_limit_where_the_torque_is_the_limit() -> None:
 
 def test_the_torques_asked_for_are_linear_in_the_payload(planned: Make) -> None:
     names = [f"tau{joint}" for joint in range(1, 8)]
-    light, heavy = (planned(f"payload/0.643/asked/{mass}").trace[names].to_numpy() for mass in (0, 5))
+    light, heavy = (planned(f"payload/0.643/asked/{mass}").trace()[names].to_numpy() for mass in (0, 5))
     outputs = planned("payload/0.643/asked/0").folder.parent.parent
     between = run(
         *xarm7_studies()["payload/0.643/asked/0"].overrides[:-1], "robot.payload.mass=2", f"outputs={outputs}"
     )
-    np.testing.assert_allclose(between.trace[names].to_numpy(), light + 0.4 * (heavy - light), atol=1e-9)
+    np.testing.assert_allclose(between.trace()[names].to_numpy(), light + 0.4 * (heavy - light), atol=1e-9)
 
 
 def test_stretched_out_the_arm_is_as_long_as_its_links(planned: Make) -> None:

@@ -39,5 +39,5 @@ def test_it_starts_where_its_config_says_else_at_home(own_part, cli):
     given = ("--config-dir", own, "robot=macro", "trajectory=resting", "plant=rk4")
     home = open_run(cli(*given).folder)
     moved = open_run(cli(*given, "trajectory.start=[0.3,1.0,0.8]").folder)
-    assert moved.trace[["tip_x", "tip_y", "tip_z"]].to_numpy()[0] == pytest.approx([0.3, 1.0, 0.8], abs=1e-9)
-    assert home.trace["q2"].iloc[0] == home.config["robot"]["home"][1]
+    assert moved.trace()[["tip_x", "tip_y", "tip_z"]].to_numpy()[0] == pytest.approx([0.3, 1.0, 0.8], abs=1e-9)
+    assert home.trace()["q2"].iloc[0] == home.config["robot"]["home"][1]
