@@ -9,7 +9,7 @@ from runner.schema.units import Unit
 
 
 class StrictModel(BaseModel):
-    """Base of every config model: no unknown key, no silent conversion, no NaN or infinity, unchangeable."""
+    """Base of every config model: no unknown key, no silent conversion, no NaN or infinity, immutable."""
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
@@ -18,8 +18,8 @@ class StrictModel(BaseModel):
         """Return the unit of a key below this model; None if there is no such key.
 
         Args:
-            path: The keys that lead to it, such as ["stages", "macro", "home"]; keys and numbers behind it count for
-                nothing.
+            path: Keys that lead to the key, such as ["stages", "macro", "home"]; the method ignores keys and indices
+                after it.
         """
         name, *rest = path[2:] if path[0] == "stages" and len(path) > 2 else path
         if name not in cls.model_fields:

@@ -14,11 +14,11 @@ NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]
 
 
 class FrictionConfig(StrictModel):
-    """Config of joint friction; a value for every joint or one for each.
+    """Config of joint friction: one value for all joints, or a list with one for each.
 
     Attributes:
-        viscous: Torque per speed, in N m s/rad; N s/m where a joint slides.
-        coulomb: Torque against any motion, and up to which a joint at rest stays so, in N m; N where it slides.
+        viscous: Torque per speed, in N m s/rad; N s/m for prismatic joints.
+        coulomb: Torque against any motion, in N m; N for prismatic joints. Joints at rest move only above it.
     """
 
     viscous: JointDamping[NonNegativePerJoint]
@@ -29,7 +29,7 @@ def expand(key: str, value: float | list[float], joints: Sequence[str]) -> list[
     """Return one value for each joint.
 
     Raises:
-        ConfigError: if a list has another length than the arm has joints; names the joints.
+        ConfigError: if the length of a list differs from the number of joints; names the joints.
     """
     if not isinstance(value, list):
         return [value] * len(joints)

@@ -80,8 +80,8 @@ def by_stage(key: str, value: T | Mapping[str, T], stages: Sequence[str]) -> lis
     """Return one value for each stage, in their order.
 
     Raises:
-        ConfigError: for one value where the robot has several stages, a mapping where it has one, or stages that are
-            missing or unknown; names the stages.
+        ConfigError: for one value if the robot has several stages, for a mapping if it has one, and for missing or
+            unknown stages; names the stages.
     """
     names = ", ".join(stages)
     if not isinstance(value, Mapping):

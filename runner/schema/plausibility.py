@@ -7,16 +7,16 @@ from typing import Any
 from runner.base.sanitize import quoted
 
 LARGEST = 1e12
-"""Largest magnitude of a number, in SI units: that of a stiff material's modulus."""
+"""Largest magnitude of a number, in SI units: the modulus of a stiff material."""
 SMALLEST = 1e-12
-"""Smallest magnitude of a number that is not 0, unless it is one of a list, as a coordinate off by rounding."""
+"""Smallest magnitude of a nonzero number; numbers in lists may be smaller, such as coordinates after rounding."""
 LARGEST_WHOLE = 10**18 - 1
 """Largest whole number, in magnitude."""
 _TEXT = 4096
 
 
 def absurd(key: str, value: Any) -> Iterator[str]:
-    """Yield a problem for each number or text in a config that is beyond reason.
+    """Yield a problem for each implausible number or string in a config.
 
     Args:
         key: Dotted key of the value; "" for the root.
@@ -26,10 +26,10 @@ def absurd(key: str, value: Any) -> Iterator[str]:
 
 
 def _beyond(value: Any, in_list: bool) -> Iterator[str]:
-    """Yield problems, each with the way to it from the value."""
+    """Yield problems, each after its path below the value."""
     if isinstance(value, float):
         size = abs(value)
-        if LARGEST < size < math.inf or (0.0 < size < SMALLEST and not in_list):  # models tell of inf and nan
+        if LARGEST < size < math.inf or (0.0 < size < SMALLEST and not in_list):  # models report inf and nan
             yield f": must lie between {SMALLEST:g} and {LARGEST:g} in magnitude; found {value:g}"
     elif isinstance(value, str):
         if len(value) > _TEXT:

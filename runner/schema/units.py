@@ -32,7 +32,7 @@ WRITTEN: Mapping[str, Mapping[str, Decimal | float]] = {
     "1/s": {"1/s": _ONE},
     "Hz": {"Hz": _ONE, "kHz": _KILO},
 }
-"""What each unit of a key may be written as, and what that is of the unit."""
+"""Spellings of each unit of a key, with their factors to that unit."""
 
 _AXES_ALONG = 3
 T = TypeVar("T")
@@ -40,12 +40,12 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Unit:
-    """The unit of a config key, in the annotation of its field; all are empty for a key without unit.
+    """The unit of a config key, in the annotation of its field; all attributes are empty for a key without unit.
 
     Attributes:
-        first: Its unit.
+        first: Unit of the value.
         turned: Unit of the last three of six axes, if the key has one value for each axis.
-        sliding: Unit for joints that slide, if the key has values of joints.
+        sliding: Unit for prismatic joints, if the key has joint values.
     """
 
     first: str = ""
@@ -53,7 +53,7 @@ class Unit:
     sliding: str = ""
 
     def at(self, place: Sequence[str | int]) -> tuple[str, ...]:
-        """Return the units that a value may have, by its place in the config: keys, and numbers in lists."""
+        """Return the allowed units of a value from its path in the config: keys, and indices in lists."""
         if self.turned:
             axis = place[-1]
             return ((self.first, self.turned)[axis >= _AXES_ALONG],) if isinstance(axis, int) else ()
@@ -81,7 +81,7 @@ AxisWrench = Annotated[T, Unit("N", turned="N m")]
 AxisInertia = Annotated[T, Unit("kg", turned="kg m^2")]
 AxisStiffness = Annotated[T, Unit("N/m", turned="N m/rad")]
 AxisDamping = Annotated[T, Unit("N s/m", turned="N m s/rad")]
-# Values of joints that turn or slide.
+# Values of revolute and prismatic joints.
 JointPosition = Annotated[T, Unit("rad", sliding="m")]
 JointSpeed = Annotated[T, Unit("rad/s", sliding="m/s")]
 JointTorque = Annotated[T, Unit("N m", sliding="N")]
@@ -93,7 +93,7 @@ _ALIKE = str.maketrans({"°": "deg", "µ": "u", "μ": "u", "²": "^2", " ": "", 
 _BARE: Mapping[str, str] = {
     written.translate(_ALIKE): written for all_written in WRITTEN.values() for written in all_written
 }
-# Three digits of an exponent are more than a number may have, and no more are worked out.
+# An exponent of three digits exceeds every valid number. Longer ones would take long to evaluate.
 _NUMBER = r"[-+]?(?:\d[\d_]*\.?[\d_]*|\.\d[\d_]*)(?:[eE][-+]?\d{1,3})?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})(\s*[a-zA-Z°µμ][\w°µμ ^²*·/]*|\s+1/s)")
 _LONGEST = 60  # characters
@@ -104,16 +104,16 @@ class Quantity(NamedTuple):
 
     Attributes:
         number: The number.
-        unit: What stands behind it, spaces and signs of multiplication as a config writes them where it is known.
+        unit: Unit after the number; a known unit has the spaces and multiplication signs of WRITTEN.
     """
 
     number: Decimal
     unit: str
 
     def in_unit(self, unit: str) -> float | None:
-        """Return the number in a unit of a key; None where this is no quantity of that unit.
+        """Return the number in a unit of a key; None if its unit does not convert to that unit.
 
-        Powers of ten are exact, so that 20ms is the float that 0.02 is; 30deg is what math.radians(30) is.
+        Powers of ten are exact: 20ms gives the same float as 0.02. 30deg gives the same float as math.radians(30).
         """
         factor = WRITTEN.get(unit, {}).get(self.unit)
         if factor is None:
@@ -122,7 +122,7 @@ class Quantity(NamedTuple):
 
 
 def read_quantity(value: object) -> Quantity | None:
-    """Return what a text says where it is a number with a unit, known or not; None for all else."""
+    """Return the quantity that a string contains, with a known or unknown unit; None for any other value."""
     if not isinstance(value, str) or len(value) > _LONGEST:
         return None
     match = _QUANTITY.fullmatch(value)
@@ -133,7 +133,7 @@ def read_quantity(value: object) -> Quantity | None:
 
 
 def _is_number(text: str) -> bool:
-    """Tell whether a text is a number alone, as 1e3 is, though its end could be a unit."""
+    """Return True for a number without unit, such as 1e3, although its end looks like a unit."""
     try:
         float(text)
     except ValueError:
@@ -142,7 +142,7 @@ def _is_number(text: str) -> bool:
 
 
 def quantities_in(value: object) -> Iterator[str]:
-    """Yield the texts in a value, a list or a mapping, that are quantities."""
+    """Yield the strings in a value, list or mapping that are quantities."""
     for item in value.values() if isinstance(value, Mapping) else value if isinstance(value, list) else [value]:
         if isinstance(item, list | dict):
             yield from quantities_in(item)
@@ -151,17 +151,17 @@ def quantities_in(value: object) -> Iterator[str]:
 
 
 def explain_quantity(text: str, units: Sequence[str]) -> str:
-    """Return what is wrong with a quantity that a key does not take, and which units it takes.
+    """Return the error message for a quantity that a key rejects, with the allowed units.
 
     Args:
         text: The quantity, as typed.
-        units: Units in which the key may count; none for a key without unit.
+        units: Allowed units of the key; empty for a key without unit.
     """
     quantity = read_quantity(text)
     unit = quantity.unit if quantity is not None else ""
     if not units:
-        return f"counts in no unit; found {quoted(text)}; write the number alone"
+        return f"has no unit; found {quoted(text)}; write only the number"
     allowed = " or ".join(f"{own} (written {', '.join(WRITTEN[own])})" for own in units)
     known = [written for all_written in WRITTEN.values() for written in all_written]
-    what = "" if unit in known else f"; '{unit}' is no unit{nearest(unit, known)}"
+    what = "" if unit in known else f"; '{unit}' is not a unit{nearest(unit, known)}"
     return f"must be a number, or one with a unit of {allowed}; found {quoted(text)}{what}"

@@ -66,7 +66,7 @@ def test_an_unknown_metric_is_told_with_the_nearest():
         ("spec.metrics.settling_time.max=soon", "spec.metrics.settling_time.max: must be a number; found 'soon'"),
         (
             "spec.metrics.saturation_fraction.max=1s",
-            "spec.metrics.saturation_fraction.max: counts in no unit; found '1s'",
+            "spec.metrics.saturation_fraction.max: has no unit; found '1s'",
         ),
         ("spec.metrics=all", "spec.metrics: must be a group of keys; found 'all'"),
         ("spec.bounds=1", "spec.bounds: unknown key; keys: metrics"),

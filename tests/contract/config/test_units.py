@@ -93,7 +93,7 @@ def test_of_a_plug_in_that_declares_its_units(own_part):
     told = compose(["robot=macro", "trajectory=waiting", "trajectory.settle=20ms"], [folder]).resolved
     assert told["trajectory"]["settle"] == 0.02
     assert problems("robot=macro", "trajectory=waiting", "trajectory.share=5mm", config_dirs=[folder]) == (
-        "trajectory.share: counts in no unit; found '5mm'; write the number alone",
+        "trajectory.share: has no unit; found '5mm'; write only the number",
     )
 
 
@@ -103,14 +103,14 @@ def test_of_a_plug_in_that_declares_its_units(own_part):
         ("controller.period=5mm", "controller.period: must be a number, or one with a unit of s (written s, ms, us, "
          "ns, min, h); found '5mm'"),
         ("controller.period=5msec", "controller.period: must be a number, or one with a unit of s (written s, ms, us, "
-         "ns, min, h); found '5msec'; 'msec' is no unit (did you mean ms?)"),
-        ("controller.damping_ratio=1mm", "controller.damping_ratio: counts in no unit; found '1mm'; write the number "
-         "alone"),
-        ("repetitions=5ms", "repetitions: counts in no unit; found '5ms'; write the number alone"),
+         "ns, min, h); found '5msec'; 'msec' is not a unit (did you mean ms?)"),
+        ("controller.damping_ratio=1mm", "controller.damping_ratio: has no unit; found '1mm'; write only the "
+         "number"),
+        ("repetitions=5ms", "repetitions: has no unit; found '5ms'; write only the number"),
         ("robot.home=[0,5kg,0]", "robot.home.1: must be a number, or one with a unit of rad (written rad, mrad, deg) "
          "or m (written m, cm, mm, um); found '5kg'"),
         ("torque_limits.max=5Nms", "torque_limits.max: must be a number, or one with a unit of N m (written N m, mN m, "
-         "kN m) or N (written N, mN, kN); found '5Nms'; 'Nms' is no unit (did you mean ms?)"),
+         "kN m) or N (written N, mN, kN); found '5Nms'; 'Nms' is not a unit (did you mean ms?)"),
         ("controller.period=-5ms", "controller.period: must be above 0; found -0.005"),
     ],
 )  # fmt: skip

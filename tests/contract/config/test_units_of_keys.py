@@ -81,8 +81,8 @@ def test_an_exponent_beyond_all_floats_is_infinite():
     ("text", "units", "message"),
     [
         ("5mm", ("s",), "must be a number, or one with a unit of s (written s, ms, us, ns, min, h); found '5mm'"),
-        ("5mm", (), "counts in no unit; found '5mm'; write the number alone"),
-        ("5msec", ("s",), "'msec' is no unit (did you mean ms?)"),
+        ("5mm", (), "has no unit; found '5mm'; write only the number"),
+        ("5msec", ("s",), "'msec' is not a unit (did you mean ms?)"),
         ("5kg", ("rad", "m"), "unit of rad (written rad, mrad, deg) or m (written m, cm, mm, um); found '5kg'"),
     ],
 )
