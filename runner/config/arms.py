@@ -31,17 +31,17 @@ _built: dict[tuple[object, ...], Robot] = {}
 def build_robot(
     config: RobotConfig, gravity: float, config_dirs: Sequence[Path] = (), sensor: ForceTorqueConfig | None = None
 ) -> Robot:
-    """Return the robot that a config describes; the runs of a sweep share it where their files and values are equal.
+    """Return the robot that a config describes; runs with equal files and values share it.
 
     Args:
         config: The robot's config.
         gravity: Magnitude of gravity along -z of the base, in m/s^2.
-        config_dirs: Config folders of the user's, in which URDFs and MJCFs are looked for.
-        sensor: Config of the force/torque sensor on the last arm's tip frame, whose mass it bears; None for none.
+        config_dirs: Config folders of the user, searched for URDFs and MJCFs.
+        sensor: Config of the force/torque sensor, whose mass loads the last arm's tip frame; None for no sensor.
 
     Raises:
-        ConfigError: for a file that cannot be found or built, a frame or link that does not exist, a posture or
-            friction of the wrong length, a posture beyond the joints' limits, or names that clash between stages.
+        ConfigError: for a file that cannot be found or built, a frame or link that does not exist, a configuration or
+            friction of the wrong length, a configuration beyond the joint limits, or names that clash between stages.
     """
     paths = [find_arm(key, arm, config_dirs) for key, arm in keyed_arms(config)]
     files = [
@@ -66,7 +66,7 @@ def build_robot(
 def build_loaded(
     config: RobotConfig, gravity: float, config_dirs: Sequence[Path] = (), sensor: ForceTorqueConfig | None = None
 ) -> tuple[tuple[float, Robot], ...]:
-    """Return when a robot's payload changes, in s, and the robot with it from then on; see build_robot."""
+    """Return the time of each change of payload, in s, and the robot from then on; see build_robot."""
     changes = config.payload.schedule
     loads = [config.payload.model_copy(update={"mass": change.mass, "schedule": []}) for change in changes]
     robots = [build_robot(config.model_copy(update={"payload": load}), gravity, config_dirs, sensor) for load in loads]
@@ -114,7 +114,11 @@ def keyed_arms(config: RobotConfig) -> list[tuple[str, ArmConfig]]:
 
 
 def find_arm(key: str, arm: ArmConfig, config_dirs: Sequence[Path]) -> Path:
-    """Return the file of an arm, which is of the format that its key says."""
+    """Return the file of an arm, in the format of its key.
+
+    Raises:
+        ConfigError: for no file or two, a file that does not exist, or an MJCF given as URDF.
+    """
     if (arm.urdf is None) == (arm.mjcf is None):
         found = "neither" if arm.urdf is None else f"both, '{arm.urdf}' and '{arm.mjcf}'"
         raise ConfigError([f"{key}.urdf, {key}.mjcf: found {found}; give one file, and null for the other"])
@@ -125,7 +129,7 @@ def find_arm(key: str, arm: ArmConfig, config_dirs: Sequence[Path]) -> Path:
 
 
 def sliding_joints(config: RobotConfig, config_dirs: Sequence[Path]) -> dict[str, dict[str, bool]]:
-    """Return by stage and joint whether the joint slides, as the files say."""
+    """Return by stage and joint whether the files define the joint as prismatic."""
     trees = [read_arm(find_arm(key, arm, config_dirs)) for key, arm in keyed_arms(config)]
     return {
         name: {joint: tree.joints[joint].get("type") == "prismatic" for joint in tree.chain}
@@ -134,12 +138,12 @@ def sliding_joints(config: RobotConfig, config_dirs: Sequence[Path]) -> dict[str
 
 
 def mixed_arms(resolved: Mapping[str, object], option: str, config_dirs: Sequence[Path]) -> Iterator[str]:
-    """Yield a problem for each file of a robot of ours that a config folder has under the same name.
+    """Yield a problem for each file of a built-in robot if a config folder has a file of the same name.
 
     Args:
         resolved: The config as plain data.
         option: The option chosen in the group robot.
-        config_dirs: Config folders of the user's.
+        config_dirs: Config folders of the user.
     """
     option, robot = option.removesuffix(".yaml"), resolved.get("robot")
     if not (isinstance(robot, Mapping) and (conf_dir() / "robot" / f"{option}.yaml").is_file()):
@@ -150,7 +154,7 @@ def mixed_arms(resolved: Mapping[str, object], option: str, config_dirs: Sequenc
         try:
             ours, found = (find_urdf(str(name), folders) for folders in ((), config_dirs))
         except ConfigError:
-            continue  # validation tells it
+            continue  # validation reports it
         if found != ours:
             named = f"robot.urdf: '{name}' of robot={option} is one of ours"
             yield f"{named}, and {found} has the same name; rename that file, or choose the robot that it belongs to"
@@ -158,7 +162,7 @@ def mixed_arms(resolved: Mapping[str, object], option: str, config_dirs: Sequenc
 
 @contextmanager
 def _told_of(arm: ArmConfig) -> Iterator[None]:
-    """Let messages on the URDF made of an MJCF name the key that the user has."""
+    """Let errors in the URDF converted from an MJCF name the key of the MJCF."""
     try:
         yield
     except ConfigError as error:
@@ -187,7 +191,7 @@ def _check_home(key: str, model: RobotModel, home: FloatArray) -> None:
 
 
 def _payloads(config: RobotConfig, flange: str, sensor: ForceTorqueConfig | None) -> list[Payload]:
-    """Return what the flange bears beside a tool: the payload at the tip, and the force/torque sensor."""
+    """Return the masses on the flange except the tool: the payload at the tip, and the force/torque sensor."""
     tip = np.zeros(3) if config.tool is None else np.array(config.tool.tip)
     payloads = [Payload(flange, config.payload.mass, (tip + config.payload.position).tolist())]
     if sensor is not None:
@@ -204,4 +208,4 @@ def _mount(key: str, whole: str, urdf: str, below: str, prefix: str, arm: ArmCon
 
 def _refuse_mount(key: str, arm: ArmConfig) -> None:
     if isinstance(arm, StageConfig) and arm.mount is not None:
-        raise ConfigError([f"{key}.mount: the first stage stands on the ground; allowed: null"])
+        raise ConfigError([f"{key}.mount: the first stage is fixed to the ground; allowed: null"])

@@ -51,7 +51,7 @@ class CalibrationConfig:
         settings: The keys at the root.
         robot: Config of the robot.
         arm: The robot.
-        procedure: What is carried out.
+        procedure: The calibration procedure.
         resolved: The part of the composed config that a calibration reads, as plain data.
     """
 
@@ -63,7 +63,7 @@ class CalibrationConfig:
 
 
 def validate_calibration(composed: Composed) -> CalibrationConfig:
-    """Check a composed calibration, and make its procedure.
+    """Check a composed calibration and build its procedure.
 
     Raises:
         ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
@@ -88,7 +88,7 @@ def validate_calibration(composed: Composed) -> CalibrationConfig:
 
 
 def _check_keys(composed: Composed) -> None:
-    """Refuse overrides that nothing would read, of keys that do not exist, or that only runs have."""
+    """Reject overrides without effect: of keys that do not exist, or that only runs have."""
     given = [override.lstrip("+~").partition("=")[0] for override in composed.overrides]
     unread = [key for key in given if key.partition(".")[0] not in _KEYS]
     if unread:
@@ -101,7 +101,7 @@ def _parse_sensor(keys: Mapping[str, object]) -> ForceTorqueConfig:
     if "kind" in keys:
         raise ConfigError(
             [
-                "wrist_sensor.kind: a calibration takes our force/torque sensor alone; found the plug-in "
+                "wrist_sensor.kind: a calibration supports only the built-in force/torque sensor; found the plug-in "
                 f"{quoted(keys['kind'])}; take wrist_sensor=ideal or wrist_sensor=mini40"
             ]
         )

@@ -11,55 +11,55 @@ from runner.schema.units import Kilograms, Radians
 _Share = Annotated[float, Field(ge=0.0, le=1.0)]
 
 THRESHOLDS: Mapping[str, tuple[str, Any, str]] = {
-    "saturation": ("share", _Share, "Share of the ticks that a joint may be at its torque limit."),
+    "saturation": ("share", _Share, "Allowed fraction of ticks with a joint at its torque limit."),
     "chatter": (
         "share",
         _Share,
-        "Share of its loop's ticks at which a joint's torque may jump from one limit to the opposite one.",
+        "Allowed fraction of a loop's ticks at which a joint torque jumps from one limit to the opposite one.",
     ),
-    "did_not_follow": ("share", PositiveFloat, "Share of the size of its motion that the tip's error may reach."),
-    "joint_limits": ("excess", Radians[NonNegativeFloat], "Excess of a joint over a position limit, in rad."),
+    "did_not_follow": ("share", PositiveFloat, "Allowed tip error as a fraction of the size of the tip's motion."),
+    "joint_limits": ("excess", Radians[NonNegativeFloat], "Allowed excess of a joint over a position limit, in rad."),
     "exact_velocity": (
         "noise",
         Radians[NonNegativeFloat],
-        "Noise or resolution that measured positions may have while measured velocities are exact, in rad.",
+        "Allowed noise or resolution of measured positions if measured velocities are exact, in rad.",
     ),
     "fixed_mismatch": (
         "error",
         NonNegativeFloat,
-        "Largest relative error of the model that may be the same in every repetition.",
+        "Largest allowed relative model error that is the same in every repetition.",
     ),
-    "overload": ("share", PositiveFloat, "Share of the rated payload that tool and payload may weigh."),
+    "overload": ("share", PositiveFloat, "Allowed mass of tool and payload as a fraction of the rated payload."),
     "no_effort_limit": (
         "payload",
         Kilograms[NonNegativeFloat],
-        "Payload that an arm may carry though a joint of it has no torque limit, in kg.",
+        "Allowed payload of an arm with a joint without torque limit, in kg.",
     ),
     "unstable_gains": (
         "share",
         PositiveFloat,
-        "Velocity gain as a share of the largest gain that is stable at the control period.",
+        "Allowed velocity gain as a fraction of the largest gain that is stable at the control period.",
     ),
     "unstable_contact": (
         "radius",
         PositiveFloat,
-        "Growth factor of a small motion in contact with a wall in each control period.",
+        "Allowed growth factor of a small motion in contact with a wall, per control period.",
     ),
     "short_horizon": (
         "share",
         PositiveFloat,
-        "Share of the run that three time constants of the slowest part of the control law may take.",
+        "Allowed length of three time constants of the slowest part of the control law, as a fraction of the run.",
     ),
     "default_plant": ("replaced", _Share, "0 reports it, 1 does not."),
-    "robot_file": ("left_out", NonNegativeFloat, "Number of elements left out that affect the motion."),
+    "robot_file": ("left_out", NonNegativeFloat, "Allowed number of ignored elements that affect the motion."),
     "plant_error": (
         "share",
         _Share,
-        "Share of a metric that may be integration error; 1 disables the rule.",
+        "Allowed integration error of a metric, as a fraction; 1 disables the rule.",
     ),
 }
 
-"""Key, type and meaning of the threshold of each caveat rule; runner/metrics/caveats has the rules."""
+"""Key, type and meaning of the threshold of each caveat rule; the rules are in runner/metrics/caveats."""
 
 
 def _make_threshold(rule: str) -> Any:

@@ -18,10 +18,10 @@ from runner.sensing.endpoint import EndpointTicks
 
 
 def check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
-    """Check that controllers believe in no payload below nothing.
+    """Check that the payload in the controllers' model is not negative.
 
     Raises:
-        ConfigError: where they do.
+        ConfigError: if it is.
     """
     if mismatch.payload < -robot.payload.mass:
         raise ConfigError(
@@ -33,10 +33,10 @@ def check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
 
 
 def check_schedule(config: RunConfig) -> None:
-    """Check that a payload that changes on the way meets a plant that can take it up.
+    """Check that the plant supports a payload that changes during the run.
 
     Raises:
-        ConfigError: where it does not.
+        ConfigError: if it does not.
     """
     if not config.loaded:
         return
@@ -57,15 +57,15 @@ _MAX_TICKS = 10_000_000
 
 
 def computation_of(plant: PlantConfig) -> ComputationConfig:
-    """Return what happens between laws and joints; a plant whose config has no such key takes commands at once."""
+    """Return the computation between control laws and joints; a plant without such a key has no delay."""
     return plant.computation if isinstance(plant, ComputesLate) else EXACT
 
 
 def count_late(plant: PlantConfig, loops: Sequence[Loop]) -> tuple[int, ...]:
-    """Return how late the commands of each loop act, in ticks of the fastest one, without jitter.
+    """Return the delay of the commands of each loop, in ticks of the fastest loop, without jitter.
 
     Raises:
-        ConfigError: for a mapping that names other loops, or a delay that is longer than any run.
+        ConfigError: for a mapping that names other loops, or a delay longer than any run.
     """
     late = computation_of(plant).by_loop([loop.name for loop in loops])
     if max(late) > _MAX_TICKS:
@@ -74,10 +74,10 @@ def count_late(plant: PlantConfig, loops: Sequence[Loop]) -> tuple[int, ...]:
 
 
 def check_computation(config: RunConfig) -> None:
-    """Check that commands that come unevenly are torques, and that a pattern of misses fits into the run.
+    """Check that only torques have jitter or misses, and that a pattern of misses fits into the run.
 
     Raises:
-        ConfigError: where they are not, or it does not.
+        ConfigError: if joint positions have them, or the pattern is too long.
     """
     computation, timing, key = computation_of(config.plant), config.timing, "plant.computation"
     if computation.is_even:
@@ -101,10 +101,13 @@ def check_computation(config: RunConfig) -> None:
 
 
 def check_observer(config: RunConfig) -> None:
-    """Check that an observer meets laws of torques, a plant that its model describes, and commands at its ticks.
+    """Check that a disturbance observer suits the controller and the plant.
+
+    The controller must command torques and must not use the external wrench. The observer's model must describe the
+    plant. The acting torque must be known or measured.
 
     Raises:
-        ConfigError: where it does not; names what it lacks.
+        ConfigError: if one of these conditions is not met; names it.
     """
     if config.disturbance_observer.by_loop(config.loops) is None:
         return
@@ -136,7 +139,7 @@ def check_observer(config: RunConfig) -> None:
 
 
 def _parted(config: RunConfig) -> bool:
-    """Tell whether the stages of the plant move each for itself."""
+    """Return True if the stages of the plant move independently of each other."""
     apart = isinstance(config.plant, TorquePlantConfig) and config.plant.dynamics == "decoupled"
     return len(config.arm.stages) > 1 and (apart or config.ignore_base_rotation)
 
@@ -159,10 +162,10 @@ def _late(config: RunConfig) -> str | None:
 
 
 def check_notch(config: RunConfig) -> None:
-    """Check that a notch meets laws of torques that are fast enough for its frequencies.
+    """Check that a controller with a notch commands torques without the external wrench, fast enough for the notch.
 
     Raises:
-        ConfigError: where it does not.
+        ConfigError: if it does not.
     """
     if config.notch is None:
         return
@@ -184,11 +187,11 @@ def check_notch(config: RunConfig) -> None:
 
 
 def endpoint_ticks(config: RunConfig) -> Mapping[str, EndpointTicks]:
-    """Return when loops measure the tip, by loop; empty where there is no sensor.
+    """Return the period and delay of the tip sensor in ticks, by loop; empty without a sensor.
 
     Raises:
-        ConfigError: for names of no loop, for times that are no multiple of a loop's period, and for laws that do
-            not ask where the tip is or bases that do not turn as the encoders tell.
+        ConfigError: for an unknown loop, a time that is not a multiple of a loop's period, a control law that does not
+            use the tip position, or mounted stages that do not turn with their base.
     """
     sensor, problems = config.endpoint_sensor, []
     loops = {loop.name: loop for loop in config.loops}
@@ -232,10 +235,10 @@ def _refused_reader(config: RunConfig, loop: Loop) -> list[str]:
 
 
 def check_reading(config: RunConfig) -> None:
-    """Check that joints have torque sensors where a law reads the force from them.
+    """Check that joints have torque sensors if the control law estimates the force from joint torques.
 
     Raises:
-        ConfigError: where they have none.
+        ConfigError: if they have none.
     """
     law = config.controller
     if isinstance(law, HybridForceConfig) and law.force_source == "joint_torque" and config.joint_torques is None:

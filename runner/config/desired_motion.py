@@ -19,12 +19,12 @@ from runner.trajectories.kinds import HasGoal, HasStart
 from runner.trajectories.trajectory import joint_reference
 
 _ROUNDING = 1e-12  # of the reach
-_BESIDE = 1e-9  # of the reach: farther beside the plane of a planar arm a path cannot be reached
+_BESIDE = 1e-9  # of the reach: largest distance of a path from the plane of a planar arm
 _SAMPLES = 1001
 
 
 def check_points(arm: Robot, trajectory: KindConfig) -> None:
-    """Check the start and the goal that a trajectory's config names, before there is a path.
+    """Check the start and the goal in a trajectory's config, before the path is built.
 
     Raises:
         ConfigError: if one of them is out of reach.
@@ -49,8 +49,8 @@ def check_path(arm: Robot, path: Trajectory) -> None:
     """Check the whole path.
 
     Raises:
-        ConfigError: if it leads out of reach, beside what the joints of a planar arm can reach, or joints beyond their
-            limits; says when.
+        ConfigError: if the path leaves the reach of the arm or the plane of a planar arm, or if joints exceed their
+            limits; reports the time.
     """
     check_joints(arm, path)
     model, times = arm.model, np.linspace(0.0, path.duration, _SAMPLES)
@@ -70,8 +70,8 @@ def check_path(arm: Robot, path: Trajectory) -> None:
     if beside[row] > _BESIDE * model.reach:
         raise ConfigError(
             [
-                f"trajectory: at t = {times[row]:.4g} s the path lies {beside[row]:.4g} m beside the plane or line in "
-                "which alone the joints move the tip; take a path within it"
+                f"trajectory: at t = {times[row]:.4g} s the path lies {beside[row]:.4g} m outside the plane or line in "
+                "which the joints can move the tip; take a path within it"
             ]
         )
 
@@ -81,11 +81,11 @@ _ROUNDING_OF_LIMIT = 1e-9  # of a limit
 
 
 def check_joints(arm: Robot, path: Trajectory) -> None:
-    """Check positions and speeds of the joints where the desired motion is one of the joints.
+    """Check positions and speeds of the joints if the desired motion is defined for the joints.
 
     Raises:
-        ConfigError: if it needs too many samples; for each joint that is led beyond a limit: the time, its value there
-            that lies farthest beyond, and the limit.
+        ConfigError: if the motion needs too many samples. For each joint that exceeds a limit, it reports the largest
+            excess: time, value and limit.
     """
     if not isinstance(path, TipOfJoints):
         return
@@ -123,17 +123,17 @@ _REPEATING = (
 
 @runtime_checkable
 class LearnsPeriods(Protocol):
-    """A config of controllers that learn from one period of the desired motion for the next."""
+    """Config of a controller that learns from one period of the desired motion to the next."""
 
     repeats_every: float
     period: float
 
 
 def check_repeats(config: RunConfig) -> None:
-    """Check that the desired motion repeats as a law that learns from it is told.
+    """Check that the desired motion repeats with the period of a learning controller.
 
     Raises:
-        ConfigError: where the run ends before what was learned acts, or the motion is not the same a period later.
+        ConfigError: if the run ends before the learned torques act, or the motion differs a period later.
     """
     law, timing = config.controller, config.timing
     if not isinstance(law, LearnsPeriods):
@@ -167,7 +167,7 @@ def _first_difference(config: RunConfig, times: FloatArray, unlike: FloatArray, 
 
 
 def _positions(config: RunConfig, times: FloatArray) -> FloatArray:
-    """Return desired positions of the joints, or of the tip where none are led, shape (T, k)."""
+    """Return desired positions of the joints, or of the tip if the joints have none, shape (T, k)."""
     joints = joint_reference(config.path, times)
     motion = config.path.sample(times) if joints is None else joints
     return motion[:, 0]
@@ -176,9 +176,9 @@ def _positions(config: RunConfig, times: FloatArray) -> FloatArray:
 def start_posture(
     controller: ControllerConfig, arm: Robot, start: FloatArray, ignore_base_rotation: bool
 ) -> FloatArray:
-    """Return joint positions that bring the tip to a start, as the controller wants it.
+    """Return joint positions with the tip at a start, chosen by the controller.
 
-    Where it has no wish, the first stage moves and riding ones stay at home.
+    If the controller does not choose, the first stage moves and mounted stages stay at home.
     """
     try:
         wanted = CONTROLLERS.start_posture(controller, arm, start)

@@ -16,25 +16,25 @@ from runner.robots.task_space import task_basis
 from runner.trajectories import Trajectory
 
 _AT_LIMIT = 1e-6  # rad or m
-_SINGULAR = 0.1  # of the reach; damping keeps a tip from the path well before the singular posture itself
+_SINGULAR = 0.1  # of the reach; damping already pulls the tip off the path near a singular configuration
 
 
 def check_path(
     controller: ControllerConfig, arm: Robot, trajectory: Trajectory, q_start: FloatArray, tolerance: float, end: float
 ) -> None:
-    """Let a controller of joint positions lead a perfect arm without speed limits along the path, without noise.
+    """Check that a joint-position controller can move an ideal arm along the path, without speed limits and noise.
 
     Args:
         controller: Config of the controller.
         arm: The robot.
         trajectory: The desired motion.
         q_start: Joint positions at t = 0, shape (nq,), in rad.
-        tolerance: Distance from the path at which it is left, in m.
-        end: Time at which the run ends, in s; of the path what comes later is not asked.
+        tolerance: Largest allowed distance of the tip from the path, in m.
+        end: Time at which the run ends, in s; the check ignores later parts of the path.
 
     Raises:
-        ConfigError: if the path cannot be followed: says when, which joint, and why; or not so fast: says the
-            shortest feasible time.
+        ConfigError: if the arm cannot follow the path, with time, joint and reason; or if the path is too fast, with
+            the shortest feasible time.
     """
     if not trajectory.tracked:
         return
@@ -47,7 +47,7 @@ def check_path(
     times: FloatArray = np.arange(math.floor(lasts / loop.period) + 1, dtype=np.float64) * loop.period
     try:
         q, stuck = _roll_out(loop, trajectory.sample(times), q_start)
-    except SimulationError:  # of a part of the user's: the run itself ends there, and says so
+    except SimulationError:  # of a user-supplied component: the run stops there and reports it
         return
     problem = (
         _find_end(times, q, stuck)
@@ -60,7 +60,7 @@ def check_path(
 
 
 def _roll_out(loop: Loop, desired: FloatArray, q_start: FloatArray) -> tuple[FloatArray, str]:
-    """Return the joint positions reached, a row for each time, and what stopped the law before the end, or ""."""
+    """Return the joint positions reached, a row for each time, and why the law stopped before the end, or ""."""
     law, q = cast(PositionController, loop.controller), q_start
     law.reset(q)
     rows = [q]
@@ -78,7 +78,7 @@ def _find_end(times: FloatArray, q: FloatArray, stuck: str) -> str:
 
 
 def _find_stop(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: FloatArray, tolerance: float) -> str:
-    """Return which joint's limit, or what singular posture, keeps the tip from the path; "" where none does."""
+    """Return the joint limit or the singular configuration that keeps the tip from the path; "" for none."""
     lower, upper = model.position_limits
     outside = (q < lower - _AT_LIMIT) | (q > upper + _AT_LIMIT)
     if outside.any():

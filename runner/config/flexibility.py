@@ -16,11 +16,11 @@ from runner.robots.armature import with_armature
 from runner.robots.chain import stiffen_robot
 from runner.robots.robot import Robot
 
-_FASTEST = 0.5  # step times the largest rate: the scheme's own damping ratio, (rate h)^5/144, is 2.2e-4 there
+_FASTEST = 0.5  # step h times largest rate: numerical damping ratio, (rate h)^5/144, is 2.2e-4 there
 
 
 def find_flexibility(config: RunConfig) -> Flexibility | None:
-    """Return springs and motors of a run's joints; None where they are rigid.
+    """Return springs and motors of a run's joints; None for rigid joints.
 
     Raises:
         ConfigError: see FlexibleJointsConfig.by_joint.
@@ -39,7 +39,7 @@ def with_nominal_motors(config: RunConfig, nominal: Robot) -> Robot:
 
 
 def find_motor_side(config: RunConfig, plant: Plant, nominal: Robot) -> MotorSide | None:
-    """Return what drives and encoders know of the motors of a plant; None where joints are rigid."""
+    """Return the motor-side model of drives and encoders; None for rigid joints."""
     springs = unwrapped(plant)
     joints = config.plant.flexible_joints if isinstance(config.plant, HasFlexibleJoints) else None
     if not isinstance(springs, FlexibleJoints):
@@ -50,10 +50,10 @@ def find_motor_side(config: RunConfig, plant: Plant, nominal: Robot) -> MotorSid
 
 
 def check_flexible_joints(config: RunConfig) -> None:
-    """Check that flexible joints meet a step that follows their fastest mode, and nothing that takes them for rigid.
+    """Check that the plant step resolves the fastest mode of flexible joints, and that no part needs rigid joints.
 
     Raises:
-        ConfigError: where they do not.
+        ConfigError: for a step that is too long, and for each part that needs rigid joints.
     """
     flexibility, by_motors = find_flexibility(config), isinstance(config.controller, MotorPdConfig)
     if by_motors and flexibility is None:
@@ -76,7 +76,7 @@ def check_flexible_joints(config: RunConfig) -> None:
 
 
 def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibility) -> list[str]:
-    """Return what of a config takes its joints for rigid."""
+    """Return a problem for each part of a config that needs rigid joints."""
     problems = []
     if config.commands != "torque":
         problems.append(
@@ -107,7 +107,7 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
 
 
 def is_flexible(config: RunConfig) -> bool:
-    """Tell whether joints or links are flexible; laws that believe in their motors are not compiled."""
+    """Return True if joints or links are flexible; laws whose model contains the motors are not compiled."""
     return isinstance(config.plant, Rk4FlexibleLinksConfig) or find_flexibility(config) is not None
 
 
@@ -119,10 +119,10 @@ def with_nominal_links(config: RunConfig, nominal: Robot) -> Robot:
 
 
 def check_flexible_links(config: RunConfig) -> None:
-    """Check that links that bend meet a step that follows their fastest mode, and nothing that takes them for rigid.
+    """Check that the plant step resolves the fastest mode of flexible links, and that no part needs rigid links.
 
     Raises:
-        ConfigError: where they do not.
+        ConfigError: for a step that is too long, and for each part that needs rigid links.
     """
     if not isinstance(config.plant, Rk4FlexibleLinksConfig):
         return

@@ -55,18 +55,18 @@ PLUGGED: Mapping[str, tuple[Kinds, StrictModel | None]] = {
     "joint_torque_sensor": (JOINT_TORQUE_SENSORS, JointTorqueConfig(noise=None, bias=0.0)),
     "mismatch": (MISMATCHES, NO_MISMATCH),
 }
-"""Groups that a plug-in replaces if they have a `kind`, each with a config of ours without effect, if there is one."""
+"""Groups that a plug-in replaces if they have a `kind`, each with a built-in config without effect, or None."""
 
 _OPTIONAL = ("input_shaper", "notch")
 _SETTINGS = tuple(RunSettings.model_fields)
 
 
 def read_groups(resolved: Mapping[str, object], problems: Problems) -> Parts:
-    """Return the valid groups of a config by name; a group that was read before, the same object, is not read again.
+    """Return the valid groups of a config by name; a group already read, the same object, is not read again.
 
     Args:
         resolved: The config as plain data, interpolations resolved.
-        problems: Takes what is wrong.
+        problems: Collects the problems found.
 
     Returns:
         The models of valid groups; "settings", the keys at the root; and "plugged", the configs of plug-ins by group.
@@ -84,7 +84,7 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Parts:
 
 
 def is_plugged(group: str, keys: Mapping[str, object] | None) -> bool:
-    """Tell whether a group with these keys is a plug-in's where another one has a model of ours."""
+    """Return True if the keys of a group select a plug-in instead of the built-in model."""
     return group in PLUGGED and keys is not None and "kind" in keys
 
 

@@ -22,7 +22,7 @@ from runner.trajectories.shaped import Shaped, ShapedJoints
 
 _KEY = "input_shaper.frequency"
 _MODE = re.compile(r"mode_([1-9]\d?)")
-_MOST = 4  # modes that one shaper leaves at rest: three impulses each
+_MOST = 4  # modes of one shaper: three impulses each
 
 
 def _frequency(value: Any) -> Any:
@@ -39,9 +39,9 @@ class InputShaperConfig(StrictModel):
 
     Attributes:
         kind: zv, two impulses half a period apart; zvd, three in one period.
-        frequency: Undamped frequency of the mode that is to be at rest after the motion, in Hz; mode_1, mode_2, ... of
-            the flexible plant where the arm starts, with its motors held; or a list of these.
-        damping_ratio: Damping ratio of those modes; None is the plant's own, and 0 for a frequency in Hz.
+        frequency: Undamped frequency of the mode to suppress, in Hz. Or mode_1, mode_2, ... of the flexible plant in
+            the start configuration with locked motors. Or a list of these.
+        damping_ratio: Damping ratio of these modes. None takes that of the plant, and 0 for a frequency in Hz.
     """
 
     kind: Literal["zv", "zvd"]
@@ -49,13 +49,13 @@ class InputShaperConfig(StrictModel):
     damping_ratio: Hertz[Annotated[float, Field(ge=0.0, lt=1.0)] | None]
 
     def find(self, modes: Sequence[Mode]) -> list[Mode]:
-        """Return the modes that are to be at rest after the motion.
+        """Return the modes to suppress.
 
         Args:
-            modes: Those of the plant.
+            modes: Modes of the plant.
 
         Raises:
-            ConfigError: for one that is not there.
+            ConfigError: for a mode that does not exist.
         """
         wanted = self.frequency if isinstance(self.frequency, list) else [self.frequency]
         found = [_find(each, modes) for each in wanted]
@@ -75,18 +75,18 @@ def shape(
 
     Args:
         config: The shaper.
-        plant: Config of the plant, of which modes are asked by name.
-        arm: The true arm.
-        path: The motion of the tip; where it follows from one of the joints, this is shaped.
-        q_start: Where the arm starts, shape (nq,), in rad.
+        plant: Config of the plant, which has the named modes.
+        arm: The simulated arm.
+        path: Motion of the tip; if it follows from a joint motion, the function shapes the joint motion.
+        q_start: Joint positions at the start, shape (nq,), in rad.
         loops: The control loops.
 
     Raises:
-        ConfigError: for a motion that goes on for ever, a mode that is not there, or one that the slowest loop cannot
-            see.
+        ConfigError: for a motion that never ends, a mode that does not exist, or a mode above half the rate of the
+            slowest loop.
     """
     if path.goal is None:
-        raise ConfigError(["input_shaper: the trajectory goes on for ever; take one that comes to rest, or none"])
+        raise ConfigError(["input_shaper: the trajectory never ends; take one that comes to rest, or none"])
     found, slowest = config.find(PLANTS.modes(plant, arm, q_start)), max(loop.period for loop in loops)
     unseen = [
         f"{_KEY}: {mode.frequency:.4g} Hz found; a loop of {slowest:g} s sees motions below {0.5 / slowest:.4g} Hz"
@@ -102,7 +102,7 @@ def shape(
 
 
 def _find(wanted: float | str, modes: Sequence[Mode]) -> Mode:
-    """Return the mode that a value names; of a frequency in Hz one without damping."""
+    """Return the mode that a value names; a frequency in Hz gives a mode without damping."""
     if not isinstance(wanted, str):
         return Mode(wanted, 0.0)
     number = int(wanted.removeprefix("mode_"))

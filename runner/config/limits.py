@@ -14,22 +14,22 @@ from runner.schema.units import Seconds
 
 _GB = 1e9  # bytes
 _NUMBER = 8  # bytes
-# Numbers that a run keeps of each tick, its stored trace and the metrics' arrays included: measured, rounded up.
+# Numbers that a run keeps for each tick, including its stored trace and the metrics' arrays: measured, rounded up.
 _OF_EACH_TICK, _OF_EACH_JOINT, _OF_CONTACT = 24, 13, 75
-# Metrics of an arm, of each of its joints, and of each stage that carries another; and bytes of each in a repetition:
-# as it is gathered, and as it is stored.
+# Metrics of an arm, of each joint, and of each stage below another. Bytes of each metric in a repetition: of its
+# gathered and of its stored value.
 _METRICS, _METRICS_OF_JOINT, _METRICS_OF_STAGE = 22, 4, 9
 _OF_EACH_METRIC = 12
 TICKS_AT_ONCE = 1_000_000
-"""Ticks of the repetitions of a run that are in memory at the same time; more where one alone has more."""
+"""Ticks of a run's repetitions in memory at the same time; more if a single repetition has more."""
 
 
 class LimitsConfig(StrictModel):
-    """Limits of what a command may cost; an estimate above one stops it before it begins.
+    """Limits of CPU time and memory; an estimate above a limit stops a command before it starts.
 
     Attributes:
         cpu_hours: Largest CPU time of all runs of a command together, in hours; None for no limit.
-        memory: Largest memory of one run, in GB (10^9 bytes); never more than half of the machine's, as for None.
+        memory: Largest memory of one run, in GB (10^9 bytes), up to half of the machine's memory; None for that half.
     """
 
     cpu_hours: PositiveFloat | None
@@ -37,15 +37,14 @@ class LimitsConfig(StrictModel):
 
 
 class SweepConfig(StrictModel):
-    """How the runs of a sweep are kept, and what happens to those that fail.
+    """Storage of a sweep's runs, and handling of runs that fail.
 
     Attributes:
-        trace: Which runs keep their trace, and with it a folder of their own: all, the failed ones and one in a
-            hundred, some 200 at most (sample), the failed ones, or none; auto is all up to some thousand runs, sample
-            above.
-        retry: Whether runs that failed in an earlier sweep are simulated again.
-        on_failure: What the first failed run does to the rest of the sweep.
-        attempts: How often a run is tried that was cut short: by its time limit, an error, or a worker's death.
+        trace: Runs that keep their trace in a separate folder: all; sample, the failed ones and one in a hundred, about
+            200 at most; failed; or never. auto means all for up to 3000 runs, and sample above.
+        retry: Choice of runs to simulate again: those that failed in an earlier sweep, or none.
+        on_failure: Reaction of the sweep to the first failed run.
+        attempts: Number of attempts at a run that a time limit, an error or the loss of a worker interrupts.
         time_limit: Longest wall-clock time of a run, in s, after which it is interrupted; None for no limit.
     """
 
@@ -57,7 +56,7 @@ class SweepConfig(StrictModel):
 
 
 def memory_of_run(arm: Robot, ticks: int, repetitions: int, has_contact: bool) -> float:
-    """Return the memory that a run takes beside the program, in bytes.
+    """Return the memory that a run needs in addition to the program, in bytes.
 
     Args:
         arm: The robot.
@@ -71,7 +70,7 @@ def memory_of_run(arm: Robot, ticks: int, repetitions: int, has_contact: bool) -
 
 
 def _of_repetition(arm: Robot) -> float:
-    """Return the memory that the metrics of a repetition take, in bytes."""
+    """Return the memory for the metrics of a repetition, in bytes."""
     metrics = _METRICS + _METRICS_OF_JOINT * arm.model.nq + _METRICS_OF_STAGE * (len(arm.stages) - 1)
     return float(_OF_EACH_METRIC * metrics)
 
@@ -80,7 +79,7 @@ def check_memory(limits: LimitsConfig, arm: Robot, timing: Timing, repetitions: 
     """Check that a run fits into memory; see memory_of_run.
 
     Raises:
-        ConfigError: if it would take more than `limits.memory`; gives the estimate, and how many repetitions would fit.
+        ConfigError: if it needs more than `limits.memory`; gives the estimate and the number of repetitions that fit.
     """
     needed, half = memory_of_run(arm, timing.ticks, repetitions, has_contact), half_of_memory()
     own = math.inf if limits.memory is None else _GB * limits.memory
@@ -103,10 +102,14 @@ def _told(half: float) -> str:
 
 
 def check_memory_together(needed: float, runs: int) -> None:
-    """Check that runs at a time, the largest of which needs so many bytes, fit into half of the machine's memory.
+    """Check that simultaneous runs fit into half of the machine's memory.
+
+    Args:
+        needed: Memory of the largest run, in bytes.
+        runs: Number of simultaneous runs.
 
     Raises:
-        ConfigError: if they do not; gives the estimate, and how many would fit.
+        ConfigError: if they do not; gives the estimate and the number of runs that fit.
     """
     half = half_of_memory()
     if runs * needed > half:
@@ -119,16 +122,16 @@ def check_memory_together(needed: float, runs: int) -> None:
 
 
 def check_cpu_time(limits: LimitsConfig, seconds: float, runs: int, known: str = "about") -> None:
-    """Check that what is to be computed does not take too long.
+    """Check that runs do not take too much CPU time.
 
     Args:
         limits: The limits.
-        seconds: CPU time that it takes, as estimated, in s.
+        seconds: Estimated CPU time, in s.
         runs: Number of runs.
-        known: What is known of the time: "about" that, "more than" that or "up to" that.
+        known: Kind of the estimate: "about", "more than" or "up to".
 
     Raises:
-        ConfigError: if it is more than `limits.cpu_hours`; gives the estimate.
+        ConfigError: if the estimate is above `limits.cpu_hours`; gives the estimate.
     """
     hours = seconds / 3600.0
     if limits.cpu_hours is not None and hours > limits.cpu_hours:

@@ -18,18 +18,18 @@ from runner.sensing.velocity import DEFAULT_BANDWIDTH, Velocity
 
 
 class NoiseConfig(StrictModel):
-    """Noise, bias and steps of the joint encoders.
+    """Noise, bias and resolution of the joint encoders.
 
     Attributes:
-        position: Half-width (uniform) or standard deviation (gaussian) of the joint-position noise, in rad; m
-            where a joint slides. By stage where the robot has several.
-        distribution: Its shape; with none, `position` has no effect.
-        bias: Constant error of the measured joint positions, in rad; m where a joint slides. By stage where the robot
-            has several: the same at every tick and in every repetition, as of a zero that is set wrong; of either sign.
-        resolution: Step to which the biased, noisy joint positions are rounded, in rad; m where a joint slides. By
-            stage likewise; 0 for none.
-        velocity: Whether joint velocities are exact, differences of the measured positions, these behind a first-order
-            low-pass, or those of a Luenberger observer of each joint.
+        position: Half-width (uniform) or standard deviation (gaussian) of the joint-position noise, in rad; m for
+            prismatic joints. By stage if the robot has several.
+        distribution: Distribution of the noise; with none, `position` has no effect.
+        bias: Constant error of the measured joint positions, such as a wrong zero, in rad; m for prismatic joints. By
+            stage if the robot has several. It has either sign and is the same at every tick and in every repetition.
+        resolution: Step to which the biased, noisy joint positions are rounded, in rad; m for prismatic joints. By
+            stage if the robot has several; 0 for no rounding.
+        velocity: Source of joint velocities: exact, differences of the measured positions, the same after a first-order
+            low-pass, or a Luenberger observer of each joint.
         velocity_bandwidth: Cut-off of the low-pass, and both poles of the observer, in rad/s.
     """
 
@@ -41,13 +41,13 @@ class NoiseConfig(StrictModel):
     velocity_bandwidth: RadiansPerSecond[PositiveFloat] = DEFAULT_BANDWIDTH
 
     def by_joint(self, arm: Robot) -> EncoderNoise:
-        """Return the noise, bias and step of each joint of a robot.
+        """Return the noise, bias and resolution of each joint of a robot.
 
         Raises:
             ConfigError: for values that do not fit the robot's stages.
         """
         names, joints = arm.stage_names, [stage.model.nq for stage in arm.stages]
-        # What was left out is zero for a robot of several stages, too.
+        # An omitted key is zero, also for a robot of several stages.
         zero: float | dict[str, float] = dict.fromkeys(names, 0.0) if len(names) > 1 else 0.0
         biases = self.bias if "bias" in self.model_fields_set else zero
         steps = self.resolution if "resolution" in self.model_fields_set else zero
@@ -71,7 +71,7 @@ class NoiseConfig(StrictModel):
 
 
 def _no_angles(key: str, values: Sequence[float], arm: Robot) -> list[str]:
-    """Return a problem for each stage with an error of more than half a turn of joints that turn."""
+    """Return a problem for each stage whose revolute joints have an error of more than half a turn."""
     several = len(arm.stages) > 1
     return [
         f"{key}{f'.{stage.name}' if several else ''}: {value:g} rad is more than half a turn, and no measurement of an "
@@ -82,6 +82,6 @@ def _no_angles(key: str, values: Sequence[float], arm: Robot) -> list[str]:
 
 
 def exact_encoders(joints: int) -> EncoderNoise:
-    """Return no noise, for a robot with a number of joints whose encoders are a plug-in's."""
+    """Return zero noise, for a robot whose encoders are a plug-in, by the number of joints."""
     zero = np.zeros(joints)
     return EncoderNoise(zero, zero, zero, "none", "exact")

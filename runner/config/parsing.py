@@ -22,7 +22,7 @@ def group_of(group: str, resolved: Mapping[str, object]) -> Mapping[str, object]
     """Return the keys of a group of a config.
 
     Raises:
-        ConfigError: if it is missing, or no group.
+        ConfigError: if the group is missing or not a mapping.
     """
     value = resolved.get(group)
     if not isinstance(value, Mapping):
@@ -31,11 +31,11 @@ def group_of(group: str, resolved: Mapping[str, object]) -> Mapping[str, object]
 
 
 def parse_kind(kinds: Kinds, value: Mapping[str, object]) -> StrictModel:
-    """Return a group whose `kind` says which model it has, checked.
+    """Return a group checked by the model of its `kind`.
 
     Args:
-        kinds: The kinds that it may have.
-        value: Its keys.
+        kinds: Kinds that the group may have.
+        value: Keys of the group.
 
     Raises:
         ConfigError: with every problem of the group.
@@ -46,7 +46,7 @@ def parse_kind(kinds: Kinds, value: Mapping[str, object]) -> StrictModel:
 
 
 def parse_robot(value: Mapping[str, object]) -> RobotConfig:
-    """Return the group of the robot, of one arm or of several stages, checked.
+    """Return the checked group of the robot, with one arm or several stages.
 
     Raises:
         ConfigError: with every problem of the group.
@@ -55,7 +55,7 @@ def parse_robot(value: Mapping[str, object]) -> RobotConfig:
 
 
 def parse(group: str, model: type[M], value: Mapping[str, object]) -> M:
-    """Return values checked by a model; `group` is "" for those at the root.
+    """Return values checked by a model; `group` is "" for values at the root.
 
     Raises:
         ConfigError: with every problem found.

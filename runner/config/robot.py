@@ -45,19 +45,19 @@ class ArmConfig(StrictModel):
     """One arm.
 
     Attributes:
-        urdf: Its URDF: a file among ours, in a config folder of the user's, or an absolute path; None where it has an
-            MJCF.
-        mjcf: Its MJCF, MuJoCo's format, found likewise; None where it has a URDF.
-        tip: Name of its tip frame.
-        home: Joint positions at home, in rad; m where a joint slides.
-        inertials: Set of masses, centres of mass and inertias, of those in `<urdf>.inertials.yaml`, in place of the
-            file's; None keeps these.
-        masses: Mass of links by name, in kg, in place of the file's or the set's.
-        armature: Reflected inertia of motor and gear, N^2 J, in kg m^2; kg where a joint slides. It adds to the
-            diagonal of the mass matrix and to nothing else. One for all joints, a list with one for each, or the name
-            of a set of those in `<urdf>.armature.yaml`.
-        velocity_limits: Largest speed of joints by name, in rad/s; m/s where a joint slides. They stand in place of the
-            file's; an MJCF has none.
+        urdf: URDF of the arm: a built-in file, a file in a config folder of the user, or an absolute path. None if the
+            arm has an MJCF.
+        mjcf: MJCF (MuJoCo's format) of the arm, found in the same places; None if the arm has a URDF.
+        tip: Name of the tip frame.
+        home: Joint positions at home, in rad; m for prismatic joints.
+        inertials: Name of a set of masses, centres of mass and inertias in `<urdf>.inertials.yaml`, used instead of
+            those in the file; None keeps those in the file.
+        masses: Mass of links by name, in kg, used instead of that in the file or the set.
+        armature: Reflected inertia of motor and gear, N^2 J, in kg m^2; kg for prismatic joints. It adds only to the
+            diagonal of the mass matrix. One value for all joints, a list with one for each, or the name of a set in
+            `<urdf>.armature.yaml`.
+        velocity_limits: Largest speed of joints by name, in rad/s; m/s for prismatic joints. It replaces the limit in
+            the file; an MJCF has none.
     """
 
     urdf: FileName | None
@@ -71,10 +71,10 @@ class ArmConfig(StrictModel):
 
 
 class MountConfig(StrictModel):
-    """Where an arm is mounted on the one below.
+    """Mount of an arm on the arm below.
 
     Attributes:
-        frame: Link of the arm below (by its own name there) on which the root link is fixed.
+        frame: Link of the arm below on which the root link is fixed, by its name in that arm.
         translation: Origin of the root in that link's frame, in m.
         rotation: Roll, pitch, yaw of the root in that link's frame, in rad.
     """
@@ -88,18 +88,18 @@ class StageConfig(ArmConfig):
     """One arm of several, from the base outwards.
 
     Attributes:
-        mount: Where it is mounted; None for the first stage alone.
+        mount: Mount on the arm below; None only for the first stage.
     """
 
     mount: MountConfig | None
 
 
 class PayloadChange(StrictModel):
-    """Another payload from some time on.
+    """Change of the payload at a time.
 
     Attributes:
-        at: Time of the change, in s: the first tick then or later.
-        mass: The payload's mass from then on, in kg.
+        at: Time of the change, in s; it takes effect at the first tick from this time on.
+        mass: Mass of the payload from then on, in kg.
     """
 
     at: Seconds[PositiveFloat]
@@ -107,13 +107,13 @@ class PayloadChange(StrictModel):
 
 
 class PayloadConfig(StrictModel):
-    """A point mass fixed at the tip, which both the plant and the controllers' model hold.
+    """A point mass fixed at the tip, which both the plant and the controllers' model contain.
 
     Attributes:
-        mass: Its mass, in kg.
-        position: Its place in the tip frame, in m.
-        schedule: Changes of the true arm's payload on the way, as `{at: 1.5, mass: 2.0}`, in s and kg, one after
-            another; the controllers go on to believe `mass`.
+        mass: Mass of the payload, in kg.
+        position: Position in the tip frame, in m.
+        schedule: Changes of the simulated arm's payload during the run, such as `{at: 1.5, mass: 2.0}`, in s and kg, in
+            order of time. The controllers' model keeps `mass`.
     """
 
     mass: Kilograms[NonNegativeFloat]
@@ -130,19 +130,19 @@ class PayloadConfig(StrictModel):
 
     @property
     def largest(self) -> float:
-        """The largest mass of all times, in kg."""
+        """Largest mass during the run, in kg."""
         return max([self.mass, *(change.mass for change in self.schedule)])
 
 
 class ToolConfig(StrictModel):
-    """A rigid tool on the flange, which both the plant and the controllers' model hold; its tip is what is controlled.
+    """A rigid tool on the flange, which both the plant and the controllers' model contain; its tip is controlled.
 
     Attributes:
-        mass: In kg.
-        centre_of_mass: In the flange's frame, in m.
-        inertia: Principal moments about the centre of mass, along the flange's axes, in kg m^2.
-        tip: Its tip, the tool centre point, in the flange's frame, in m.
-        tip_radius: Radius of the ball at its tip that touches walls, in m.
+        mass: Mass of the tool, in kg.
+        centre_of_mass: Centre of mass in the flange frame, in m.
+        inertia: Principal moments about the centre of mass, along the axes of the flange frame, in kg m^2.
+        tip: Tip of the tool (tool centre point) in the flange frame, in m.
+        tip_radius: Radius of the ball at the tip that touches walls, in m.
     """
 
     mass: Kilograms[PositiveFloat]
@@ -153,25 +153,25 @@ class ToolConfig(StrictModel):
 
 
 class RobotConfig(StrictModel):
-    """A robot of one arm or of several, by the values of its sources; other groups take them as `${robot.x}`.
+    """A robot of one arm or several, with the values of its sources; other groups use them as `${robot.x}`.
 
     Attributes:
-        name: Its name.
-        start: Tip position where trajectories start, in m; None is the tip at home.
-        goal: Tip position that goal, quintic and line go to, in m.
-        path_size: Size of the paths that have one, such as a circle's radius, in m.
-        tool: What is fixed on its tip frame, whose own tip is controlled then; None for nothing.
-        friction: Friction in its joints, which plants that take torques have; over all stages where there are several.
-        payload: What its tip carries.
-        rated_payload: The largest payload that its maker allows, in kg; None where none is stated.
-        natural_frequency: omega_n of its controller, in rad/s, by stage where it has several; so all that follow.
-        damping_ratio: xi of its controller.
-        period: Its controller's period, in s.
-        joint_error_limit: Error of its joint positions, in rad; m where a joint slides.
-        no_joint_error: Zero for each stage, which `noise: none` takes.
-        torque_limit: Its largest continuous torque, in N m; N where a joint slides. None where none is stated beside
-            the URDF's efforts.
-        settling_band: Tip error within which it counts as settled, on each axis, in m.
+        name: Name of the robot.
+        start: Tip position where trajectories start, in m; None for the tip at home.
+        goal: Tip position at the end of goal, quintic and line, in m.
+        path_size: Size of paths that have one, such as the radius of a circle, in m.
+        tool: Tool fixed on the tip frame; the tip of the tool is then controlled. None for no tool.
+        friction: Joint friction in plants that take torques, for the joints of all stages.
+        payload: Payload at the tip.
+        rated_payload: Largest payload that the manufacturer allows, in kg; None if none is stated.
+        natural_frequency: omega_n of the controller, in rad/s; by stage if the robot has several.
+        damping_ratio: xi of the controller; by stage if the robot has several.
+        period: Period of the controller, in s; by stage if the robot has several.
+        joint_error_limit: Error of joint positions, in rad; m for prismatic joints. By stage if the robot has several.
+        no_joint_error: Zero for each stage, which `noise: none` uses.
+        torque_limit: Largest continuous torque, in N m; N for prismatic joints. By stage if the robot has several; None
+            if the sources state only the efforts in the URDF.
+        settling_band: Largest tip error of a settled motion on each axis, in m.
     """
 
     name: Name
@@ -192,17 +192,17 @@ class RobotConfig(StrictModel):
 
     @property
     def arms(self) -> Mapping[str, ArmConfig]:
-        """Its arms by name, from the base outwards."""
+        """Arms by name, from the base outwards."""
         raise NotImplementedError
 
     @property
     def burden(self) -> float:
-        """Largest mass of what its tip carries, tool and payload, in kg."""
+        """Largest mass of tool and payload together, in kg."""
         return self.payload.largest + (0.0 if self.tool is None else self.tool.mass)
 
     @property
     def warnings(self) -> list[str]:
-        """What is unusual in these values though a calibration goes on; a run has a caveat in their place."""
+        """Warnings about unusual values, for a calibration; a run has a caveat instead."""
         tool = 0.0 if self.tool is None else self.tool.mass
         if self.rated_payload is None or self.burden <= self.rated_payload:
             return []
@@ -222,12 +222,12 @@ class OneArmConfig(RobotConfig, ArmConfig):
 
     @property
     def arms(self) -> dict[str, ArmConfig]:
-        """Its one stage, named after it."""
+        """The only stage, with the name of the robot."""
         return {self.name: self}
 
 
 class StagedRobotConfig(RobotConfig):
-    """A robot of arms riding on each other.
+    """A robot of arms mounted on each other.
 
     Attributes:
         stages: The arms by name, from the base outwards.
@@ -237,5 +237,5 @@ class StagedRobotConfig(RobotConfig):
 
     @property
     def arms(self) -> dict[str, StageConfig]:
-        """Its stages."""
+        """Stages of the robot."""
         return self.stages

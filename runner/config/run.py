@@ -32,29 +32,29 @@ class RunConfig:
     Attributes:
         settings: The keys at the root.
         robot: Config of the robot.
-        arm: Its rigid-body model, stage by stage.
-        loaded: When the true arm's payload changes, in s, and the robot with it from then on.
-        plant: Config of the plant, of the model that its kind names.
-        controller: Config of the controller, likewise.
-        loops: The control loops that it makes for the robot as it is.
-        commands: Whether they give joint torques, or joint positions to a plant that follows them.
+        arm: Rigid-body model of the robot, stage by stage.
+        loaded: Time of each change of the simulated arm's payload, in s, and the robot from then on.
+        plant: Config of the plant, by the model of its kind.
+        controller: Config of the controller, by the model of its kind.
+        loops: Control loops of the controller for the robot without model error.
+        commands: Quantity that the loops command: joint torques, or joint positions for a plant that follows them.
         path: The desired motion of the tip.
-        environment: Config of the world around the tip, of the model that its kind names.
+        environment: Config of the environment of the tip, by the model of its kind.
         noise: Noise and steps of each joint's encoder.
         torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
         wrist_sensor: Config of the force/torque sensor.
-        joint_torques: Noise and bias of each joint's torque sensor, shapes (nq,), in N m; None where there are none.
+        joint_torques: Noise and bias of each joint's torque sensor, shapes (nq,), in N m; None for no sensors.
         endpoint_sensor: Config of the sensor of the tip's position.
-        mismatch: How what the controllers believe of the robot differs from it.
-        disturbance_observer: Config of the observer that control laws carry.
-        notch: Config of the notch in the torques; None where there is none.
+        mismatch: Difference between the controllers' model and the robot.
+        disturbance_observer: Config of the disturbance observer of the control laws.
+        notch: Config of the notch filter for torques; None for no filter.
         timing: The times of a run.
-        ignore_base_rotation: Whether riding stages keep the orientation of home, in the plant's truth.
-        sweep: How a sweep that the run is part of is run.
-        limits: What a command may cost.
-        caveats: When a run tells that its result may mislead.
-        spec: Bounds on metrics, of which it tells how often they are kept.
-        plugged: Configs of plug-ins in place of ours, by group: encoders, sensors, mismatch.
+        ignore_base_rotation: True if mounted stages keep the orientation of home in the plant.
+        sweep: Config of the sweep that contains the run.
+        limits: Limits of CPU time and memory.
+        caveats: Thresholds of the caveats of a run.
+        spec: Bounds on metrics; the runner reports how often they are met.
+        plugged: Configs of plug-ins that replace built-in parts, by group: encoders, sensors, mismatch.
         resolved: The composed config as plain data, interpolations resolved.
     """
 
@@ -86,12 +86,12 @@ class RunConfig:
     resolved: Mapping[str, object]
 
     def with_seed(self, resolved: Mapping[str, object]) -> "RunConfig":
-        """Return the same run with the seed of another config, from which it differs in nothing else."""
+        """Return the same run with the seed of another config, the only difference between the two."""
         return replace(self, settings=self.settings.model_copy(update={"seed": resolved["seed"]}), resolved=resolved)
 
     @property
     def cache_key(self) -> tuple[object, ...]:
-        """All parts of a run but its seed: numbers, and objects that several configs share; see Memory."""
+        """All parts of a run except its seed: numbers, and objects that several configs share; see Memory."""
         parts = (part for name, part in vars(self).items() if name not in _OF_ONE_RUN)
         times = (part for name, part in vars(self.timing).items() if name != "late")
         several = (*self.loaded, *self.plugged.items(), self.joint_torques or (), self.timing.late)
@@ -99,7 +99,7 @@ class RunConfig:
 
     @property
     def compilable(self) -> bool:
-        """Whether compiled code knows all that measures in the run, and what controllers believe."""
+        """True if compiled code supports all sensors of the run and the controllers' model."""
         return not self.plugged and not self.endpoint_sensor.read_by
 
     @property
@@ -109,7 +109,7 @@ class RunConfig:
 
     @property
     def warnings(self) -> list[str]:
-        """What is unusual in the config though it can be run."""
+        """Warnings about unusual values in a valid config."""
         model = self.arm.model
         file = "robot.mjcf" if any(arm.mjcf for arm in self.robot.arms.values()) else "robot.urdf"
         found: list[str] = []
@@ -121,7 +121,7 @@ class RunConfig:
 
 
 def _zero_limits(joint: str, kind: str, limits: FloatArray, so: str, model: RobotModel) -> list[str]:
-    """Return a warning for each joint with a limit of zero: many programs write 0 where they know none."""
+    """Return a warning for each joint with a limit of zero: many programs write 0 for an unknown limit."""
     return [
         f"{joint} '{name}' has the {kind} limit 0, and {so}; is its limit missing?"
         for name, limit in zip(model.joint_names, limits, strict=True)

@@ -12,11 +12,11 @@ class RunSettings(StrictModel):
     """The keys at the root of a config.
 
     Attributes:
-        seed: Seed from which, with the repetition, every random number follows.
+        seed: Seed of all random numbers, together with the number of the repetition.
         repetitions: Number of closed-loop runs in the job.
-        duration: Length of a run, in s; None leaves it to the trajectory.
+        duration: Length of a run, in s; None takes the duration of the trajectory.
         gravity: Magnitude of gravity along -z of the base, in m/s^2, for the plant and the controllers' model.
-        plant_error: Whether the run is held against the same run on Runge-Kutta; see runner/metrics/plant_error.py.
+        plant_error: True to compare the run with the same run on Runge-Kutta; see runner/metrics/plant_error.py.
         outputs: Folder in which runs are stored.
     """
 
@@ -29,15 +29,15 @@ class RunSettings(StrictModel):
 
 
 class PresetConfig(StrictModel):
-    """A table of values that other groups take as `${preset.x}`; see there for what they mean.
+    """A table of values that other groups take as `${preset.x}`; those groups explain them.
 
     Attributes:
-        gravity_compensation: For controllers.
-        feedforward: For controllers.
-        macro_target: For stage-wise control.
-        mini_reference_velocity: For stage-wise control.
-        wrist_rotation: For stage-wise control and plants.
-        dynamics: For plants.
+        gravity_compensation: Value for controllers.
+        feedforward: Value for controllers.
+        macro_target: Value for stage-wise control.
+        mini_reference_velocity: Value for stage-wise control.
+        wrist_rotation: Value for stage-wise control and plants.
+        dynamics: Value for plants.
     """
 
     gravity_compensation: bool

@@ -16,12 +16,12 @@ _METRICS = "metrics"
 
 
 class Bound(StrictModel):
-    """Where a metric has to lie, ends included.
+    """Closed range of a metric.
 
     Attributes:
-        min: Lower end, in the metric's unit; left out or null, it is open below.
-        max: Upper end, likewise.
-        reason: Why it lies there; may be left out.
+        min: Lower end, in the metric's unit; no lower end if omitted or null.
+        max: Upper end, in the metric's unit; no upper end if omitted or null.
+        reason: Reason for the bound; may be omitted.
     """
 
     min: float | None = None
@@ -37,7 +37,7 @@ class Bound(StrictModel):
         return self
 
     def holds(self, value: float) -> bool:
-        """Tell whether a value lies there; NaN, that is none, does not."""
+        """Return True if a value is within the bound; False for NaN, a missing value."""
         low = -math.inf if self.min is None else self.min
         high = math.inf if self.max is None else self.max
         return low <= value <= high
@@ -47,7 +47,7 @@ class SpecConfig(StrictModel):
     """Bounds on metrics.
 
     Attributes:
-        metrics: The bound of each metric, by its name; it may carry a stage in front and a joint or axis behind.
+        metrics: Bound of each metric, by name; a name may begin with a stage and end with a joint or axis.
     """
 
     metrics: dict[str, Bound]
@@ -55,7 +55,7 @@ class SpecConfig(StrictModel):
     @field_validator("metrics", mode="before")
     @classmethod
     def _check_names(cls, value: Any) -> Any:
-        """Refuse what is no metric at all; which of them a run has shows when it has ended."""
+        """Reject unknown names of metrics; only the results show which metrics a run has."""
         if not isinstance(value, Mapping) or not value:
             return value
         known = units()

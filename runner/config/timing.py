@@ -18,7 +18,7 @@ _MAX_STEPS = 100_000  # of the plant in a tick
 
 
 class Steps(NamedTuple):
-    """How time is divided.
+    """Time steps of loops and plant.
 
     Attributes:
         tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
@@ -39,8 +39,8 @@ class Timing:
         tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
         step: Integration step of the plant, in s.
         steps_per_tick: Integration steps in one tick.
-        late: Ticks from a command until it acts, of each control loop, without jitter.
-        even: Whether every command acts, all of a loop as late.
+        late: Delay of the commands of each control loop, in ticks, without jitter.
+        even: True if every command acts, and all commands of a loop have the same delay.
         ticks: Number of ticks of the run.
     """
 
@@ -53,16 +53,16 @@ class Timing:
 
     @property
     def delay(self) -> int | None:
-        """Ticks from any command until it acts; None where they differ."""
+        """Delay of all commands, in ticks; None if delays differ."""
         return self.late[0] if self.even and len(set(self.late)) == 1 else None
 
 
 def count_steps(arm: Robot, plant: PlantConfig, controller: ControllerConfig) -> Steps:
-    """Return how time is divided for a plant and its controller.
+    """Return the time steps for a plant and its controller.
 
     Raises:
-        ConfigError: if a period is no multiple of the fastest one, or that no multiple of the plant's step or too many
-            of it, or the servo is slower than its commands.
+        ConfigError: for a period that is not a multiple of the fastest one, for a fastest period that is not a multiple
+            of the plant step or has too many steps, or for a servo slower than its commands.
     """
     periods = _periods(arm, controller.period)
     slowest = max(periods.values())
@@ -112,7 +112,7 @@ def count_ticks(settings: RunSettings, steps: Steps, path: Trajectory) -> int:
 
 
 def _periods(arm: Robot, period: float | Mapping[str, float]) -> dict[str, float]:
-    """Return the period of each loop by its key; a controller with one period has one loop, whatever the stages."""
+    """Return the period of each loop by its key; a controller with one period has one loop for all stages."""
     if isinstance(period, Mapping):
         by_name: list[float] = by_stage("controller.period", period, arm.stage_names)
         return {f"controller.period.{name}": value for name, value in zip(arm.stage_names, by_name, strict=True)}

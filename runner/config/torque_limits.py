@@ -14,14 +14,14 @@ class TorqueLimitsConfig(StrictModel):
     """Limits of the joint torques.
 
     Attributes:
-        max: Largest magnitude of the torque, in N m; N where a joint slides. One for all joints, or a list with
-            one for each, by stage where the robot has several; None is no limit.
+        max: Largest magnitude of the torque, in N m; N for prismatic joints. One value for all joints, or a list with
+            one for each; by stage if the robot has several. None for no limit.
     """
 
     max: JointTorque[TorquePerStage | None]
 
     def by_joint(self, arm: Robot) -> FloatArray:
-        """Return the limit of each joint of a robot, shape (nq,), in N m: the URDF's effort where that is smaller.
+        """Return the limit of each joint of a robot, shape (nq,), in N m: the effort in the URDF if it is smaller.
 
         Raises:
             ConfigError: for values that do not fit the robot's stages and joints.

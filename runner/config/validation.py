@@ -48,11 +48,12 @@ _MEMORY = Memory(4096)
 def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -> RunConfig:
     """Check a composed config.
 
-    What groups give is kept for configs that share them, as a sweep's cells do: they must not be changed.
+    The objects built from groups are cached for configs with the same groups, such as the cells of a sweep. Callers
+    must not change them.
 
     Args:
         resolved: The config as plain data, interpolations resolved.
-        config_dirs: Config folders of the user's, in which URDFs are looked for.
+        config_dirs: Config folders of the user, searched for URDFs.
 
     Raises:
         ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
@@ -87,7 +88,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
 
 
 def _build(groups: Parts, arm: Robot, steps: Steps, problems: Problems) -> Parts:
-    """Return parts of a RunConfig that are built from valid groups; a user-supplied part may remember other runs.
+    """Return parts of a RunConfig built from valid groups; user-supplied ones may have state and are not cached.
 
     Raises:
         ConfigError: with every problem found.
@@ -115,7 +116,7 @@ def _build(groups: Parts, arm: Robot, steps: Steps, problems: Problems) -> Parts
 
 
 def _shape(groups: Parts, arm: Robot, path: Trajectory, loops: tuple[Loop, ...]) -> Trajectory:
-    """Return the desired motion as an input shaper leaves it, if any; it starts where the motion itself does."""
+    """Return the desired motion after the input shaper, if any; both have the same start."""
     shaper, controller, plant = groups.get("input_shaper"), groups["controller"], groups["plant"]
     if shaper is None:
         return path
@@ -154,7 +155,7 @@ def _check_commands(plant: PlantConfig, controller: ControllerConfig) -> None:
 
 
 def _check_mass(arm: Robot, plant: PlantConfig) -> None:
-    """Refuse torques where there is nothing that they could move: MuJoCo would move its least inertia."""
+    """Reject torques on joints that move no mass: MuJoCo would move its minimum inertia instead."""
     model = arm.model
     bodies = zip(model.joint_names, list(model.pin_model.inertias)[1:], model.armature, strict=True)
     moved = [name for name, body, armature in bodies if armature or body.mass or body.inertia.any()]
@@ -170,7 +171,7 @@ def _ignores_base_rotation(arm: Robot, plant: PlantConfig) -> bool:
 
 
 def _build_path(arm: Robot, trajectory: KindConfig, ignore_base_rotation: bool) -> Trajectory:
-    """Return the desired motion, which starts at the tip of home where the config does not say."""
+    """Return the desired motion, which starts at the tip position at home unless the config gives a start."""
     joints = TRAJECTORIES.joint_motion(trajectory, arm)
     if joints is not None:
         return TipOfJoints(arm, joints, ignore_base_rotation)

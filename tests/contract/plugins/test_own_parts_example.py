@@ -153,7 +153,7 @@ def test_a_run_with_encoders_of_a_plugin_has_no_derivatives(own, cli):
 def test_a_calibration_takes_our_wrist_sensor_alone(cli):
     ending = cli("calibrate", "--config-dir", HERE, "wrist_sensor=crosstalk")
     assert ending.code == 2
-    assert "a calibration takes our force/torque sensor alone; found the plug-in 'crosstalk'" in ending.err
+    assert "a calibration supports only the built-in force/torque sensor; found the plug-in 'crosstalk'" in ending.err
 
 
 COMMANDS = [

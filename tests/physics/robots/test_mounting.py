@@ -103,7 +103,7 @@ def test_names_that_would_stand_twice_are_refused(mounted, mini_urdf):
     [
         (
             "robot.stages.macro.mount={frame: tip, translation: [0,0,0], rotation: [0,0,0]}",
-            "robot.stages.macro.mount: the first stage stands on the ground; allowed: null",
+            "robot.stages.macro.mount: the first stage is fixed to the ground; allowed: null",
         ),
         (
             "robot.stages.mini.mount=null",

@@ -112,7 +112,7 @@ def test_the_names_of_runs_without_a_shaper_know_nothing_of_it():
         (("input_shaper.frequency=[]",), "found []"),
         (("input_shaper.damping_ratio=1",), "input_shaper.damping_ratio: must be below 1"),
         (("input_shaper.kind=zvdd",), "did you mean zvd?"),
-        (("trajectory=circle", "trajectory.easing=none"), "input_shaper: the trajectory goes on for ever"),
+        (("trajectory=circle", "trajectory.easing=none"), "input_shaper: the trajectory never ends"),
     ],
 )
 def test_what_does_not_fit_is_refused(overrides, expected):

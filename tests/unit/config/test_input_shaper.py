@@ -49,7 +49,7 @@ def test_a_mode_that_the_plant_lacks_is_told(modes, problem):
 @pytest.mark.parametrize(
     ("override", "problem"),
     [
-        ("trajectory=circle trajectory.easing=none", "input_shaper: the trajectory goes on for ever"),
+        ("trajectory=circle trajectory.easing=none", "input_shaper: the trajectory never ends"),
         ("trajectory=quintic", r"input_shaper.frequency: 1000 Hz found; a loop of 0.01 s sees motions below 50 Hz"),
     ],
 )

@@ -38,4 +38,4 @@ def test_a_type_is_told_in_words(annotation, words):
 
 def test_meanings_are_those_of_the_docstring():
     assert set(meanings(NoiseConfig)) == set(NoiseConfig.model_fields)
-    assert meanings(NoiseConfig)["distribution"] == "Its shape; with none, `position` has no effect."
+    assert meanings(NoiseConfig)["distribution"] == "Distribution of the noise; with none, `position` has no effect."
