@@ -21,20 +21,21 @@ Named = tuple[str, Simulated]
 
 
 def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, writer: ResultWriter) -> tuple[set[str], bool]:
-    """Simulate those of some runs that can be simulated together; return which are made, and whether one failed.
+    """Simulate the runs of a chunk that can share a batch; return the names of the finished ones and if one failed.
 
-    Runs of so many repetitions that their records do not list them are left to be made one by one, block after block.
+    A run with too many repetitions for its record to list is left out. The caller simulates it on its own, block after
+    block.
 
-    Where anything goes wrong with them all, as a part of the user's may do, the rest is left to be made one by one,
-    which tells whose fault it is.
+    If the batch raises an error, for example in a plug-in, the runs that are left are not simulated here. The caller
+    simulates them one by one, which shows which run caused the error.
 
     Args:
-        jobs: Name and checked config of each.
-        rules: How they are made and kept; the limit of a run's time holds for those that end together.
-        writer: Takes what is made.
+        jobs: Name and checked config of each run.
+        rules: Rules for the execution and storage of the runs; the time limit applies to runs that end together.
+        writer: Writer of the finished runs.
 
     Raises:
-        StoreError: if the disk does not take it.
+        StoreError: if a run cannot be written.
     """
     batcher, texts, made, failed = BatchSimulator(), JsonTexts(), set[str](), False
     try:
@@ -65,14 +66,14 @@ def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, writer: ResultW
 
 
 def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> Iterator[ShardRow]:
-    """Yield runs that ended well as rows of a shard."""
+    """Yield successful runs as rows of a shard."""
     alike: dict[tuple[object, ...], list[Named]] = {}
     for name, run in runs:
         alike.setdefault((run.names, len(run.values)), []).append((name, run))
     for some in alike.values():
         names, values = some[0][1].names, np.array([run.values for _, run in some])  # runs, repetitions, metrics
         if np.isinf(values).any():
-            raise ValueError("a metric is infinite, which is no number in JSON")
+            raise ValueError("a metric is infinite, which JSON does not allow")
         metrics = tuple(zip(names, units_of(names), strict=True))
         records = record_texts(
             values.shape[1],
@@ -88,7 +89,7 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> I
 
 
 def _provenance(job: Job, batcher: BatchSimulator) -> dict[str, object]:
-    """Return where a run comes from, which is much the same for runs that share their parts."""
+    """Return the provenance of a run; runs with the same components share most of it."""
     config, composed = job
     key = ("provenance", composed.choices, *config.cache_key)
     common = batcher.memory.known(key, lambda: job_provenance(config, composed))

@@ -21,7 +21,7 @@ from runner.simulation import provenance
 from runner.store.kinds import note
 
 CALIBRATION = "calibrate"
-"""Root of a calibration's config; that of a run is "config"."""
+"""Root of a calibration's config; the root of a run's config is "config"."""
 LEVEL = 0.99
 """Probability of the band in which the mean normalised error squared must lie."""
 TICKS = 200
@@ -29,17 +29,17 @@ TICKS = 200
 
 
 def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibration:
-    """Do what `runner calibrate OVERRIDES` does, from Python.
+    """Run `runner calibrate OVERRIDES` from Python.
 
     Args:
         overrides: Hydra overrides, such as "calibration=gravity" and "calibration.orientations=8".
-        config_dirs: Config folders of the user's, searched before ours.
+        config_dirs: User config folders, searched before the built-in ones.
 
     Returns:
-        The stored calibration; found stored, it is not carried out again.
+        The stored calibration; an existing one is reused.
 
     Raises:
-        ConfigError: for a config that cannot be carried out; lists all its problems.
+        ConfigError: if the calibration cannot be carried out; the error lists all problems of the config.
         StoreError: if the outputs folder cannot be written.
     """
     composed = compose(overrides, config_dirs, root=CALIBRATION)
@@ -59,11 +59,11 @@ def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibr
 
 
 def carry_out(config: CalibrationConfig, composed: Composed) -> dict[str, Any]:
-    """Repeat a calibration; return what is to be stored of it.
+    """Repeat a calibration; return the record to store.
 
     Args:
         config: The checked config.
-        composed: What it was checked from, for provenance.
+        composed: The composed config before its check, for provenance.
     """
     wall = time.perf_counter()
     procedure, settings = config.procedure, config.settings
@@ -102,7 +102,7 @@ def _table(units: Mapping[str, str], rows: Iterable[FloatArray | Sequence[float]
 
 
 def judge(outcomes: Sequence[Outcome]) -> dict[str, Any] | None:
-    """Return whether the errors are as large as the covariances say; None where some error is taken to be zero."""
+    """Return the consistency of the errors with their covariances; None if a variance is zero."""
     covariances = np.array([outcome.covariance for outcome in outcomes])
     if not (np.diagonal(covariances, axis1=1, axis2=2) > 0.0).all():
         return None

@@ -1,4 +1,4 @@
-"""Check of a plan: all its cells are composed and checked before the first run."""
+"""Check of a plan: composes and checks all cells before the first run."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -33,14 +33,14 @@ class Checked:
 
     Attributes:
         names: Hash of each cell's run or calibration.
-        costs: Ticks of all its repetitions together, shape (cells,).
-        calibrations: The cells that are calibrations, not runs.
-        outputs: Folder in which they are stored.
+        costs: Number of ticks of each cell, summed over its repetitions, shape (cells,).
+        calibrations: Numbers of the cells that are calibrations, not runs.
+        outputs: Outputs folder of the runs and calibrations.
         settings: Settings of the sweep.
         limits: Limits of CPU time and memory.
         spec: Bounds on metrics.
-        resolved: What differs between the configs of the runs.
-        memory: What the largest of its runs takes, in bytes.
+        resolved: Values that differ between the configs of the runs.
+        memory: Memory of the largest run, in bytes.
     """
 
     names: Names
@@ -55,10 +55,10 @@ class Checked:
 
 
 def check(plan: Plan) -> Checked:
-    """Compose and check all cells of a plan, at least one of them a run.
+    """Compose and check all cells of a plan, which contains at least one run.
 
     Raises:
-        ConfigError: telling each problem once, with the first cell that has it.
+        ConfigError: if a cell has a problem; each problem is listed once, with the first cell that has it.
     """
     names, costs = np.empty(len(plan), dtype="S24"), np.empty(len(plan), dtype=np.int64)
     calibrations: set[int] = set()
@@ -108,13 +108,13 @@ class _Problems:
         return bool(self._found)
 
     def add(self, error: ConfigError, block: Block) -> None:
-        """Take the problems of the cells of a block."""
+        """Add the problems of the cells of a block."""
         for problem in error.problems:
             first, count = self._found.get(problem, (block.cells[0], 0))
             self._found[problem] = min(first, block.cells[0]), count + len(block.cells)
 
     def report(self, plan: Plan) -> NoReturn:
-        """End the check, with the problems in the order of the cells.
+        """Raise an error with the problems in the order of the cells.
 
         Raises:
             ConfigError: always.
@@ -152,7 +152,7 @@ def _shared(config: RunConfig) -> tuple[object, ...]:
 def _check_assembly(
     composed: Composed, config: RunConfig, assembled: dict[tuple[str, bytes], ConfigError | None]
 ) -> None:
-    """Assemble each robot on each plant from each start once: some problems show only there."""
+    """Assemble each robot with each plant and start once; some problems appear only during assembly."""
     parts = [json_text(composed.resolved[group]) for group in ("robot", "plant")]
     key = ", ".join(parts), config.path.start.tobytes()
     if key not in assembled:

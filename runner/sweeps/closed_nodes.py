@@ -6,16 +6,16 @@ from distributed import Scheduler, Worker
 
 
 def _open_nothing(*_: Any, **__: Any) -> None:
-    """Stand in for `start_http_server`."""
+    """Replace `start_http_server`; start nothing."""
 
 
 class ClosedScheduler(Scheduler):  # type: ignore[misc] # Dask's types are partial
-    """A scheduler that answers no HTTP."""
+    """Scheduler without an HTTP server."""
 
     start_http_server = _open_nothing
 
 
 class ClosedWorker(Worker):  # type: ignore[misc]
-    """A worker that answers no HTTP."""
+    """Worker without an HTTP server."""
 
     start_http_server = _open_nothing

@@ -10,7 +10,10 @@ STUCK = 10.0  # s after the limit, until a worker process that cannot be interru
 
 
 class TimeLimitError(BaseException):
-    """A run that took longer than its time limit; no Exception, so that no part of the user's catches it by chance."""
+    """Run that took longer than its time limit.
+
+    It is not an Exception, so that a plug-in does not catch it by chance.
+    """
 
 
 @contextlib.contextmanager
@@ -19,12 +22,12 @@ def deadline(
 ) -> Iterator[None]:
     """Raise TimeLimitError in the body once it takes longer than a time limit.
 
-    Python code is interrupted at its next line; a call into compiled code when it returns. A worker process in which
-    that does not happen is ended, which its sweep survives.
+    Python code is interrupted at its next line, and a call into compiled code when it returns. A worker process that
+    cannot be interrupted is ended; its sweep continues.
 
     Args:
         seconds: The limit [s]; None for no limit.
-        wait: The clock: waits for an event for some seconds [s]; returns if it happened.
+        wait: Function that waits for an event for at most a time [s] and returns True if the event happened.
     """
     if seconds is None:
         yield

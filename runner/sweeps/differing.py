@@ -1,4 +1,4 @@
-"""Resolved configs of a sweep's cells: step and distance of each, and the values that differ beyond the swept keys.
+"""Resolved configs of a sweep's cells, with step and distance, and the values that differ beyond the swept keys.
 
 If `robot` is swept, the gains, the path and the encoder noise may change with it, because a robot's file proposes
 them. These values may cause differences that seem to come from the arms.
@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 
 DISTANCE = "distance from start to goal"
 UNITS = {DISTANCE: "m"}
-"""Units of what is no key of a config."""
+"""Units of compared values that are not config keys."""
 
 
 def resolve(config: Mapping[str, Any], step: float, home: Sequence[float] | None) -> Mapping[str, Any]:
-    """Return a config with the step of its plant, and how far its path goes where it leads to a goal.
+    """Return a config with the step of its plant and, if its path leads to a goal, the distance to that goal.
 
     Args:
-        config: The config as it composed.
+        config: The composed config.
         step: The plant's step, in s.
-        home: Where the tip of its arm starts, in m, unless the config says; None where that is not known.
+        home: Start position of the tip if the config has none, in m; None if unknown.
     """
     resolved = {**config, "plant": {**config["plant"], "step": step}}
     trajectory = config.get("trajectory", {})
@@ -44,19 +44,19 @@ def resolve(config: Mapping[str, Any], step: float, home: Sequence[float] | None
 
 
 def is_one_arm(config: Mapping[str, Any]) -> bool:
-    """Return whether the robot of a config is one arm, not a chain of arms."""
+    """Return True if the robot of a config is one arm, not a chain of arms."""
     robot = config.get("robot", {})
     return "tip" in robot and "home" in robot
 
 
 class Resolver:
-    """Resolves the configs of stored runs, many of which have the same robot."""
+    """Resolves the configs of stored runs; runs with the same robot share its tip position."""
 
     def __init__(self) -> None:
         self._tips: dict[str, Sequence[float]] = {}
 
     def resolve(self, run: Run) -> Mapping[str, Any]:
-        """Return the config of a stored run as the function `resolve` does; only one arm has the distance."""
+        """Return the resolved config of a stored run; see the function `resolve`. A chain of arms has no distance."""
         home = None
         if run.config.get("trajectory", {}).get("start", ...) is None and is_one_arm(run.config):
             robot = run.config["robot"]
@@ -78,20 +78,20 @@ Codes = NDArray[np.int32]
 Levels = NDArray[np.intp]
 
 _NAMES = ("kind", "name")  # of the option that an axis chooses
-# Of a robot: what acts by itself. All else is the arm, or what it proposes to other groups, where it is found.
+# Keys of a robot that act by themselves. Its other keys describe the arm or propose values that other groups contain.
 _OF_A_ROBOT = ("payload", "settling_band", "tool")
-_MOST_TOGETHER = 3  # axes that a value is looked for to follow
+_MOST_TOGETHER = 3  # axes that a value may depend on together
 _NAMED = 4
 
 
 @dataclass(frozen=True)
 class Difference:
-    """A value that differs between cells and was not swept.
+    """Value that differs between cells although it was not swept.
 
     Attributes:
-        key: Its dotted key, or what it is in words.
-        axes: Names of the axes that it follows; empty where it follows none.
-        values: Each value as text, with the levels of these axes at which it stands, such as ("macro, mini", "0.01").
+        key: Dotted key of the value, or its description.
+        axes: Names of the axes that determine the value; empty if there are none.
+        values: Each value as a string, after the levels of these axes that have it, such as ("macro, mini", "0.01").
     """
 
     key: str
@@ -100,32 +100,32 @@ class Difference:
 
 
 class Resolved:
-    """The resolved configs of a sweep, of which is kept what differs between them."""
+    """Values that differ between the resolved configs of a sweep."""
 
     def __init__(self) -> None:
         self._first: Mapping[str, Any] = {}
         self._cells = 0
         self._given: set[str] = set()
-        self._codes: dict[str, Codes] = {}  # number of each cell's text, of those keys that differ so far
-        self._texts: dict[str, dict[str | None, int]] = {}  # numbers of a key's texts, from that of the first cell on
+        self._codes: dict[str, Codes] = {}  # for each key that differs: string number of each cell
+        self._texts: dict[str, dict[str | None, int]] = {}  # numbers of a key's strings; the first cell has 0
         self._memory = Memory(1024)
 
     def add(
         self, config: Mapping[str, Any], overrides: Sequence[str] = (), cells: "range | Levels | None" = None
     ) -> None:
-        """Take the config of one or more cells; keys that say where and how a run is made are left out.
+        """Add the config of one or more cells; keys that do not affect the simulation are left out.
 
         Args:
             config: The resolved config; a group that is one object in several configs must not be changed.
-            overrides: What gave it: the keys of these are axes, or the same in all cells, and take no memory (but for
-                those that hold other keys' values).
-            cells: Numbers of the cells, shape (n,) where they are an array; None for the next one.
+            overrides: Overrides of the config. Their keys are axes, or the same in all cells, and need no memory,
+                except keys whose value interpolates other keys.
+            cells: Numbers of the cells, an array of shape (n,) or a range; None for the next cell.
         """
         cells = range(self._cells, self._cells + 1) if cells is None else cells
         part = simulated_part(config)
         self._given.update(text.lstrip("+").partition("=")[0] for text in overrides if "${" not in text)
         self._first = self._first or part
-        # Most groups are the same in all cells, and are not looked at.
+        # Most groups are the same in all cells and need no comparison.
         changed = [name for name in {**self._first, **part} if not _is_same(self._first.get(name), part.get(name))]
         before, now = (self._entries(some, changed) for some in (self._first, part))
         self._cells = max(self._cells, max(cells[0], cells[-1]) + 1)
@@ -137,7 +137,7 @@ class Resolved:
                 self._put(key, cells, texts.setdefault(now.get(key), len(texts)))
 
     def _entries(self, config: Mapping[str, Any], names: Sequence[str]) -> dict[str, str]:
-        """Return the keys and texts of some groups of a config."""
+        """Return the values of some groups of a config as strings, by dotted key."""
         found: dict[str, str] = {}
         for name in names:
             if name in config:
@@ -153,7 +153,7 @@ class Resolved:
         codes[slice(cells.start, cells.stop, cells.step) if isinstance(cells, range) else cells] = code
 
     def differences(self, axes: Sequence["Axis"]) -> list[Difference]:
-        """Return what differs beyond the axes, in the order in which cells show it."""
+        """Return the differences beyond the axes, in the order of their first occurrence."""
         found = []
         for key, some in self._codes.items():
             if key in self._given:
@@ -168,7 +168,7 @@ class Resolved:
                 continue
             if of_option and is_of_option(key):
                 continue
-            # What one option has and another has not is what they are.
+            # A key that only some options have is part of the option.
             present = codes != texts.index(None) if of_option and None in texts else np.ones(len(codes), dtype=bool)
             if np.any(codes[present] != codes[present][:1]):
                 found.append(_difference(key, codes, texts, present, axes))
@@ -176,7 +176,7 @@ class Resolved:
 
 
 def in_words(differences: Sequence[Difference]) -> str:
-    """Return in a line that values differ, and the first of them; empty where none does."""
+    """Return a line with the number of differences and the first of them; empty if there are none."""
     if not differences:
         return ""
     count, named = len(differences), [difference.key for difference in differences[:_NAMED]]
@@ -188,7 +188,7 @@ def in_words(differences: Sequence[Difference]) -> str:
 
 
 def is_of_option(key: str) -> bool:
-    """Return whether a key of a swept group says which option it is, or what is no part of the comparison."""
+    """Return True if a key of a swept group names its option or describes the arm; such keys are not compared."""
     group, _, rest = key.partition(".")
     return rest in _NAMES or (group == "robot" and rest.partition(".")[0] not in _OF_A_ROBOT)
 
@@ -238,7 +238,7 @@ def entries(config: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def value_text(value: Any) -> str:
-    """Return a value as text: equal numbers alike, whether they are written 1 or 1.0."""
+    """Return a value as a string; 1 and 1.0 give the same string."""
     if value is None:
         return "null"
     if isinstance(value, bool):

@@ -1,4 +1,4 @@
-"""Execution engine of sweeps: Dask distributed on this machine or on a running cluster, or the process itself."""
+"""Execution engine of sweeps: Dask on this machine, Dask on a running cluster, or the current process."""
 
 import contextlib
 import logging
@@ -19,21 +19,21 @@ from runner.sweeps.deadline import STUCK
 from runner.sweeps.queue import Queue
 from runner.sweeps.work import Chunk, Report, give_up, work
 
-_DEATHS = 3  # of workers over one run, until it is taken for their cause
+_DEATHS = 3  # worker deaths during one run before the run counts as the cause
 _ANSWER_WITHIN = 10.0  # s, for a scheduler and its workers
 _LOOK_EVERY = 5.0  # s between two looks for workers
 _BACK_WITHIN = 120.0  # s without any worker
-# What a batch of runs gives back the next one takes: else the system would clear 250 KB of fresh pages for each run.
+# The next batch of runs reuses freed memory. Otherwise the system would clear 250 KB of fresh pages for each run.
 _MEMORY = {"MALLOC_TRIM_THRESHOLD_": 2**28, "MALLOC_MMAP_THRESHOLD_": 2**25}  # bytes
 _GO_ON = "finished runs are stored; the same command continues"
 
 
 def in_process(queue: Queue, go_on: Callable[[], bool] = lambda: True) -> Generator[Report]:
-    """Work off a queue in this process; yield what became of each chunk.
+    """Process a queue in this process; yield the report of each chunk.
 
     Args:
         queue: The queue.
-        go_on: Asked before each chunk.
+        go_on: Function called before each chunk; the engine stops if it returns False.
     """
     while go_on() and (chunk := queue.take(1)) is not None:
         report = work(chunk, partial(queue.tell, chunk.name))
@@ -43,14 +43,14 @@ def in_process(queue: Queue, go_on: Callable[[], bool] = lambda: True) -> Genera
 
 
 def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
-    """Work off a queue on a Dask cluster, with a bounded number of chunks under way; yield what became of each.
+    """Process a queue on a Dask cluster with a bounded number of chunks in flight; yield the report of each chunk.
 
     Args:
         queue: The queue.
         client: A `distributed.Client`.
 
     Raises:
-        RunnerError: if the scheduler is lost, all workers are and none comes back, or one cannot reach its files.
+        RunnerError: if the scheduler is lost, all workers are lost for good, or a worker cannot access its files.
     """
     from distributed.scheduler import KilledWorker
 
@@ -82,7 +82,7 @@ def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
             elif future.status in ("cancelled", "lost"):
                 raise CancelledError("its tasks are gone")
             elif isinstance(future.exception(), KilledWorker):
-                # Whatever else its worker had to do is under suspicion, too, until each was made alone.
+                # All runs that the worker had are suspects until each has been made separately.
                 report = _give_up(chunk) if chunk.name in suspects else Report(queue.give_back(chunk), "", 0.0)
             elif isinstance(future.exception(), OSError):
                 raise RunnerError(f"a worker failed: {future.exception()}; {_GO_ON}") from future.exception()
@@ -99,7 +99,7 @@ def on_cluster(queue: Queue, client: Any) -> Generator[Report]:
 
 
 def _work(chunk: Chunk, topic: str) -> Report:
-    """Make the runs of a chunk in a worker, which tells on a topic how many ticks of it are made."""
+    """Execute the jobs of a chunk in a worker, which publishes the number of finished ticks on a topic."""
     from distributed import get_worker
 
     worker = get_worker()
@@ -128,7 +128,7 @@ def _give_up(chunk: Chunk) -> Report:
 
 
 def _hush() -> None:
-    """Keep Dask's own notes off the terminal: what matters in them is told as a run's failure or an error."""
+    """Silence Dask's log; the runner reports the relevant events as failures of runs or errors."""
     for part in ("", ".client", ".core", ".nanny", ".scheduler", ".worker"):
         logging.getLogger(f"distributed{part}").setLevel(logging.CRITICAL)
 
@@ -137,12 +137,12 @@ def _hush() -> None:
 def local_client(workers: int, scratch: Path) -> Iterator[Any]:
     """Start a cluster of single-threaded processes on this machine; yield its `distributed.Client`.
 
-    Its parts know each other by a key made for it, kept in memory: nobody else can make it run code. No part of it
-    answers HTTP.
+    Scheduler and workers authenticate each other with a temporary key that is kept in memory, so no other process can
+    run code on the cluster. Neither has an HTTP server.
 
     Args:
         workers: Number of processes.
-        scratch: Folder for all temporary files of the cluster and of what runs on it; it is removed.
+        scratch: Folder for all temporary files of the cluster and of its jobs; it is removed at the end.
 
     Raises:
         RunnerError: if the processes cannot be started.
@@ -154,7 +154,7 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
     _hush()
     settings = {
         "distributed.scheduler.allowed-failures": _DEATHS,
-        # A worker that dies is started again; Dask would drop it, should it be down 15 s after an earlier death.
+        # A dead worker is restarted. By default, Dask drops a worker that is down 15 s after an earlier death.
         "distributed.deploy.lost-worker-timeout": "1000 days",
         "distributed.worker.memory.terminate": False,
         "distributed.admin.system-monitor.gil.enabled": False,
@@ -172,9 +172,9 @@ def local_client(workers: int, scratch: Path) -> Iterator[Any]:
 
 @contextlib.contextmanager
 def _undisturbed() -> Iterator[None]:
-    """Hold Ctrl-C back until what is within has ended; processes that are started within never get it.
+    """Delay Ctrl-C until the body has ended; processes started in the body never receive it.
 
-    Half a cluster cannot be ended, and a process that has not read its code yet would tell of the interrupt.
+    A partly started cluster cannot be ended. A process that is still importing its code would print a traceback.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -225,7 +225,7 @@ def remote_client(address: str) -> Iterator[Any]:
     """Connect to a running Dask scheduler; yield the `distributed.Client`.
 
     Raises:
-        RunnerError: if none answers, it has no workers, or another version of the runner is installed there.
+        RunnerError: if no scheduler answers, it has no workers, or the cluster has another version of the runner.
     """
     from distributed import Client
 

@@ -21,14 +21,14 @@ from runner.sweeps.job import PROBED_TICKS, seconds_per_tick
 from runner.sweeps.plan import Plan
 from runner.sweeps.status import NOTE
 
-_EVERY = 2.0  # s between two notes of the pace
+_EVERY = 2.0  # s between two updates of the pace
 START_UP = 3.0
 """CPU time that a worker process takes until its first run, in s."""
-_PROBES = 3  # cells that the first estimate is made from, of each power of ten of ticks
+_PROBES = 3  # cells behind the first estimate, for each power of ten of ticks
 _PROBED_WITHIN = 2.0  # s, for the ticks of a probe
-_FIXED = 0.010  # s that a job takes beside its ticks
-_FIXED_TOGETHER = 0.0002  # s, of runs that are simulated together and keep no trace
-_TICKS_TOGETHER = 20_000  # at most, of runs that are simulated together for the first estimate
+_FIXED = 0.010  # s that a job takes in addition to its ticks
+_FIXED_TOGETHER = 0.0002  # s, for runs that are simulated together and keep no trace
+_TICKS_TOGETHER = 20_000  # most ticks of runs that are simulated together for the first estimate
 
 
 Known = Literal["about", "more than", "up to"]
@@ -36,35 +36,35 @@ Known = Literal["about", "more than", "up to"]
 
 @dataclass(frozen=True)
 class Estimate:
-    """CPU time that something will take.
+    """Estimated CPU time.
 
     Attributes:
         seconds: The time, in s.
-        known: If the time is about that; more, as a few ticks took longer than all that they were given; or at most
-            that, as runs have a time limit.
+        known: Kind of the estimate: "about" the time; "more than" the time, if a few ticks exceeded the time of a
+            probe; or "up to" the time, if the time limit of the runs bounds it.
     """
 
     seconds: float
     known: Known = "about"
 
     def in_words(self, processes: int, together: int, more: float = 0.0) -> str:
-        """Return how long it takes.
+        """Return the duration as a message.
 
         Args:
             processes: Number of processes.
-            together: How many of them run at a time.
-            more: Time that is not shared among them, in s.
+            together: Number of processes that run at the same time.
+            more: Additional time that the processes do not share, in s.
         """
         several = "es" if processes > 1 else ""
         return f"{self.known} {format_duration(more + self.seconds / together)} on {processes} process{several}"
 
 
 class Pace:
-    """A note in a sweep's folder for `runner status`: how long a job takes.
+    """Record of the time for a job in a sweep's folder, for `runner status`.
 
     Args:
         folder: The sweep's folder.
-        clock: Tells the time, in s.
+        clock: Function that returns the time, in s.
     """
 
     def __init__(self, folder: Path, clock: Callable[[], float] = time.monotonic) -> None:
@@ -72,7 +72,7 @@ class Pace:
         self._began = self._noted = clock()
 
     def add(self, jobs: int) -> None:
-        """Take note of a number of jobs that ended."""
+        """Count a number of finished jobs."""
         self._made += jobs
         now = self._clock()
         if self._made and now - self._noted > _EVERY:
@@ -81,16 +81,16 @@ class Pace:
 
 
 def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float) -> Estimate:
-    """Return the CPU time that some cells will take, from a few ticks of a few of their runs.
+    """Return the estimated CPU time of some cells, measured on a few ticks of a few of their runs.
 
     Args:
         plan: The plan.
-        checked: What its check gave.
+        checked: Result of the check of the plan.
         cells: The cells, shape (n,); in a tuning, one for each trial.
-        kept: Share of the runs that keep their trace.
+        kept: Fraction of the runs that keep their trace.
     """
     runs = np.setdiff1d(cells, list(checked.calibrations), assume_unique=True) if checked.calibrations else cells
-    # Runs of very many ticks, such as those of a thousand repetitions, may have another pace than the others.
+    # Runs with very many ticks, such as a thousand repetitions, may need another time for a tick than the others.
     sizes = np.floor(np.log10(np.maximum(checked.costs[runs], 1)))
     found = [_estimate_alike(plan, checked, runs[sizes == size], kept) for size in np.unique(sizes)]
     seconds = _FIXED * (len(cells) - len(runs)) + sum(each.seconds for each in found)
@@ -98,7 +98,7 @@ def estimate(plan: Plan, checked: Checked, cells: NDArray[np.intp], kept: float)
 
 
 def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: float) -> Estimate:
-    """Return the CPU time of runs of about as many ticks, by the median of a few."""
+    """Return the CPU time of runs with a similar number of ticks, from the median of a few."""
     chosen = sorted({int(runs[len(runs) * part // _PROBES]) for part in range(_PROBES)})
     most = int(min(_TICKS_TOGETHER, checked.costs[runs].sum()))  # more would take longer than the runs themselves
     probed = sorted(_probe(plan.composed(cell), int(checked.costs[cell]), most) for cell in chosen)
@@ -112,9 +112,9 @@ def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: 
 
 
 def _probe(composed: Composed, ticks: int, ticks_together: int) -> tuple[float, bool, Known]:
-    """Return the time for a tick of a run, in s, if it can be simulated together with others, and what is known of it.
+    """Return the time for a tick of a run, in s, if the run can be simulated together with others, and its kind.
 
-    Whatever is assembled and compiled counts for nothing, as it is done once.
+    Assembly and compilation are not counted because they happen once.
     """
     config = validate(composed.resolved, composed.config_dirs)
     probed = max(ticks, ticks_together)
@@ -126,5 +126,5 @@ def _probe(composed: Composed, ticks: int, ticks_together: int) -> tuple[float, 
         return seconds_per_tick(config, composed, deadline(_PROBED_WITHIN)), False, "about"
     except TimeLimitError:
         return _PROBED_WITHIN / probed, False, "more than"
-    except Exception:  # an error of a part is stored when its run is made
+    except Exception:  # the error of a component is stored with its run
         return 0.0, False, "about"

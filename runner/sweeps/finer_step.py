@@ -24,32 +24,32 @@ if TYPE_CHECKING:
     from runner.config.run import RunConfig
 
 DRAWS = 8
-"""Repetitions that are made again, the first ones: what the step leaves scatters far less than what is drawn."""
+"""Number of first repetitions to repeat: the integration error varies far less than the random draws."""
 
 MOST_RUNS = 200
-"""Of more runs none is made again."""
+"""Largest number of runs to repeat; if there are more, none is repeated."""
 
 _SEED = "seed"
 
 
 def work_out_sweep(sweep: Sweep) -> None:
-    """Store what a finer step changes in the cells of a sweep, where they can be compared and are not too many.
+    """Store the metrics on a finer step for the cells of a sweep, if these can be compared and are not too many.
 
     Raises:
-        StoreError: if a run is missing or damaged, or the disk does not take the result.
+        StoreError: if a run is missing or damaged, or the result cannot be written.
     """
     if len(sweep.hashes) <= MOST_RUNS and any(axis.name != _SEED for axis in axes_of(sweep.overrides)[0]):
         work_out(sweep.outputs, sweep.runs())
 
 
 def work_out(outputs: Path, runs: Iterable[Run]) -> None:
-    """Store what a finer step changes in some runs, of those of which it is not known.
+    """Store the metrics on a finer step for some runs, unless they are already stored.
 
-    What another version or another file of the robot made is left out, and so are all where they have fewer
-    repetitions and seeds than a comparison needs.
+    Runs from another version of the runner or another robot file are left out. Nothing is stored if the runs have
+    fewer repetitions and seeds than a comparison needs.
 
     Raises:
-        StoreError: if a run is damaged, or the disk does not take the result.
+        StoreError: if a run is damaged, or the result cannot be written.
     """
     given = list(runs)
     draws = sum({int(run.config["seed"]): int(run.record["repetitions"]) for run in given}.values())
@@ -66,7 +66,7 @@ def work_out(outputs: Path, runs: Iterable[Run]) -> None:
 
 
 def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
-    """Return why a run has no finer step, and its metrics on it; None where it cannot be made as it was."""
+    """Return the reason if a run has no finer step, and its metrics on it; None if the run cannot be repeated."""
     # Imports of the simulator, which a comparison of runs with known errors does not need
     from runner.config.compose.compose import Composed
     from runner.config.validation import validate
@@ -102,7 +102,7 @@ def _hindrance(config: "RunConfig") -> str:
 
 
 def _finer(given: Mapping[str, Any], config: "RunConfig") -> dict[str, Any]:
-    """Return the config of the same run on a finer step, with the first repetitions only."""
+    """Return the config of the same run on a finer step, with only the first repetitions."""
     from runner.metrics.plant_error import COMPARED, on_runge_kutta
 
     if config.plant.kind in COMPARED:

@@ -27,13 +27,13 @@ class Gathered:
 
     Attributes:
         hashes: Name of each cell's run.
-        failures: When, where and why each cell failed; empty for a good one.
+        failures: Time, place and reason of the failure of each cell; empty for a successful one.
         seeds: Seed of each cell, shape (cells,).
         units: Unit of each metric.
-        provenance: Plant, commit, machine, date and versions behind the runs, each with its distinct values.
-        caveats: Why the result of each cell may not be what it seems.
-        rules: Rules that looked for caveats, each with the number of cells.
-        configs: Each resolved config with the cells that have it; those of a shard may differ in their seed.
+        provenance: Plant, commit, machine, date and versions of the runs, each with its distinct values.
+        caveats: Caveats of each cell.
+        rules: Rules that were checked for caveats, each with the number of cells.
+        configs: Each resolved config with its cells; the configs of a shard's cells may differ in the seed.
     """
 
     def __init__(self, cells: int) -> None:
@@ -45,13 +45,13 @@ class Gathered:
         self.caveats: list[Sequence[Mapping[str, Any]]] = [()] * cells
         self.rules: list[tuple[Mapping[str, Any] | None, int]] = []
         self.configs: list[tuple[Mapping[str, Any], list[Cells]]] = []
-        self._places: dict[object, int] = {}  # of configs, by their text without the seed
+        self._places: dict[object, int] = {}  # index of each config, by its JSON without the seed
         self._values: dict[str, FloatArray] = {}
         self._measured = np.zeros(cells, dtype=bool)
         self._resolver = Resolver()
 
     def add_run(self, cell: int, run: Run) -> None:
-        """Take the run of a cell."""
+        """Add the run of a cell."""
         self.hashes[cell], self.failures[cell], self.caveats[cell] = run.hash, run.failure or "", run.caveats
         self.seeds[cell] = int(run.provenance["seed"])
         self._count_rules(run.caveat_rules, 1)
@@ -63,21 +63,21 @@ class Gathered:
         self.configs.append((self._resolver.resolve(run), [np.array([cell])]))
 
     def add_shard(self, path: Path, rows: Cells, cells: Cells) -> None:
-        """Take runs of a shard: in columns, or one by one if they have little in common.
+        """Add runs of a shard: in columns, or one by one if they have little in common.
 
         Args:
             path: The shard.
-            rows: Its rows to take, shape (n,).
-            cells: The cell of each, shape (n,).
+            rows: Rows of the shard to add, shape (n,).
+            cells: Cell of each row, shape (n,).
 
         Raises:
-            DamagedError: if it is damaged.
+            DamagedError: if the shard is damaged.
         """
         import pyarrow
 
         table = read_columns(path, ("run", "failure", "config", "record")).take(rows)
         rules = None
-        with contextlib.suppress(pyarrow.ArrowException, KeyError):  # two kinds of values in one place
+        with contextlib.suppress(pyarrow.ArrowException, KeyError):  # two types of values under one key
             record = _parsed(table["record"].to_pylist())
             provenance = record.field("provenance")
             seeds, caveats = provenance.field("seed").to_numpy(), _caveats(record)
@@ -113,7 +113,7 @@ class Gathered:
         self.rules.append((rules, count))
 
     def _note(self, run: Run) -> None:
-        """Take note of what made a run."""
+        """Add the provenance of a run."""
         record = run.provenance
         pairs = [
             ("plant", f"{run.config['plant']['kind']}, step {record['plant_step']:g} s"),
@@ -127,7 +127,7 @@ class Gathered:
             self.provenance.setdefault(key, {})[text] = None
 
     def _put(self, name: str, unit: str, cells: Cells, values: FloatArray) -> None:
-        """Take the values of a metric of some cells, shape (n, repetitions)."""
+        """Store the values of a metric of some cells, shape (n, repetitions)."""
         self.units[name] = unit
         self._measured[cells] = True
         known, width = self._values.get(name), values.shape[1]
@@ -139,7 +139,7 @@ class Gathered:
         known[cells, :width] = values
 
     def values(self) -> dict[str, FloatArray]:
-        """Return each metric in each repetition, shape (cells, repetitions); see Measurements."""
+        """Return the values of each metric, shape (cells, repetitions); see Measurements."""
         width = max((values.shape[1] for values in self._values.values()), default=1)
         # A run without a finished repetition stores no metric.
         lost = ~self._measured & np.array([bool(text) for text in self.failures], dtype=bool)
@@ -152,12 +152,12 @@ class Gathered:
 
 
 def commit_text(commit: object) -> str:
-    """Return a commit as the provenance of a sweep has it."""
+    """Return a commit as a string for the provenance of a sweep."""
     return str(commit or "none (installed package)")
 
 
 def _parsed(records: Sequence[str]) -> Any:
-    """Return records given as JSON as one struct array: pyarrow parses all of them at once."""
+    """Return JSON records as one struct array; pyarrow parses all of them at once."""
     import pyarrow
     import pyarrow.json
 
@@ -177,7 +177,7 @@ def _parsed(records: Sequence[str]) -> Any:
 
 
 def _settings(configs: Sequence[str]) -> dict[object, list[int]]:
-    """Return the places of configs, given as JSON, that are the same except for their seed, by their other text."""
+    """Group configs, given as JSON, that differ only in the seed; return the indices by the JSON without the seed."""
     found: dict[object, list[int]] = {}
     for place, text in enumerate(configs):
         before, _, after = text.partition(_SEED)
@@ -187,7 +187,7 @@ def _settings(configs: Sequence[str]) -> dict[object, list[int]]:
 
 
 def _rules(record: Any) -> list[tuple[Mapping[str, Any] | None, int]] | None:
-    """Return the rules that found caveats, each with the number of runs; None where they differ between runs."""
+    """Return the rules that were checked for caveats, with the number of runs; None if runs have different rules."""
     if record.type.get_field_index("caveat_rules") < 0:
         return [(None, len(record))]
     rules = _inner(record, "caveat_rules").drop_null()
@@ -208,7 +208,7 @@ def _leaves(array: Any) -> Iterator[Any]:
 
 
 def _caveats(record: Any) -> list[Sequence[Mapping[str, Any]]]:
-    """Return the caveats of each run; runs with the same ones share them."""
+    """Return the caveats of each run; runs with equal caveats share one object."""
     found = _inner(record, "caveats")
     counts = np.nan_to_num(found.value_lengths().to_numpy(zero_copy_only=False)).astype(int).tolist()
     columns = [column.to_pylist() for column in found.flatten().flatten()]
@@ -225,7 +225,7 @@ def _caveats(record: Any) -> list[Sequence[Mapping[str, Any]]]:
 
 
 def _made_by(provenance: Any) -> Iterator[tuple[str, Sequence[str]]]:
-    """Yield distinct values of what made the runs."""
+    """Yield the distinct values of each provenance entry."""
     yield "commit", [commit_text(value) for value in provenance.field("commit").unique().to_pylist()]
     yield "machine", provenance.field("machine").unique().to_pylist()
     versions = provenance.field("versions")
@@ -237,7 +237,7 @@ def _made_by(provenance: Any) -> Iterator[tuple[str, Sequence[str]]]:
 def _metrics(table: Any) -> Iterator[tuple[str, str, Cells, FloatArray]]:
     """Yield name and unit of each metric, the runs that have it, and their values, shape (runs, repetitions).
 
-    The values are NaN behind the last repetition of a run, and infinite if a repetition has none.
+    The values are NaN after the last repetition of a run, and infinite if a repetition has no value.
     """
     for field in table.schema:
         if field.name.startswith(METRIC):
@@ -252,5 +252,5 @@ def _metrics(table: Any) -> Iterator[tuple[str, str, Cells, FloatArray]]:
 
 
 def _inner(array: Any, name: str) -> Any:
-    """Return a field of a struct array, missing where the struct is."""
+    """Return a field of a struct array; it is missing if the struct is missing."""
     return array.flatten()[array.type.get_field_index(name)]

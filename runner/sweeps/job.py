@@ -32,9 +32,9 @@ from runner.simulation.sensors import make_sensors
 from runner.store.kinds import note
 
 PROBED_TICKS = 50
-"""Ticks from which the time for a tick is measured, of a run that is simulated alone."""
-_PROBED_TOGETHER = 100_000  # ticks, of repetitions that are simulated together
-_CLOCKED_TICKS = 1_000_000  # ticks whose time is kept; more would tell nothing new
+"""Number of ticks for a measurement of the time for a tick, if a run is simulated separately."""
+_PROBED_TOGETHER = 100_000  # ticks, if repetitions are simulated together
+_CLOCKED_TICKS = 1_000_000  # ticks whose time is kept; more would add no information
 
 
 def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> RunResult:
@@ -42,11 +42,11 @@ def simulate_job(config: RunConfig, composed: Composed, threads: int = 1) -> Run
 
     Args:
         config: The checked config.
-        composed: What it was checked from, for provenance.
+        composed: The composed config before its check, for provenance.
         threads: Number of threads that simulate the repetitions of a run that is compiled as a whole.
 
     Raises:
-        ConfigError: where the start of the trajectory cannot be reached, or a part refuses its config.
+        ConfigError: if the start of the trajectory cannot be reached, or a component rejects its config.
     """
     together = simulate_blocks((config, composed), threads)
     if together is not None:
@@ -107,13 +107,13 @@ def seconds_per_tick(
     within: AbstractContextManager[None] = NO_DEADLINE,
     clock: Callable[[], float] = time.perf_counter,
 ) -> float:
-    """Return the CPU time of a tick of a run, in s, from its first ones.
+    """Return the CPU time for a tick of a run, in s, measured on its first ticks.
 
     Args:
         config: The checked config.
-        composed: What it was checked from.
-        within: Entered once all is assembled and compiled; may end the measurement.
-        clock: Tells the time, in s.
+        composed: The composed config before its check.
+        within: Context of the measurement, entered after assembly and compilation; it may end the measurement.
+        clock: Function that returns the time, in s.
     """
     if config.timing.ticks <= _PROBED_TOGETHER:
         together = seconds_together((config, composed), _PROBED_TOGETHER, within, clock)
@@ -131,7 +131,7 @@ def seconds_per_tick(
 def _plant_error(
     config: RunConfig, composed: Composed, trace: Trace, measured: Mapping[str, float | None]
 ) -> PlantError | None:
-    """Return what the plant's step is worth in repetition 0; None where nobody asks, or there is nothing to compare."""
+    """Return the integration error in repetition 0; None if it is disabled or the plant cannot be compared."""
     if not config.settings.plant_error or config.plant.kind not in COMPARED:
         return None
     if reason := reason_not_comparable(config.environment.kind):
@@ -147,7 +147,7 @@ def _plant_error(
 
 
 def _judge(trace: Trace, context: MetricContext, told: list[str]) -> tuple[Trace, dict[str, float | None]]:
-    """Return a trace and its metrics; where a part of the user's spoils these, the trace with that as its failure."""
+    """Return a trace and its metrics; if a plug-in makes these fail, return the trace with that failure."""
     try:
         return trace, evaluate(trace, context, told)
     except SimulationError as error:
@@ -155,7 +155,7 @@ def _judge(trace: Trace, context: MetricContext, told: list[str]) -> tuple[Trace
 
 
 def _simulate(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
-    """Simulate a repetition; return its trace, and what the controllers and the wrist's sensor tell of it."""
+    """Simulate a repetition; return its trace, and the messages of the controllers and of the wrist sensor."""
     made = make_sensors(closed, config, repetition)
     trace, wrist = simulate(closed, *made), made[1]
     users = [loop.wrench_feedback for loop in closed.loops if loop.wrench_feedback is not None]
@@ -167,17 +167,17 @@ _SURELY_ALLOWED = 200_000  # ticks, which take minutes at most
 
 
 def run(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Run:
-    """Do what `runner OVERRIDES` does, from Python.
+    """Run `runner OVERRIDES` from Python.
 
     Args:
         overrides: Hydra overrides, such as "robot=macro" and "trajectory=goal".
-        config_dirs: Config folders of the user's, searched before ours.
+        config_dirs: User config folders, searched before the built-in ones.
 
     Returns:
-        The stored run, with `.metrics`, `.trace` and `.folder`; found stored, it is not simulated again.
+        The stored run, with `.metrics`, `.trace` and `.folder`; an existing run is reused.
 
     Raises:
-        ConfigError: for a config that cannot be run; lists all its problems.
+        ConfigError: if the config cannot be run; the error lists all its problems.
         StoreError: if the outputs folder cannot be written.
     """
     return execute(compose(overrides, config_dirs))
@@ -189,7 +189,7 @@ def execute(composed: Composed) -> store.Run:
 
 
 def find_or_make(composed: Composed, config: RunConfig) -> tuple[store.Run, bool]:
-    """Run a composed config, which was checked, or find its stored run; return the run, and whether it was made."""
+    """Run a checked config, or find its stored run; return the run, and True if it was simulated now."""
     outputs = Path(config.settings.outputs)
     name = store.run_hash(composed.resolved, config.arm.urdf)
     try:

@@ -26,11 +26,11 @@ from runner.sweeps.status import find_status
 
 @dataclass(frozen=True)
 class Axis:
-    """A key whose value differs between the cells of a sweep.
+    """Key whose value differs between the cells of a sweep.
 
     Attributes:
         name: The key, such as "noise.position", or a group, such as "controller".
-        values: Its distinct values: numbers in ascending order, or strings in order of appearance.
+        values: Distinct values of the key: numbers in ascending order, or strings in order of appearance.
         level: Index into `values` of each cell, shape (cells,).
     """
 
@@ -40,29 +40,29 @@ class Axis:
 
     @property
     def numbers(self) -> FloatArray | None:
-        """Its values as numbers, shape (levels,); None for strings."""
+        """Values of the axis as numbers, shape (levels,); None for strings."""
         texts = len(self.values) > 0 and isinstance(self.values[0], str)
         return None if texts else np.array(self.values, dtype=float)
 
     @property
     def texts(self) -> list[str]:
-        """Its values as strings."""
+        """Values of the axis as strings."""
         return [value if isinstance(value, str) else f"{value:g}" for value in self.values]
 
     def text(self, level: int) -> str:
-        """Return one of its values as a string."""
+        """Return the value of a level as a string."""
         value = self.values[level]
         return value if isinstance(value, str) else f"{value:g}"
 
     def find_level(self, value: object, option: str = "") -> int:
-        """Return the level of a value, which is a number or a string.
+        """Return the level of a number or a string.
 
         Args:
             value: The value.
-            option: Where the value was given, such as "--where "; a message begins with it.
+            option: Option that gave the value, such as "--where "; a message begins with it.
 
         Raises:
-            RunnerError: If the axis has no such value; the message lists those that it has.
+            RunnerError: If the axis has no such value; the message lists its values.
         """
         wanted = str(value).strip("'\"")
         number = _number(wanted)
@@ -79,7 +79,7 @@ def find_axis(axes: Sequence[Axis], name: str, option: str = "") -> Axis:
     Args:
         axes: The axes of a sweep.
         name: The name, such as "controller".
-        option: Where the name was given, such as "--by: "; a message begins with it.
+        option: Option that gave the name, such as "--by: "; a message begins with it.
 
     Raises:
         RunnerError: If there is no such axis; the message lists the axes.
@@ -92,10 +92,10 @@ def find_axis(axes: Sequence[Axis], name: str, option: str = "") -> Axis:
 
 
 def group_cells(axes: Sequence[Axis], cells: NDArray[np.intp]) -> list[tuple[list[int], NDArray[np.intp]]]:
-    """Return each combination of the levels of some axes, in ascending order, with the cells that have it.
+    """Return the combinations of the levels of some axes, in ascending order, each with its cells.
 
     Args:
-        axes: The axes; of none all cells are one group.
+        axes: The axes; without axes, all cells are one group.
         cells: The cells, shape (n,).
     """
     levels = np.column_stack([axis.level[cells] for axis in axes] or [np.zeros(len(cells), dtype=np.intp)])
@@ -106,27 +106,28 @@ def group_cells(axes: Sequence[Axis], cells: NDArray[np.intp]) -> list[tuple[lis
 
 @dataclass(frozen=True)
 class Measurements:
-    """The cells of a sweep, in the order of its jobs; a run counts as a sweep of one cell.
+    """Results of the cells of a sweep, in the order of its jobs; a run counts as a sweep of one cell.
 
     Attributes:
-        axes: What was swept.
+        axes: The swept axes.
         fixed: Overrides that all cells share, as typed.
         hashes: Name of each cell's run.
         statuses: "ok" or "failed".
-        failures: Time, place and reason of the failure of each cell; empty for a good one.
+        failures: Time, place and reason of the failure of each cell; empty for a successful one.
         units: Unit of each metric.
-        values: Each metric in each repetition, shape (cells, repetitions): infinite, that is beyond every number,
-            where the repetition failed or never settled; NaN where the run has no such metric or repetition.
-        provenance: What made the runs: plant, commit, machine, date and so on, each with its distinct values.
-        caveats: Why the result of each cell may not be what it seems, as stored: rule, text, value, repetitions.
-        caveat_rules: Digest and thresholds of the rules that looked for these, each with the number of cells.
-        seeds: Seed of each cell; empty where all have the same.
+        values: Values of each metric, shape (cells, repetitions): infinite, that is beyond every number, if the
+            repetition failed or never settled; NaN if the run has no such metric or repetition.
+        provenance: Plant, commit, machine, date and so on of the runs, each with its distinct values.
+        caveats: Caveats of each cell as stored: rule, text, value, repetitions.
+        caveat_rules: Digest and thresholds of the rules behind these caveats, each with the number of cells.
+        seeds: Seed of each cell; empty if all cells have the same seed.
         differences: Resolved config values that differ between cells beyond the axes.
-        configs: Each resolved config with the cells that have it; these may differ in their seed.
-        finer: Each metric in the first repetitions on a finer step of the plant, as `values`; NaN where not known.
+        configs: Each resolved config with its cells; the configs of these cells may differ in the seed.
+        finer: Values of each metric in the first repetitions on a finer step of the plant, as `values`; NaN if
+            unknown.
         name: Name in a comparison, such as "A".
         folder: Folder of the sweep or run.
-        command: The command that makes it.
+        command: The command that makes the sweep or run.
         missing: Number of cells that are not stored.
         damage: Damaged files, a message for each.
     """
@@ -158,7 +159,7 @@ class Measurements:
 
     @cached_property
     def caveat_changes(self) -> Mapping[str, int]:
-        """Differences between these rules and those of today, each with the number of cells."""
+        """Differences between the stored caveat rules and the current ones, each with the number of cells."""
         from runner.metrics.caveats import changes_since  # imports all rules
 
         found: Counter[str] = Counter()
@@ -168,16 +169,16 @@ class Measurements:
 
     @cached_property
     def config_of_cells(self) -> NDArray[np.intp]:
-        """Place of each cell's config in `configs`, shape (cells,)."""
+        """Index of each cell's config in `configs`, shape (cells,)."""
         places = np.zeros(len(self.hashes), dtype=np.intp)
         for place, (_, cells) in enumerate(self.configs):
             places[cells] = place
         return places
 
     def caveats_by_rule(self) -> list[tuple[str, int, int, str]]:
-        """Return each rule with its number of cells, and its largest finding: the cell and the text.
+        """Return each rule with its number of cells, and the cell and the message of its largest value.
 
-        The rule of most cells comes first.
+        The rule with the most cells comes first.
         """
         found: dict[str, list[tuple[int, Mapping[str, Any]]]] = {}
         for cell, caveats in enumerate(self.caveats):
@@ -190,7 +191,7 @@ class Measurements:
         return rows
 
     def resolved(self, key: str) -> list[Any]:
-        """Return the resolved value of a dotted key in each config; a mapping of a group, None where there is none."""
+        """Return the resolved value of a dotted key in each config: a mapping for a group, None if it is missing."""
         return [get(config, key) for config, _ in self.configs]
 
     @cached_property
@@ -205,18 +206,18 @@ class Measurements:
     def draws(self) -> NDArray[np.intp]:
         """Number of the random draws behind each value, shape (cells, repetitions).
 
-        Equal for the same repetition of cells of one seed, and different else.
+        Cells with the same seed have equal numbers in the same repetition. All other numbers differ.
         """
         seeds = np.unique(self.seeds, return_inverse=True)[1] if len(self.seeds) else np.zeros(len(self.hashes), int)
         return seeds[:, None] * self.repetitions + np.arange(self.repetitions)
 
     @property
     def repetitions(self) -> int:
-        """The most repetitions that a cell has."""
+        """Largest number of repetitions of a cell."""
         return max((values.shape[1] for values in self.values.values()), default=1)
 
     def named(self, wanted: Sequence[str] | None) -> Sequence[str]:
-        """Return some metrics by name, each once; all of them for None.
+        """Return the names of the wanted metrics, each once; all metrics for None.
 
         Raises:
             RunnerError: If the sweep lacks one; the message has the nearest name and all names.
@@ -231,8 +232,8 @@ class Measurements:
         return values
 
     def medians(self, metric: str) -> FloatArray:
-        """Return the median of a metric in each cell, shape (cells,): infinite or NaN as its values."""
-        return medians(np.sort(self.values[metric], axis=1))  # NaN is last: it is not a repetition
+        """Return the median of a metric in each cell, shape (cells,); it may be infinite or NaN, as the values."""
+        return medians(np.sort(self.values[metric], axis=1))  # NaN comes last because it is not a repetition
 
     def axis_columns(self, cells: slice | NDArray[np.intp] = slice(None)) -> dict[str, object]:
         """Return the values of some cells on each axis, by the names of the axes."""
@@ -240,7 +241,11 @@ class Measurements:
 
 
 def medians(ordered: FloatArray) -> FloatArray:
-    """Return the median of each row of values, shape (cells, repetitions), ascending, NaN last: shape (cells,)."""
+    """Return the median of each row, shape (cells,).
+
+    Args:
+        ordered: Values, shape (cells, repetitions), ascending, NaN last.
+    """
     if ordered.shape[1] == 1:
         return ordered[:, 0].copy()
     count = np.sum(~np.isnan(ordered), axis=1)
@@ -251,7 +256,7 @@ def medians(ordered: FloatArray) -> FloatArray:
 
 
 def measure(overrides: Sequence[Sequence[str]], runs: Iterable[Run]) -> Measurements:
-    """Take runs, one by one.
+    """Return the measurements of runs, added one by one.
 
     Args:
         overrides: Overrides of each job, as typed.
@@ -273,7 +278,7 @@ def measure_run(run: Run, name: str = "") -> Measurements:
 
 
 def measure_sweep(sweep: Sweep) -> Measurements:
-    """Read the runs of a sweep, those in shards a shard at once.
+    """Read the runs of a sweep; the runs of a shard are read together.
 
     Raises:
         StoreError: If a run is missing or damaged.
@@ -299,11 +304,11 @@ def measure_sweep(sweep: Sweep) -> Measurements:
 
 
 def measure_stored(sweep: Sweep, name: str = "") -> Measurements:
-    """Read what is stored of a sweep, ended or not.
+    """Read the stored cells of a sweep, which may still be running.
 
     Raises:
         StoreError: If no cell is stored.
-        DamagedError: If it is damaged.
+        DamagedError: If a stored run is damaged.
     """
     part, damage = stored_part(sweep)
     if not len(part.hashes):
@@ -315,7 +320,7 @@ def measure_stored(sweep: Sweep, name: str = "") -> Measurements:
 
 
 def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:
-    """Return a sweep with those of its cells that are stored, and what is damaged."""
+    """Return a sweep reduced to its stored cells, and messages on damaged files."""
     finished = Finished(sweep.outputs)
     stored = {name: finished.outcome(name) is not None for name in set(sweep.hashes)}
     if all(stored.values()):
@@ -326,7 +331,7 @@ def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:
 
 
 def _with_finer(measurements: Measurements, outputs: Path) -> Measurements:
-    """Return measurements with the metrics of a finer step of the plant, of those cells that have them stored.
+    """Return measurements with the metrics on a finer step of the plant, for the cells that have them stored.
 
     Raises:
         DamagedError: If a file is damaged.
@@ -372,7 +377,7 @@ def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measure
 
 
 def _by_seed(cells: NDArray[np.intp], seeds: NDArray[np.int64]) -> list[NDArray[np.intp]]:
-    """Return some cells, parted by their seeds."""
+    """Return cells grouped by seed."""
     return [cells[seeds[cells] == seed] for seed in np.unique(seeds[cells])]
 
 
@@ -390,7 +395,7 @@ def axes_of(overrides: Sequence[Sequence[str]]) -> tuple[list[Axis], list[str]]:
 
 
 def _of_grid(overrides: Axes) -> Iterator[tuple[str, Sequence[Any], int]]:
-    """Yield keys and their values in turn, and for how many cells each stands; the text of what all cells share."""
+    """Yield keys, their values in turn (a string if all cells share it), and the number of cells for each value."""
     for entry, times in overrides.runs_of_levels():
         if isinstance(entry, str) or all(value == entry.values[0] for value in entry.values):
             key, _, text = (entry if isinstance(entry, str) else entry.text(0)).lstrip("+").partition("=")
@@ -400,7 +405,7 @@ def _of_grid(overrides: Axes) -> Iterator[tuple[str, Sequence[Any], int]]:
 
 
 def _of_jobs(overrides: Sequence[Sequence[str]]) -> Iterator[tuple[str, Sequence[Any], int]]:
-    """Yield keys and their values job by job; the text of what all jobs share."""
+    """Yield keys, their values by job (a string if all jobs share it), and 1."""
     given = [dict(override.lstrip("+").partition("=")[::2] for override in job) for job in overrides]
     for key in dict.fromkeys(key for job in given for key in job if is_simulated(key)):
         texts = [job.get(key, "") for job in given]
@@ -409,7 +414,7 @@ def _of_jobs(overrides: Sequence[Sequence[str]]) -> Iterator[tuple[str, Sequence
 
 
 def _levels(values: Sequence[Any]) -> tuple[Sequence[float] | Sequence[str], NDArray[np.intp]]:
-    """Return the distinct ones of some values, and the place of each among them, shape (n,)."""
+    """Return the distinct values, and the index of each value among them, shape (n,)."""
     if isinstance(values, range) or all(type(value) in (int, float) and np.isfinite(value) for value in values):
         numbers, level = np.unique(np.array(values, dtype=float), return_inverse=True)
         return numbers.tolist(), level
@@ -419,7 +424,7 @@ def _levels(values: Sequence[Any]) -> tuple[Sequence[float] | Sequence[str], NDA
 
 
 def _number(text: str) -> float | None:
-    """Return the value of an override where it is a finite number."""
+    """Return the value of an override if it is a finite number, otherwise None."""
     try:
         number = float(text)
     except ValueError:
@@ -428,17 +433,17 @@ def _number(text: str) -> float | None:
 
 
 def check_metrics(wanted: Sequence[str], known: Iterable[str]) -> None:
-    """Refuse metrics that are not known.
+    """Check that metrics exist.
 
     Args:
-        wanted: Names that were asked for.
-        known: Names that there are.
+        wanted: Names of the wanted metrics.
+        known: Names of the existing metrics.
 
     Raises:
-        RunnerError: For the first that there is none of.
+        RunnerError: For the first unknown metric.
     """
     names = list(dict.fromkeys(known))
     for name in wanted:
         if name not in names:
-            listed = ", ".join(names) or "none, as all runs failed"
+            listed = ", ".join(names) or "none, because all runs failed"
             raise RunnerError(f"the runs have no metric '{name}'{nearest(name, names)}; known: {listed}")

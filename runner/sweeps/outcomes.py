@@ -12,7 +12,7 @@ _NOT_YET, _CUT_SHORT = -1, 2
 
 
 class Ends(Mapping[str, Outcome]):
-    """How those jobs of a sweep ended that did, by name.
+    """Outcomes of the finished jobs of a sweep, by name.
 
     Args:
         names: Name of each cell's run or calibration.
@@ -28,7 +28,7 @@ class Ends(Mapping[str, Outcome]):
         self._places = look_up(names.texts, self._names).astype(np.int32)
 
     def add(self, outcomes: Iterable[Outcome]) -> None:
-        """Take note of jobs that ended, all of the sweep's."""
+        """Add the outcomes of finished jobs, which must belong to the sweep."""
         given = list(outcomes)
         places = look_up(Names.of(end.name for end in given).texts, self._names)
         self._rank[places] = [end.rank for end in given]
@@ -39,7 +39,7 @@ class Ends(Mapping[str, Outcome]):
                 self._failures[place] = end.failure
 
     def add_stored(self, finished: Finished, stored: NDArray[np.intp]) -> None:
-        """Take note of jobs that stand in shards, given by their places in `finished.names`."""
+        """Add the outcomes of jobs in shards, given by their indices in `finished.names`."""
         places = look_up(finished.names[stored], self._names)
         self._rank[places], self._caveats[places] = finished.rank[stored], finished.caveats[stored]
         for which in np.flatnonzero(finished.rank[stored]).tolist():
@@ -47,7 +47,7 @@ class Ends(Mapping[str, Outcome]):
 
     @property
     def left(self) -> NDArray[np.intp]:
-        """Cells of the jobs that have not ended, one for each, in order."""
+        """Cells of the unfinished jobs, one for each job, in order."""
         return np.sort(self._first[self._rank == _NOT_YET])
 
     @property

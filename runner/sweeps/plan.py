@@ -1,4 +1,4 @@
-"""Plan of a sweep: its cells, composed when asked for. The plan of `runner -m` is a grid, that of a study a list."""
+"""Plan of a sweep: cells that are composed on demand, as a grid for `runner -m` and as a list for a study."""
 
 import math
 from abc import ABC, abstractmethod
@@ -23,11 +23,11 @@ _SEED = "seed"
 
 @dataclass(frozen=True)
 class Block:
-    """Cells whose configs differ in nothing but the seed.
+    """Cells whose configs differ only in the seed.
 
     Attributes:
         cells: The cells.
-        seeds: Seed of each; None of a single cell.
+        seeds: Seed of each cell; None for a single cell.
     """
 
     cells: range
@@ -36,13 +36,13 @@ class Block:
 
 @dataclass(frozen=True)
 class Alike(Sequence[Composed]):
-    """Configs that differ only in the seed. They are made when asked for, and one of them is sent to another process.
+    """Configs that differ only in the seed. They are created on demand; only one of them is sent to another process.
 
     Attributes:
-        first: One of them.
-        seeds: Seed of each.
-        texts: The override of each seed.
-        place: Position of that override.
+        first: One of the configs.
+        seeds: Seed of each config.
+        texts: Seed override of each config.
+        place: Index of that override in the overrides of a config.
     """
 
     first: Composed
@@ -61,10 +61,10 @@ class Alike(Sequence[Composed]):
 
 
 class Plan(ABC):
-    """Runs and calibrations to make, counted as cells. Those that choose the same options are composed together.
+    """Runs and calibrations of a sweep, its cells. Cells with the same options are composed together.
 
     Args:
-        source: Composes the configs.
+        source: Composer of the configs.
     """
 
     def __init__(self, source: Composer) -> None:
@@ -77,33 +77,33 @@ class Plan(ABC):
 
     @abstractmethod
     def overrides(self, cell: int) -> tuple[str, ...]:
-        """Return the overrides of a cell, as typed; what only says how and where it is made is left out."""
+        """Return the overrides of a cell as typed, except those that do not affect the simulation."""
 
     @abstractmethod
     def _locate(self, cell: int) -> tuple[Hashable, Sequence[int]]:
-        """Return the key of the template of a cell, and the number of the value of each key in it."""
+        """Return the key of the template of a cell, and the index of the value of each of its keys."""
 
     @abstractmethod
     def _parts(self, group: Hashable) -> tuple[Sequence[str], Sequence[SweptKey], str]:
         """Return the parts of a template: the overrides of options, the keys of values and the root."""
 
     def axes(self) -> Axes | None:
-        """Return the axes of a grid, whose cells have every combination of their values; None of no grid."""
+        """Return the axes of a grid, whose cells have every combination of values; None if the plan is not a grid."""
         return None
 
     def blocks(self) -> Iterator[Block]:
-        """Yield all cells, in blocks that differ in nothing but the seed."""
+        """Yield all cells, in blocks that differ only in the seed."""
         return (Block(range(cell, cell + 1)) for cell in range(len(self)))
 
     def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
-        """Yield those of some cells whose configs differ in nothing but the seed, with their configs."""
+        """Yield groups of the given cells whose configs differ only in the seed, with their configs."""
         return (([cell], [self.composed(cell)]) for cell in cells)
 
     def composed(self, cell: int) -> Composed:
-        """Return the composed config of a cell. Cells for which a group is the same share it as one object.
+        """Return the composed config of a cell. Cells with an equal group share it as one object.
 
         Raises:
-            ConfigError: if it does not compose.
+            ConfigError: if the config cannot be composed.
         """
         group, numbers = self._locate(cell)
         template = self._template(group)
@@ -131,10 +131,10 @@ class Grid(Plan):
 
     Args:
         arguments: Overrides, such as "robot=macro,mini" and "noise.position=1e-4,1e-3".
-        source: Composes the configs.
+        source: Composer of the configs.
 
     Raises:
-        ConfigError: for what is not a valid override, and for a key that is swept over no value.
+        ConfigError: if an override is not valid, or a key is swept over no value.
     """
 
     def __init__(self, arguments: Sequence[str], source: Composer) -> None:
@@ -171,7 +171,7 @@ class Grid(Plan):
                     yield from (Block(range(cell, cell + 1)) for cell in cells)
 
     def alike(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
-        """Yield those of some cells whose configs differ in nothing but the seed, with their configs; see Plan."""
+        """Yield groups of the given cells whose configs differ only in the seed, with their configs; see Plan."""
         place = self._place_of_seeds
         if place is None:
             yield from super().alike(cells)
@@ -191,15 +191,15 @@ class Grid(Plan):
 
     @cached_property
     def _place_of_seeds(self) -> int | None:
-        """Place of the key that gives the seeds; None where no key gives nothing else."""
+        """Index of the key whose values are all seeds; None if there is none."""
         return next((place for place, key in enumerate(self._keys) if key.name == _SEED and _may_be_seeds(key)), None)
 
     def _seeds_stand_alone(self, cell: int, place: int) -> bool:
-        """Tell whether a key, given by its place, changes the seed and nothing else in cells that are as one."""
+        """Return True if the key at an index changes only the seed in the cells that share the options of a cell."""
         try:
             template = self._template(self._locate(cell)[0])
         except ConfigError:
-            return True  # the same problem in all of them
+            return True  # all of these cells have the same problem
         return template.changes_alone(sum(not key.option for key in self._keys[:place]), (_SEED,))
 
     def _locate(self, cell: int) -> tuple[tuple[int, ...], list[int]]:
@@ -214,11 +214,11 @@ class Grid(Plan):
 
 @dataclass(frozen=True)
 class Item:
-    """A run or a calibration of a list.
+    """Run or calibration of a list.
 
     Attributes:
-        overrides: The overrides that make it.
-        root: Name of the file in conf/ that its config hangs on: "config" of a run, "calibrate" of a calibration.
+        overrides: Overrides of the run or calibration.
+        root: Name of the root config in conf/: "config" for a run, "calibrate" for a calibration.
     """
 
     overrides: tuple[str, ...]
@@ -229,20 +229,20 @@ class Listed(Plan):
     """Runs and calibrations by name.
 
     Args:
-        items: What to make, by name.
-        shared: Overrides of all runs, such as "outputs=FOLDER" and "sweep.trace=all". A calibration takes only
-            outputs.
-        loader: Composes the configs.
+        items: The runs and calibrations, by name.
+        shared: Overrides of all runs, such as "outputs=FOLDER" and "sweep.trace=all". For a calibration, only outputs
+            has an effect.
+        loader: Composer of the configs.
 
     Raises:
-        ConfigError: for what is not a valid override.
+        ConfigError: if an override is not valid.
     """
 
     def __init__(self, items: Mapping[str, Item], shared: Sequence[str], loader: Composer) -> None:
         super().__init__(loader)
         self._items = tuple(items.values())
         known = groups(loader.config_dirs)
-        self._cells: dict[Hashable, list[list[SweptKey]]] = {}  # keys of values of each cell that is composed together
+        self._cells: dict[Hashable, list[list[SweptKey]]] = {}  # value keys of each cell, by template
         self._places: list[tuple[Hashable, int]] = []
         for item in self._items:
             taken = [text for text in shared if item.root == "config" or text.startswith("outputs=")]
@@ -275,7 +275,7 @@ class Listed(Plan):
 
 
 def _may_be_seeds(key: SweptKey) -> bool:
-    """Tell whether all values of a key are seeds."""
+    """Return True if all values of a key are seeds."""
     values = key.values
     if key.option:
         return False
@@ -285,5 +285,5 @@ def _may_be_seeds(key: SweptKey) -> bool:
 
 
 def plan_sweep(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Grid:
-    """Plan what `runner -m OVERRIDES` makes, from Python; see Grid."""
+    """Return the plan of `runner -m OVERRIDES` from Python; see Grid."""
     return Grid(overrides, Composer(config_dirs))

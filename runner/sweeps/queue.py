@@ -13,29 +13,29 @@ from runner.sweeps.work import Chunk, Part, Report, find_stored
 from runner.sweeps.writer import Rules
 
 _SECONDS_PER_CHUNK = 1.0  # long against the 5 ms that a chunk costs, short against a sweep
-_MOST_CHUNKS = 2000  # that take as many jobs each as it needs, however slow these are: a chunk may be a file
-_LARGEST = 2000  # jobs; of longer chunks much would be lost with their worker
-_SHORTEST_TICK = 1e-7  # s; what was found stored takes none
+_MOST_CHUNKS = 2000  # at most, however slow the jobs are: a chunk may be a file
+_LARGEST = 2000  # jobs; if a worker dies, a longer chunk would lose too much
+_SHORTEST_TICK = 1e-7  # s; a cached job takes no time
 
 
 Alike = Callable[[Sequence[int]], Iterable[tuple[Sequence[int], Sequence[Composed]]]]
-"""Gives those of some cells whose configs differ in nothing but the seed, with their configs; see Plan.alike."""
+"""Function that yields groups of cells whose configs differ only in the seed, with their configs; see Plan.alike."""
 
 
 class Queue:
-    """Chunks that take about a second each, or more where there would be too many; suspects come last.
+    """Queue of chunks that take about a second each, or longer if there would be too many; suspects come last.
 
-    They are single jobs at first, until it is known how long one takes.
+    The first chunks are single jobs, until the time for a job is known.
 
     Args:
-        alike: Gives their configs: that of the sweep's plan.
+        alike: Method of the sweep's plan that yields the configs of cells.
         names: Hash of each cell's run or calibration.
-        costs: What each cell costs, in ticks.
-        cells: The cells to do, in their order, shape (n,).
-        rules: How they are made and kept.
+        costs: Cost of each cell, in ticks.
+        cells: Cells of the pending jobs, in order, shape (n,).
+        rules: Rules for the execution and storage of the jobs.
 
     Attributes:
-        rules: As given.
+        rules: Rules for the execution and storage of the jobs.
     """
 
     def __init__(
@@ -47,11 +47,11 @@ class Queue:
         rules: Rules,
     ) -> None:
         self.rules, self._ticks_done = rules, 0
-        self._ticks_of: dict[str, int] = {}  # made so far of each chunk under way
+        self._ticks_of: dict[str, int] = {}  # finished ticks of each chunk in flight
         self._alike, self._names, self._costs = alike, names, costs
         self._cells, self._next = cells, 0
         of_each = np.asarray(costs, dtype=np.int64)[cells]
-        self._ticks = np.concatenate([[0], np.cumsum(of_each)])  # of all cells before each that is to do
+        self._ticks = np.concatenate([[0], np.cumsum(of_each)])  # cumulative ticks before each pending cell
         self._fewest = -(-len(names) // _MOST_CHUNKS)
         self._under_way: dict[str, int] = {}
         self._suspects = deque[int]()
@@ -61,17 +61,17 @@ class Queue:
 
     @property
     def left(self) -> int:
-        """Number of jobs that are not handed out."""
+        """Number of jobs that have not been handed out."""
         return len(self._cells) - self._next
 
     def put(self, cell: int) -> None:
-        """Put one more cell at the end."""
+        """Append a cell."""
         self._cells = np.append(self._cells[self._next :], cell)
         self._ticks = np.append(self._ticks[self._next :], self._ticks[-1] + self._costs[cell])
         self._next = 0
 
     def take(self, workers: int) -> Chunk | None:
-        """Return the next chunk, or None when none is left; `workers` share what is left."""
+        """Return the next chunk, or None if the queue is empty; `workers` share the pending jobs."""
         start, ticks = self._next, self._ticks
         if start == len(self._cells):
             return None
@@ -85,25 +85,25 @@ class Queue:
         return self._chunk(self._cells[start:stop].tolist())
 
     def take_suspect(self) -> Chunk | None:
-        """Return the next run whose workers died, as a chunk; made alone, it shows whether it is the cause."""
+        """Return the next suspect as a chunk with a single run; if its worker dies again, the suspect is the cause."""
         return self._chunk([self._suspects.popleft()]) if self._suspects else None
 
     def tell(self, chunk: str, ticks: int) -> None:
-        """Take note, from any thread, of how many ticks of a chunk under way are made, given by its name."""
+        """Update the number of finished ticks of a chunk in flight, given by its name; any thread may call this."""
         if chunk in self._ticks_of:
             self._ticks_of[chunk] = ticks
 
     def end(self, chunk: Chunk) -> None:
-        """Take note that a chunk is no longer under way."""
+        """Remove a chunk that is no longer in flight."""
         self._ticks_of.pop(chunk.name)
 
     @property
     def ticks_made(self) -> int:
-        """What the jobs cost that have ended, in ticks, and the ticks made of those under way."""
+        """Number of ticks of the finished jobs, plus the finished ticks of the chunks in flight."""
         return self._ticks_done + sum(list(self._ticks_of.values()))
 
     def learn(self, report: Report) -> None:
-        """Take note of what ended, and of how long it took."""
+        """Update the progress and the time for a tick from the report of a chunk."""
         ticks = sum(int(self._costs[self._under_way.pop(end.name)]) for end in report.outcomes)
         self._ticks_done += ticks
         if ticks and report.seconds:
@@ -112,7 +112,7 @@ class Queue:
             self._seconds_per_tick = seconds if known is None else 0.5 * (known + seconds)
 
     def give_back(self, chunk: Chunk) -> list[store.Outcome]:
-        """Take back a chunk whose workers died: its runs are suspects; return how those ended that are stored."""
+        """Mark the unfinished jobs of a chunk with dead workers as suspects; return the outcomes of its stored jobs."""
         done = []
         known = find_stored(chunk)
         for name in chunk.names:

@@ -42,10 +42,10 @@ _ALL_TRACES_UP_TO = 3000  # runs; with more, sweep.trace=auto is sample
 
 @dataclass(frozen=True)
 class Engine:
-    """Where the runs of a sweep are made.
+    """Location of the execution of a sweep: processes on this machine, or a Dask cluster.
 
     Attributes:
-        workers: Number of processes on this machine; 0 for the process itself.
+        workers: Number of worker processes on this machine; 0 for the current process.
         address: Address of a running Dask scheduler, such as tcp://127.0.0.1:8786; then `workers` has no effect.
     """
 
@@ -59,17 +59,17 @@ class Engine:
 
 @dataclass(frozen=True)
 class Ended:
-    """How a sweep ended.
+    """Result of a sweep.
 
     Attributes:
         folder: The sweep's folder.
         outputs: The outputs folder.
         names: Hash of each cell's run or calibration.
-        ends: How those ended that are made, by hash.
-        failures: Overrides, reason and where to read on, of each cell that failed.
-        left: Number of runs that were not made, as the sweep was to stop at the first failure.
-        stored: Number of runs that were stored before.
-        resolved: What differs between the configs of the runs.
+        ends: Outcomes of the finished runs and calibrations, by hash.
+        failures: Overrides, reason and details file of each failed cell.
+        left: Number of runs that are missing because the sweep stopped at the first failure.
+        stored: Number of cached runs.
+        resolved: Values that differ between the configs of the runs.
     """
 
     folder: Path
@@ -85,14 +85,14 @@ class Ended:
 def sweep_typed(
     arguments: Sequence[str], sweeper: DictConfig | Mapping[str, Any], source: Composer, command: str
 ) -> Ended:
-    """Make the runs of a command line that are missing.
+    """Execute the missing runs of a command line.
 
     Args:
-        arguments: Overrides as typed, Hydra's own left out.
-        sweeper: Values of hydra.sweeper: workers, address, and params, the values by key that a file gives; those of
-            the command line come after and win.
-        source: Composes the configs.
-        command: The command line, kept with the sweep.
+        arguments: Overrides as typed, without those of Hydra itself.
+        sweeper: Values of hydra.sweeper: workers, address, and params, the values by key from a file. Values on the
+            command line replace those of params.
+        source: Composer of the configs.
+        command: The command line, stored with the sweep.
     """
     params = [f"{key}={value}" for key, value in (sweeper["params"] or {}).items()]
     plan = Grid([*params, *arguments], source)
@@ -103,17 +103,17 @@ def sweep_typed(
 
 
 def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool = True) -> Ended:
-    """Make all runs and calibrations of a plan that are not stored yet, the longest first.
+    """Execute the missing runs and calibrations of a plan, the longest first.
 
     Args:
         plan: The plan.
-        engine: Where they are made.
-        command: The command that makes the sweep, kept with it.
-        accept_cut_short: Whether a stored run that was cut short counts as done; where it is an error it does not.
+        engine: Location of the execution.
+        command: The command of the sweep, stored with it.
+        accept_cut_short: True if a stored run that was aborted counts as done; False if it counts as an error.
 
     Raises:
-        ConfigError: if a cell cannot be run, or all would cost too much; nothing has been started then.
-        StoreError: if the disk does not take them, or a worker cannot work.
+        ConfigError: if a cell cannot be run, or the sweep exceeds a limit; no run has been started.
+        StoreError: if a result cannot be written, or a worker fails.
         RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
     """
     checked = check(plan)
@@ -135,7 +135,7 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
                     raise StoreError(f"{report.trouble}; finished runs are stored; the same command continues")
                 if rules.stop_at_failure and any(end.failure for end in report.outcomes):
                     break
-        except KeyboardInterrupt:  # no worker is left to finish the run that it was at
+        except KeyboardInterrupt:  # no worker is left to finish its run
             clean(rules, names)
             raise
         clean(rules, names)
@@ -145,7 +145,7 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
 
 
 def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
-    """Store which overrides lead to which run, and return the sweep's folder."""
+    """Store the overrides and the hash of each run; return the sweep's folder."""
     axes = plan.axes()
     if axes is not None:
         return store.write_grid(checked.outputs, axes, checked.names, command, checked.spec)
@@ -154,7 +154,7 @@ def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
 
 
 def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
-    """Return how so many runs of a sweep, which is kept in a folder, are made."""
+    """Return the rules for a number of runs of a sweep in a folder."""
     automatic: TraceKeeping = "all" if runs <= _ALL_TRACES_UP_TO else "sample"
     folder = folder.resolve()
     return Rules(
@@ -172,7 +172,7 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
 
 
 def _find_stored(checked: Checked, rules: Rules) -> Ends:
-    """Return how those jobs ended that count as done: a run that shall keep its trace only with it."""
+    """Return the outcomes of the jobs that count as done; a run that must keep its trace counts only with its trace."""
     finished = store.Finished(rules.outputs)
     ends = Ends(checked.names)
     in_shards = finished.places(checked.names)
@@ -192,7 +192,7 @@ def _find_stored(checked: Checked, rules: Rules) -> Ends:
 
 
 def _counts(finished: store.Finished, places: NDArray[np.intp], rules: Rules) -> NDArray[np.bool_]:
-    """Tell which of some runs in shards count as done: one that shall keep its trace does not."""
+    """Return True for each run in a shard that counts as done; a run that must keep its trace does not count."""
     rank = finished.rank[places]
     accepted = np.array([rules.accepts_rank(each) for each in range(3)])[rank]
     pairs = zip(Names(finished.names[places]), rank.tolist(), strict=True)
@@ -212,18 +212,18 @@ def _find_calibrated(rules: Rules, name: str, damage: list[str]) -> store.Outcom
 def make_jobs(
     plan: Plan, checked: Checked, queue: Queue, cells: NDArray[np.intp], engine: Engine, stored: int
 ) -> Iterator[Report]:
-    """Make what is in a queue and show the progress; yield what became of each chunk.
+    """Execute the jobs of a queue and show the progress; yield the report of each chunk.
 
     Args:
         plan: The plan.
-        checked: What its check gave.
+        checked: Result of the check of the plan.
         queue: The queue.
-        cells: Its cells, shape (n,); of a tuning, whose trials are chosen later, a cell like them for each.
-        engine: Where they are made.
-        stored: Number of jobs that are stored already.
+        cells: Cells of the queue, shape (n,). A tuning, whose trials are chosen later, gives a similar cell for each.
+        engine: Location of the execution.
+        stored: Number of cached jobs.
 
     Raises:
-        ConfigError: if they would cost too much.
+        ConfigError: if the jobs exceed a limit of CPU time or memory.
     """
     _tell(_count(checked, len(cells), stored))
     if not len(cells):
@@ -250,7 +250,7 @@ def _count(checked: Checked, left: int, stored: int) -> str:
 
 @contextlib.contextmanager
 def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Iterator[Iterator[Report]]:
-    """Start what makes the jobs of a queue, which is expected to take some time; yield what became of each chunk."""
+    """Start the workers of a queue, given its expected CPU time; yield an iterator over the reports of its chunks."""
     if engine.address is not None:
         with remote_client(engine.address) as client, contextlib.closing(on_cluster(queue, client)) as reports:
             processes = max(1, len(client.nthreads()))
@@ -274,10 +274,10 @@ def _workers(queue: Queue, jobs: int, engine: Engine, expected: Estimate) -> Ite
 
 
 def _seconds_in_process(rules: Rules, workers: int, expected: Estimate) -> float:
-    """Return the time in s for which jobs are made in this process, before workers are started for the rest.
+    """Return the time, in s, for which this process executes jobs before it starts workers for the rest.
 
-    The start of workers costs more than it saves if there is little to do. Jobs that may not end, or that may bring
-    their process down, are made by workers from the first on.
+    Starting workers costs more than it saves if there are few jobs. Workers execute all jobs if a job may not end or
+    may crash its process.
     """
     if workers == 0:
         return math.inf
@@ -287,7 +287,7 @@ def _seconds_in_process(rules: Rules, workers: int, expected: Estimate) -> float
 
 
 def _begun_in_process(queue: Queue, workers: int, seconds: float) -> Generator[Report]:
-    """Make jobs in this process for some time, in s, and the rest on workers; yield what became of each chunk."""
+    """Execute jobs in this process for a time, in s, and the rest on workers; yield the report of each chunk."""
     end = time.monotonic() + seconds
     yield from in_process(queue, lambda: time.monotonic() < end)
     if queue.left:
@@ -304,7 +304,7 @@ def _scratch(rules: Rules) -> Path:
 
 
 def clean(rules: Rules, names: Sequence[str]) -> None:
-    """Remove what killed processes left behind, now or earlier: temporary files, and folders without metrics."""
+    """Remove temporary files and folders without metrics that killed processes of this or an earlier sweep left."""
     shutil.rmtree(_scratch(rules), ignore_errors=True)
     runs = rules.outputs / "runs"
     for folder in (rules.sweep, rules.sweep / "logs", rules.outputs / "shards", rules.outputs / FINER, runs):

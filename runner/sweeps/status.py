@@ -1,4 +1,4 @@
-"""Progress of a sweep, from its stored runs and noted times, and the lock of its outputs folder."""
+"""Progress of a sweep, from its stored runs and run times, and the lock of its outputs folder."""
 
 import contextlib
 import fcntl
@@ -18,10 +18,10 @@ _PATIENCE = 1.0  # s; `runner status` holds the lock for an instant
 
 @contextlib.contextmanager
 def at_work(outputs: Path) -> Iterator[None]:
-    """Keep other sweeps out of an outputs folder; the lock ends with the process, however that ends.
+    """Lock an outputs folder against other sweeps; the lock ends with the process, even if that is killed.
 
     Raises:
-        RunnerError: if another sweep is at work there.
+        RunnerError: if another sweep uses the folder.
     """
     folder = os.open(outputs, os.O_RDONLY | os.O_DIRECTORY)
     try:
@@ -29,8 +29,8 @@ def at_work(outputs: Path) -> Iterator[None]:
         while not _lock(folder):
             if time.monotonic() > deadline:
                 raise RunnerError(
-                    f"another sweep is at work in {outputs}; wait for it (`runner status` tells how far it is), or "
-                    "take another folder with outputs=FOLDER"
+                    f"another sweep is at work in {outputs}; wait for it (`runner status` shows its progress), or "
+                    "choose another folder with outputs=FOLDER"
                 )
             time.sleep(0.05)
         yield
@@ -39,7 +39,7 @@ def at_work(outputs: Path) -> Iterator[None]:
 
 
 def is_at_work(outputs: Path) -> bool:
-    """Tell whether a sweep is at work in an outputs folder."""
+    """Return True if a sweep is running in an outputs folder."""
     folder = os.open(outputs, os.O_RDONLY | os.O_DIRECTORY)
     try:
         return not _lock(folder)
@@ -53,7 +53,7 @@ def _lock(folder: int) -> bool:
     except BlockingIOError:
         return False
     except OSError:
-        return True  # a file system without locks: two sweeps at once do some runs twice, and no harm
+        return True  # no file locks: two simultaneous sweeps repeat some runs, which is harmless
     return True
 
 
@@ -63,16 +63,16 @@ _MEND = "a sweep at work writes it again"
 
 @dataclass(frozen=True)
 class Status:
-    """How far a sweep is.
+    """Progress of a sweep.
 
     Attributes:
-        done: Number of its distinct runs that are stored, failed ones included.
+        done: Number of distinct stored runs, including failed ones.
         failed: Number of stored runs that failed.
-        caveats: Number of caveats of the run of each cell that is stored, in the order of the cells.
-        left: Number of runs that are not stored.
-        at_work: Whether a sweep is at work in its outputs folder.
-        seconds: How long what is left will take at the last pace noted, in s; None where none is.
-        damage: What is damaged of what is stored, a text for each file.
+        caveats: Number of caveats of each stored cell, in the order of the cells.
+        left: Number of missing runs.
+        at_work: True if a sweep is running in the outputs folder.
+        seconds: Remaining time at the last recorded pace, in s; None if no pace is recorded.
+        damage: Messages on damaged files, one for each file.
     """
 
     done: int
@@ -85,10 +85,10 @@ class Status:
 
 
 def find_status(sweep: store.Sweep) -> Status:
-    """Look how far a sweep is.
+    """Return the progress of a sweep.
 
     Raises:
-        OSError: if its outputs folder cannot be read.
+        OSError: if the outputs folder of the sweep cannot be read.
     """
     finished = store.Finished(sweep.outputs)
     names = set(sweep.hashes)
@@ -96,7 +96,7 @@ def find_status(sweep: store.Sweep) -> Status:
     stored = [end for end in ends.values() if end is not None]
     left = len(names) - len(stored)
     pace = None
-    with contextlib.suppress(store.DamagedError):  # it is written again every few seconds
+    with contextlib.suppress(store.DamagedError):  # the sweep rewrites it every few seconds
         pace = read_pace(sweep.folder)
     return Status(
         done=len(stored),
@@ -110,14 +110,14 @@ def find_status(sweep: store.Sweep) -> Status:
 
 
 def read_pace(folder: Path) -> float | None:
-    """Return the time for a run that a sweep noted last, in s; None where it noted none.
+    """Return the last time for a run that a sweep recorded, in s; None if there is none.
 
     Raises:
-        DamagedError: if the note is damaged.
+        DamagedError: if the record is damaged.
     """
     if not (folder / NOTE).exists():
         return None
     pace = read_json(folder / NOTE, _MEND).get("seconds_per_run")
     if not (isinstance(pace, float) and math.isfinite(pace)):
-        raise store.DamagedError(f"cannot read {folder / NOTE}: it holds no time of a run; {_MEND}")
+        raise store.DamagedError(f"cannot read {folder / NOTE}: it has no time for a run; {_MEND}")
     return pace

@@ -18,14 +18,15 @@ from runner.store.axes import SweepAxis
 
 @dataclass(frozen=True)
 class SweptKey:
-    """A key of a sweep's command line with its values; one that is not swept has one.
+    """Key of a sweep's command line with its values; a key that is not swept has one value.
 
     Attributes:
         name: The key, such as "noise.position".
-        values: Its values; quantities, such as 1mrad, as numbers in SI units.
-        option: Whether they choose an option of a config group, or delete a key: what needs composing anew.
-        start: How its overrides begin for Hydra, such as "noise.position".
-        typed: The override as typed; empty for a key that is swept.
+        values: Values of the key; quantities, such as 1mrad, are numbers in SI units.
+        option: True if the values choose an option of a config group or delete a key; such overrides need a new
+            composition.
+        start: First part of Hydra's override, such as "noise.position".
+        typed: Override as typed; empty for a swept key.
     """
 
     name: str
@@ -35,7 +36,7 @@ class SweptKey:
     typed: str = ""
 
     def override(self, number: int) -> str:
-        """Return the override of a value as Hydra takes it; the value is given by its number."""
+        """Return the Hydra override of a value, given by its index."""
         return self.typed or SweepAxis(self.start, self.values).text(number)
 
     def entry(self) -> SweepAxis | str:
@@ -46,15 +47,15 @@ class SweptKey:
 
 
 def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigLoader) -> list[SweptKey]:
-    """Return the keys of a sweep in order; of a key that stands twice the last values count, in the first place.
+    """Return the keys of a sweep in order. A repeated key has its last values at its first position.
 
     Args:
         arguments: Overrides, such as "robot=macro,mini" and "noise.position=1e-4,1e-3".
         groups: Names of the config groups.
-        loader: Hydra's loader, which knows what `glob(*)` stands for.
+        loader: Hydra's loader, which expands `glob(*)`.
 
     Raises:
-        ConfigError: for what is not a valid override, for a key that is swept over no value, and for too many cells.
+        ConfigError: if an override is not valid, a key is swept over no value, or there are too many cells.
     """
     try:
         overrides = OverridesParser.create(config_loader=loader).parse_overrides(list(arguments))
@@ -70,7 +71,7 @@ def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigL
 
 
 def _check_ranges(overrides: Sequence[Override]) -> None:
-    """Refuse a range of too many values before they are written out."""
+    """Raise an error for a range with too many values before it is expanded."""
     for override in overrides:
         value = override.value()
         if isinstance(value, RangeSweep) and value.start is not None and value.stop is not None and value.step:
@@ -98,7 +99,7 @@ def _read(override: Override, groups: Sequence[str]) -> SweptKey:
 
 
 def _counted(override: Override) -> range | None:
-    """Return the values of a range of whole numbers in order, which may be a million; None of any other override."""
+    """Return the values of an ordered integer range, which may have a million values; None for other overrides."""
     value = override.value()
     if not isinstance(value, RangeSweep) or value.shuffle or value.tags:
         return None

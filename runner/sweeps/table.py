@@ -1,4 +1,4 @@
-"""Tidy table of a sweep with a row for each cell: Parquet and CSV, readable with pandas only."""
+"""Tidy table of a sweep with a row for each cell, as Parquet and CSV files for pandas."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -14,8 +14,8 @@ from runner.sweeps.measurements import Measurements, medians
 if TYPE_CHECKING:
     import pandas as pd
 
-_ROWS = 50_000  # in memory together
-_TEXTS = ["status", "failure", "caveats.rules"]  # columns of which many rows are the same
+_ROWS = 50_000  # rows in memory at a time
+_TEXTS = ["status", "failure", "caveats.rules"]  # columns with many equal rows
 QUANTILES = (0.05, 0.25, 0.75, 0.95)
 
 
@@ -24,21 +24,24 @@ def table(
 ) -> "pd.DataFrame":
     """Return the table of a sweep, or some of its metrics or rows.
 
-    The columns are the swept axes under their keys; status, failure and hash; the number of caveats, and the
-    rules that were sprung; and of every metric `NAME.median`;
-    `NAME.low` and `.high`, the ends of the median's 95 % interval by the bootstrap, missing where the repetitions are
-    too few; `NAME.q05`, `.q25`, `.q75`, `.q95`; and `NAME.n`, the number of repetitions that have a value. A repetition
-    without one counts as beyond every number; what is itself beyond every number is missing. A quantile is the
-    smallest value that so large a share of the repetitions does not exceed, never a value between two of them: NumPy's
-    inverted_cdf. The median of an even number is the mean of the two in the middle.
+    The first columns are the swept axes under their keys; status, failure and hash; the number of caveats, and the
+    triggered rules. Each metric has these columns:
+
+    - `NAME.median`: the median; for an even number of values, the mean of the two in the middle.
+    - `NAME.low` and `.high`: the ends of the median's 95 % bootstrap interval; missing for too few repetitions.
+    - `NAME.q05`, `.q25`, `.q75` and `.q95`: quantiles by NumPy's inverted_cdf, each the value of a repetition: the
+      smallest value that this fraction of the repetitions does not exceed.
+    - `NAME.n`: the number of repetitions that have a value.
+
+    A repetition without a value counts as beyond every number. A result beyond every number is missing in the table.
 
     Args:
         measurements: The cells.
-        metrics: Names of the metrics, in order; None takes all.
-        rows: Which cells.
+        metrics: Names of the metrics, in order; None for all metrics.
+        rows: Slice of the cells.
 
     Raises:
-        RunnerError: If a metric is none of the sweep's.
+        RunnerError: If the sweep lacks a metric.
     """
     import pandas as pd
 
@@ -56,19 +59,19 @@ def table(
 def metric_columns(
     measurements: Measurements, metrics: Sequence[str] | None = None, rows: slice = slice(None)
 ) -> dict[str, FloatArray]:
-    """Return the columns of the metrics alone, each of shape (cells,); see `table`."""
+    """Return only the columns of the metrics, each of shape (cells,); see `table`."""
     names = measurements.named(metrics)
     return {key: column for name in names for key, column in _columns(name, measurements.values[name][rows])}
 
 
 def write_table(measurements: Measurements, folder: Path) -> int:
-    """Write `table.parquet`, with the unit of each column in its metadata, and `table.csv`, some rows at a time.
+    """Write `table.parquet`, with the unit of each column in its metadata, and `table.csv`, in blocks of rows.
 
     Returns:
         The number of columns.
 
     Raises:
-        StoreError: If the disk does not take them.
+        StoreError: If the files cannot be written.
     """
     import pyarrow.csv
     import pyarrow.parquet
@@ -93,7 +96,7 @@ def write_table(measurements: Measurements, folder: Path) -> int:
 
 
 def with_units(schema: Any, units: Mapping[str, str]) -> Any:
-    """Return the schema of a Parquet table with the unit of each column of a metric in its metadata."""
+    """Return the schema of a Parquet table with the unit of each metric column in its metadata."""
     for index, column in enumerate(schema.names):
         name, _, kind = column.rpartition(".")
         if name in units and kind != "n":
@@ -119,7 +122,7 @@ def median_ends(ordered: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 def _columns(name: str, values: FloatArray) -> Iterator[tuple[str, FloatArray]]:
     """Yield the columns of one metric, each of shape (cells,)."""
-    ordered = np.sort(values, axis=1)  # NaN, which is no repetition, comes last
+    ordered = np.sort(values, axis=1)  # NaN, which is not a repetition, comes last
     count = np.sum(~np.isnan(ordered), axis=1)
     yield f"{name}.median", _finite(medians(ordered))
     low, high = median_ends(ordered)
@@ -132,6 +135,6 @@ def _columns(name: str, values: FloatArray) -> Iterator[tuple[str, FloatArray]]:
 
 
 def _finite(values: FloatArray) -> FloatArray:
-    """Return the values with those beyond every number as missing."""
+    """Return the values, with NaN for infinite ones."""
     found: FloatArray = np.where(np.isfinite(values), values, np.nan)
     return found

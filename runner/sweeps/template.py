@@ -1,8 +1,8 @@
 """Composed config as a template for the values of many cells, with the same result as Hydra.
 
 Hydra takes about 50 ms to compose a config. After it has composed one for a combination of group options, its own
-function applies value overrides in about 5 ms. Some keys only put their value in certain places: their own,
-and those that interpolate it. For such a key the template puts the value of a cell there in about 3 us.
+function applies value overrides in about 5 ms. Some keys only set certain entries: their own, and
+those that interpolate it. For such a key the template sets these entries for a cell in about 3 us.
 """
 
 import copy
@@ -18,28 +18,28 @@ from runner.config.compose.composer import put_values
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.sweeps.swept import SweptKey
 
-Place = tuple[str, ...]  # of a value in a config, such as ("noise", "position")
+Place = tuple[str, ...]  # path of a value in a config, such as ("noise", "position")
 Changes = Mapping[Place, Any]
 
-_GONE: Place = ()  # stands for a key that another config lacks
+_GONE: Place = ()  # path of a key that another config lacks
 _GROUPS_KEPT = 10_000
 
 
 class Template:
-    """A config composed for one combination of options, and the keys whose values are applied to it.
+    """Config composed for one combination of options, and the keys whose values are applied to it.
 
     Args:
-        config: The config as Hydra composed it from the options alone.
-        root: Name of the file in conf/ that it hangs on: "config" of a run, "calibrate" of a calibration.
-        config_dirs: Config folders of the user's.
-        keys: The keys of values, in the order of the command line.
+        config: The config that Hydra composed from only the options.
+        root: Name of the root config in conf/: "config" for a run, "calibrate" for a calibration.
+        config_dirs: User config folders.
+        keys: The value keys, in the order of the command line.
 
     Attributes:
-        root: As given.
-        choices: The option chosen in each of our groups.
+        root: Name of the root config.
+        choices: The option chosen in each group.
 
     Raises:
-        ConfigError: if a value does not compose.
+        ConfigError: if a value cannot be composed.
     """
 
     def __init__(self, config: DictConfig, root: str, config_dirs: Sequence[Path], keys: Sequence[SweptKey]) -> None:
@@ -57,12 +57,12 @@ class Template:
         self._groups: dict[tuple[object, ...], object] = {}
 
     def resolve(self, cell: Sequence[int]) -> Mapping[str, Any]:
-        """Return the resolved config of a cell, given by the number of each key's value.
+        """Return the resolved config of a cell, given by the index of each key's value.
 
-        Cells for which a group is the same share it as one object, which must not be changed.
+        Cells with an equal group share it as one object, which must not be changed.
 
         Raises:
-            ConfigError: if it does not compose.
+            ConfigError: if the config cannot be composed.
         """
         if self._changes is None:
             return self.compose(cell).resolved
@@ -74,14 +74,14 @@ class Template:
         return resolved
 
     def changes_alone(self, key: int, place: Place) -> bool:
-        """Tell whether all that the values of a key do is to stand in one place, which no other key changes."""
+        """Return True if the values of a key change only this entry, and no other key changes its group."""
         if self._changes is None:
             return False
         alone = all(not each or list(each) == [place] for each in _distinct(self._changes[key]))
         return alone and self._keys_of.get(place[0]) == [key]
 
     def _group(self, name: str, numbers: Sequence[int]) -> object:
-        """Return what the root of the config holds under a name, given by the numbers of the keys that change it."""
+        """Return a top-level entry of the config, given the index of the value of each key that changes it."""
         found = self._groups.get((name, *numbers))
         if found is None and self._changes is not None:
             made = {name: self._first.get(name)}
@@ -96,7 +96,7 @@ class Template:
         return found
 
     def compose(self, cell: Sequence[int]) -> Composed:
-        """Compose a cell by Hydra's own function for overrides of values; see `resolve`."""
+        """Compose a cell with Hydra's own function for value overrides; see `resolve`."""
         texts = [key.override(number) for key, number in zip(self._keys, cell, strict=True)]
         config = copy.deepcopy(self._config)
         try:
@@ -106,9 +106,10 @@ class Template:
         return from_hydra(config, self._chosen, texts, self._config_dirs)
 
     def _find_changes(self) -> "list[Sequence[Changes]] | None":
-        """Return what each value of each key changes against the first cell, or None where keys act on each other.
+        """Return the changes of each value of each key from the first cell, or None if keys may interact.
 
-        They do where two keys change one place; they may where values are mappings, which merge, or interpolations.
+        Keys interact if two of them change one entry. They may interact if values are interpolations, or mappings,
+        which Hydra merges.
         """
         swept = [key.values for key in self._keys if len(key.values) > 1]
         if not all(isinstance(values, range) or all(map(_is_plain, values)) for values in swept):
@@ -144,7 +145,7 @@ class Template:
 
 
 class _Same(Sequence[Changes]):
-    """Each value of a key put into the same places, made when asked for, as a key may have a million of them."""
+    """Changes of a key that sets the same entries for each value; created on demand because it may have a million."""
 
     def __init__(self, places: Sequence[Place], values: Sequence[Any]) -> None:
         self._places, self._values = places, values
@@ -157,7 +158,7 @@ class _Same(Sequence[Changes]):
 
 
 def _distinct(changes: Sequence[Changes]) -> Sequence[Changes]:
-    """Return changes, without those that are known to be in the same places as others."""
+    """Return changes, without those that are known to affect the same entries as others."""
     return [changes[0]] if isinstance(changes, _Same) else changes
 
 
@@ -170,7 +171,7 @@ def _is_plain(value: Any) -> bool:
 
 
 def _difference(first: Any, other: Any, place: Place = ()) -> Iterator[tuple[Place, Any]]:
-    """Yield where two configs differ, and the other's value there; _GONE for a key that the other lacks."""
+    """Yield the path of each difference between two configs and the other's value; _GONE for a key that it lacks."""
     if not (isinstance(first, Mapping) and isinstance(other, Mapping)):
         if repr(first) != repr(other):  # 1, 1.0 and True are three values
             yield place, other
@@ -185,7 +186,7 @@ def _difference(first: Any, other: Any, place: Place = ()) -> Iterator[tuple[Pla
 
 
 def _put(config: dict[str, Any], place: Place, value: Any) -> None:
-    """Put a value into a config of which only the root is a copy; copies what lies on the way."""
+    """Set a value in a config whose root is a copy; the mappings on the path are copied first."""
     for key in place[:-1]:
         inner = dict(config[key])
         config[key] = inner

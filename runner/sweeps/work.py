@@ -33,16 +33,16 @@ from runner.sweeps.writer import ResultWriter, Rules, without_trace, write_failu
 
 Made = TypeVar("Made")
 
-_one_at_a_time = threading.Lock()  # should a worker have several threads
+_one_at_a_time = threading.Lock()  # in case a worker has several threads
 
 
 @dataclass(frozen=True)
 class Part:
-    """Runs whose configs differ in nothing but the seed, or a single run or calibration.
+    """Runs whose configs differ only in the seed, or a single run or calibration.
 
     Attributes:
-        names: Hash of each.
-        configs: Composed config of each.
+        names: Hash of each run or calibration.
+        configs: Composed config of each run or calibration.
     """
 
     names: Sequence[str]
@@ -51,12 +51,12 @@ class Part:
 
 @dataclass(frozen=True)
 class Chunk:
-    """Some runs and calibrations for one worker.
+    """Runs and calibrations for one worker.
 
     Attributes:
-        name: Name of its shard.
-        rules: How they are made and kept.
-        parts: The jobs, those together that differ in nothing but the seed.
+        name: Name of the shard.
+        rules: Rules for the execution and storage of the jobs.
+        parts: The jobs, grouped if they differ only in the seed.
     """
 
     name: str
@@ -70,18 +70,18 @@ class Chunk:
 
     @property
     def jobs(self) -> list[tuple[str, Composed]]:
-        """Hash and composed config of each."""
+        """Hash and composed config of each job."""
         return [job for part in self.parts for job in zip(part.names, part.configs, strict=True)]
 
 
 @dataclass(frozen=True)
 class Report:
-    """What became of a chunk.
+    """Result of a chunk.
 
     Attributes:
-        outcomes: How they ended, those that were stored already included.
-        trouble: Why it stopped before its end, where no other run would fare better; empty otherwise.
-        seconds: Wall-clock time it took, in s.
+        outcomes: Outcomes of the jobs, including cached ones.
+        trouble: Reason why the chunk stopped early, if other runs would fail for the same reason; empty otherwise.
+        seconds: Wall-clock time of the chunk, in s.
     """
 
     outcomes: Sequence[store.Outcome]
@@ -90,16 +90,16 @@ class Report:
 
 
 def dask_setup(_worker: object) -> None:
-    """Leave Ctrl-C to the command, which ends its workers; Dask calls this in each process of `local_client`."""
+    """Ignore Ctrl-C, because the command ends its workers; Dask calls this in each process of `local_client`."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def work(chunk: Chunk, tell: Callable[[int], None] | None = None) -> Report:
-    """Make the runs of a chunk; a chunk that was begun before goes on where it was.
+    """Execute the jobs of a chunk; a chunk that was interrupted before continues.
 
     Args:
         chunk: The chunk.
-        tell: Is told each second, from a thread, how many ticks of it are made.
+        tell: Callback, which receives the number of finished ticks each second, from a thread.
     """
     quiet_environment()
     start = time.perf_counter()
@@ -116,7 +116,7 @@ def work(chunk: Chunk, tell: Callable[[int], None] | None = None) -> Report:
 
 
 def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> None:
-    """Make what a chunk asks for: together what can be, then one by one."""
+    """Execute the jobs of a chunk: first those that can share a batch, then the others one by one."""
     rules, known = chunk.rules, find_stored(chunk)
     outcomes += known.values()
     writer = ResultWriter(chunk.name, rules, disk, outcomes)
@@ -136,9 +136,9 @@ def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> No
 
 
 def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
-    """Return how those of a chunk ended that need not be made: they are in its shard, or count as done.
+    """Return the outcomes of the jobs of a chunk that are in its shard or count as done.
 
-    What is damaged is none of them.
+    Damaged results are left out.
     """
     found, outputs = {}, chunk.rules.outputs
     for part in chunk.parts:
@@ -155,10 +155,10 @@ def find_stored(chunk: Chunk) -> dict[str, store.Outcome]:
 
 
 def find_calibrated(outputs: Path, name: str) -> store.Outcome | None:
-    """Return that a calibration ended well, or None where it is not stored.
+    """Return a successful outcome if a calibration is stored, otherwise None.
 
     Raises:
-        DamagedError: if it is damaged.
+        DamagedError: if the calibration is damaged.
     """
     return None if store.find_calibration(outputs, name) is None else store.Outcome(name, "", False)
 
@@ -169,7 +169,7 @@ def _check_folder(rules: Rules) -> None:
 
 
 def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run:
-    """Simulate one run; return what is to be stored, in a folder of its own or in a shard."""
+    """Simulate one run; return the result to store, in a separate folder or in a shard."""
     config = _checked(name, composed)
     result, reason, details = _try(lambda: simulate_job(config, composed), rules)
     if result is not None:
@@ -180,9 +180,9 @@ def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run:
 
 
 def _checked_runs(parts: Sequence[Sequence[tuple[str, Composed]]]) -> Iterator[tuple[str, Job]]:
-    """Yield the runs among some jobs with their checked configs; those that differ in the seed alone are checked once.
+    """Yield the runs among the jobs with their checked configs; runs that differ only in the seed are checked once.
 
-    The command has checked them all, and a worker with other source code shows in each.
+    This is sufficient: the command has checked all runs, and every run reveals a worker with other source code.
     """
     known: dict[tuple[object, ...], RunConfig] = {}
     for part in parts:
@@ -204,7 +204,7 @@ def _checked(name: str, composed: Composed) -> RunConfig:
 
 
 def _calibrate(name: str, composed: Composed, rules: Rules) -> store.Outcome:
-    """Carry out one calibration and store it; one that is cut short is not stored."""
+    """Carry out one calibration and store it; an aborted one is not stored."""
     config = validate_calibration(composed)
     _check_name(name, config.resolved, config.arm.urdf)
     record, reason, details = _try(lambda: carry_out(config, composed), rules)
@@ -221,7 +221,7 @@ def _check_name(name: str, resolved: Mapping[str, object], urdf: str) -> None:
 
 
 def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]:
-    """Return what is made, or why it is not, and the traceback of an error of ours or of a part that was added."""
+    """Return the result, or None with the reason of the failure and the traceback of an error."""
     limit = rules.time_limit
     for _ in range(rules.attempts):
         try:
@@ -231,7 +231,7 @@ def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]
             place = user_place(error)
             found = f"no result within sweep.time_limit, {limit:g} s{f' ({place})' if place else ''}", ""
         except Exception as error:
-            if isinstance(error, OSError) and error.errno in DISK_FULL:  # no fault of the run
+            if isinstance(error, OSError) and error.errno in DISK_FULL:  # the run is not the cause
                 raise StoreError(describe_write_error(error)) from error
             place = user_place(error)
             found = f"{type(error).__name__}: {error}{f' ({place})' if place else ''}", traceback.format_exc()
@@ -239,7 +239,7 @@ def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]
 
 
 def give_up(chunk: Chunk, reason: str) -> Report:
-    """Store that the one job of a chunk was cut short, as it brings every worker down."""
+    """Store the single job of a chunk as aborted because it crashes every worker."""
     ((name, composed),), rules = chunk.jobs, chunk.rules
     if composed.root == CALIBRATION:
         write_log(name, reason, rules)
@@ -252,6 +252,6 @@ def give_up(chunk: Chunk, reason: str) -> Report:
 
 
 def cut_short(name: str, config: RunConfig, composed: Composed, rules: Rules, reason: str) -> store.Run:
-    """Return what is stored of a run that something else than its physics ended."""
+    """Return the run to store if a run ended for another reason than its physics."""
     record = cut_short_record(reason, config.settings.repetitions, job_provenance(config, composed))
     return store.Run(rules.outputs / "runs" / name, composed.resolved, record, config.arm.urdf)

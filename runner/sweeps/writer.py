@@ -14,25 +14,25 @@ from runner.store.writing import make_record
 
 TraceKeeping = Literal["all", "sample", "failed", "never"]
 
-_SAMPLE = 100  # one run in so many, where that makes no more than
+_SAMPLE = 100  # one run in so many, up to _LARGEST_SAMPLE runs
 _LARGEST_SAMPLE = 200  # runs: a run with its trace is four files
 
 
 @dataclass(frozen=True)
 class Rules:
-    """How the runs of a sweep are made and kept.
+    """Rules for the execution and storage of the runs of a sweep.
 
     Attributes:
-        plugins: The user's parts that the command line named.
-        outputs: The outputs folder, absolute: every worker must see it.
-        sweep: The sweep's folder, absolute.
-        trace: Which runs keep their trace.
-        accept_failed: Whether a stored run that failed counts as done.
-        accept_cut_short: Whether one does that was cut short.
-        stop_at_failure: Whether the first failed run ends the sweep.
-        attempts: How often a run is tried that is cut short.
+        plugins: Plug-ins of the command line.
+        outputs: Outputs folder, absolute; all workers must have access to it.
+        sweep: Folder of the sweep, absolute.
+        trace: Selection of the runs that keep their trace.
+        accept_failed: True if a stored run that failed counts as done.
+        accept_cut_short: True if a stored run that was aborted counts as done.
+        stop_at_failure: True if the first failed run ends the sweep.
+        attempts: Number of attempts for a run that is aborted.
         time_limit: Longest wall-clock time of a run, in s; None for no limit.
-        one_in: One run in so many keeps its trace where a sample does.
+        one_in: Number of runs for each run in the sample that keeps its trace.
     """
 
     plugins: Sequence[str]
@@ -48,41 +48,41 @@ class Rules:
 
     @property
     def kept(self) -> float:
-        """Share of the runs that end well which keep their trace."""
+        """Fraction of the successful runs that keep their trace."""
         return 1.0 / self.one_in if self.trace == "sample" else float(self.trace == "all")
 
     def keeps_trace(self, name: str, failed: bool) -> bool:
-        """Tell whether a run keeps its trace, and with it a folder of its own."""
+        """Return True if a run keeps its trace, in a separate folder."""
         if self.trace == "sample":
             return failed or int(name, 16) % self.one_in == 0
         return self.trace == "all" or (failed and self.trace == "failed")
 
     def log(self, name: str) -> Path:
-        """Return the file that says why a run without a folder of its own failed."""
+        """Return the log file of a failed run that has no separate folder."""
         return self.sweep / "logs" / f"{name}.txt"
 
     def accepts(self, end: store.Outcome | None) -> bool:
-        """Tell whether a stored run counts as done."""
+        """Return True if a stored run counts as done."""
         return end is not None and self.accepts_rank(end.rank)
 
     def accepts_rank(self, rank: int) -> bool:
-        """Tell whether a stored run does whose outcome has a rank; see Outcome."""
+        """Return True if a stored run whose outcome has this rank counts as done; see Outcome."""
         return rank == 0 or (self.accept_failed and (self.accept_cut_short or rank == 1))
 
 
 def one_in(runs: int) -> int:
-    """Return the number of runs of a sweep of which one is in its sample: a hundred, or a multiple of it."""
+    """Return the number of runs for each run in the sample of a sweep: a hundred, or a multiple of it."""
     return _SAMPLE * max(1, -(-runs // (_SAMPLE * _LARGEST_SAMPLE)))
 
 
 class ResultWriter:
-    """Takes runs; while the next ones are simulated, the one before is written, as the disk takes its time.
+    """Writer of the runs of a chunk; writes a run while the next ones are simulated, because writing takes time.
 
     Args:
         name: Name of the shard.
-        rules: How runs are kept.
-        disk: Writes.
-        outcomes: Takes how runs ended, as soon as those with traces are stored.
+        rules: Rules for the storage of the runs.
+        disk: Executor of the write operations.
+        outcomes: List that receives the outcome of each run; a run with a trace is stored first.
     """
 
     def __init__(self, name: str, rules: Rules, disk: Executor, outcomes: list[store.Outcome]) -> None:
@@ -91,7 +91,7 @@ class ResultWriter:
         self._traceless: list[store.Run | ShardRow] = []
 
     def put(self, name: str, made: RunResult | store.Run) -> bool:
-        """Take a run, and tell whether it failed."""
+        """Add a run; return True if it failed."""
         if isinstance(made, store.Run):
             self._traceless.append(made)
             self._outcomes.append(outcome(made))
@@ -101,15 +101,15 @@ class ResultWriter:
         return made.failure is not None
 
     def put_rows(self, rows: Sequence[ShardRow]) -> None:
-        """Take runs that ended well and keep no trace."""
+        """Add successful runs that keep no trace."""
         self._traceless += rows
         self._outcomes += [row.outcome for row in rows]
 
     def close(self) -> None:
-        """Write what is left.
+        """Write the remaining runs.
 
         Raises:
-            StoreError: if the disk does not take it.
+            StoreError: if the disk cannot be written to.
         """
         self._wait()
         if self._traceless:
@@ -122,7 +122,7 @@ class ResultWriter:
 
 
 def without_trace(name: str, result: RunResult, rules: Rules) -> RunResult | store.Run:
-    """Return a result as it is kept: whole, or without its trace; then a failure is written down, too."""
+    """Return a result as it is stored: whole, or without its trace; then also log a failure."""
     if rules.keeps_trace(name, result.failure is not None):
         return result
     folder, record = rules.outputs / "runs" / name, make_record(result)
@@ -133,18 +133,18 @@ def without_trace(name: str, result: RunResult, rules: Rules) -> RunResult | sto
 
 
 def write_failure(run: store.Run, details: str, rules: Rules) -> None:
-    """Write down why a run without a folder of its own failed.
+    """Write the log of a failed run that has no separate folder.
 
     Raises:
-        StoreError: if the disk does not take it.
+        StoreError: if the disk cannot be written to.
     """
     write_log(run.hash, f"{run.provenance['command']}\n{run.failure}\n{details}", rules)
 
 
 def write_log(name: str, text: str, rules: Rules) -> None:
-    """Write down why a job without a folder of its own failed.
+    """Write the log of a failed job that has no separate folder.
 
     Raises:
-        StoreError: if the disk does not take it.
+        StoreError: if the disk cannot be written to.
     """
     write_atomically(rules.log(name), text.encode())
