@@ -123,7 +123,7 @@ def _next_done(client: Any, futures: Sequence[Any]) -> Any:
 def _give_up(chunk: Chunk) -> Report:
     reason = f"its worker process died {_DEATHS + 1} times"
     if chunk.rules.time_limit is not None:
-        reason += f", of itself or as it could not be interrupted for {STUCK:g} s after sweep.time_limit"
+        reason += f", by itself or because it could not be interrupted for {STUCK:g} s after sweep.time_limit"
     return give_up(chunk, reason)
 
 
@@ -215,8 +215,8 @@ def _start_cluster(workers: int, scratch: Path) -> Any:
         )
     except (RuntimeError, OSError) as error:
         raise RunnerError(
-            f"the processes that make the runs cannot be started: {str(error).rstrip('.')}; look at the limits of "
-            "open files and processes (`ulimit -a`), or take hydra.sweeper.workers=0, which makes them in the command"
+            f"the worker processes cannot be started: {str(error).rstrip('.')}; check the limits of open files and "
+            "processes (`ulimit -a`), or set hydra.sweeper.workers=0, which needs no worker processes"
         ) from error
 
 
@@ -252,7 +252,7 @@ def _check_versions(client: Any) -> None:
     try:
         found = {"the scheduler": client.run_on_scheduler(physics_digest), **client.run(physics_digest)}
     except (ImportError, AttributeError) as error:
-        raise RunnerError(f"the cluster cannot make runs: {error}{same}") from error
+        raise RunnerError(f"the cluster cannot execute runs: {error}{same}") from error
     other = [place for place, digest in found.items() if digest != physics_digest()]
     if other:
         raise RunnerError(f"the cluster has other source code at {', '.join(other)}{same}")

@@ -41,7 +41,7 @@ class Alike(Sequence[Composed]):
     Attributes:
         first: One of the configs.
         seeds: Seed of each config.
-        texts: Seed override of each config.
+        texts: Override of the seed of each config.
         place: Index of that override in the overrides of a config.
     """
 

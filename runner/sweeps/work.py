@@ -99,7 +99,7 @@ def work(chunk: Chunk, tell: Callable[[int], None] | None = None) -> Report:
 
     Args:
         chunk: The chunk.
-        tell: Callback, which receives the number of finished ticks each second, from a thread.
+        tell: Callback that receives the number of finished ticks each second, from a thread.
     """
     quiet_environment()
     start = time.perf_counter()

@@ -19,20 +19,20 @@ from runner.sweeps.tuning.sampler import make_optuna_trial, read_ended
 
 
 class Journal:
-    """The journal of a tuning at work. Only one may write: the lock of the outputs folder sees to it.
+    """Journal of a running tuning. The lock of the outputs folder ensures that only one process writes it.
 
     Args:
-        path: Its file, made when missing.
+        path: File of the journal; created if missing.
         keys: The tuned keys.
-        objectives: What is to get better.
+        objectives: The objectives.
 
     Attributes:
-        trials: The trials that ended.
-        history: The same as Optuna keeps them.
+        trials: The finished trials.
+        history: The finished trials as Optuna objects.
 
     Raises:
         DamagedError: if the file is damaged.
-        StoreError: if the disk does not take it.
+        StoreError: if the file cannot be written.
     """
 
     def __init__(self, path: Path, keys: Sequence[Key], objectives: Sequence[Objective]) -> None:
@@ -52,10 +52,10 @@ class Journal:
             raise StoreError(describe_write_error(error, path)) from error
 
     def append(self, trial: Trial) -> None:
-        """Add a trial that ended.
+        """Append a finished trial.
 
         Raises:
-            StoreError: if the disk does not take it.
+            StoreError: if the file cannot be written.
         """
         frozen = make_optuna_trial(self._keys, trial)
         try:
@@ -67,10 +67,10 @@ class Journal:
 
 
 def read_trials(path: Path) -> list[Trial]:
-    """Return the trials of a journal, which may be at work; nothing is written.
+    """Return the trials of a journal without writing to it; its tuning may be running.
 
     Raises:
-        StoreError: if it cannot be read.
+        StoreError: if the journal cannot be read.
     """
     if not path.exists():
         raise StoreError(f"cannot read {path}: no such file")
@@ -78,13 +78,13 @@ def read_trials(path: Path) -> list[Trial]:
 
 
 class _SealedLines(BaseJournalBackend):
-    """Where Optuna's storage keeps its log: a file of sealed lines, read once.
+    """Log of Optuna's storage: a file of sealed lines, read once.
 
     Args:
         path: The file.
 
     Raises:
-        ValueError: at a line that is not as it was written.
+        ValueError: if a line is not as it was written.
     """
 
     def __init__(self, path: Path) -> None:
@@ -93,11 +93,11 @@ class _SealedLines(BaseJournalBackend):
         self._logs: list[dict[str, Any]] = [json.loads(text) for text in self._lines.read(content)]
 
     def read_logs(self, log_number_from: int) -> Iterable[dict[str, Any]]:
-        """Return the entries from a number on."""
+        """Return the entries from an index on."""
         return self._logs[log_number_from:]
 
     def append_logs(self, logs: list[dict[str, Any]]) -> None:
-        """Add entries, on the disk when this returns."""
+        """Append entries and flush them to the disk."""
         text = "".join(f"{self._lines.seal(json.dumps(log))}\n" for log in logs)
         with self._path.open("ab") as file:
             file.write(text.encode())
@@ -113,7 +113,7 @@ def _open(path: Path) -> JournalStorage:
 
 def _load(path: Path) -> tuple[optuna.Study, list[FrozenTrial], list[Trial]]:
     try:
-        # A folder among the tunings bears the name of its own; a copy elsewhere may bear any.
+        # A folder in `tunings` has the name of its study; a copy elsewhere may have any name.
         name = path.parent.name if path.absolute().parent.parent.name == "tunings" else None
         study = optuna.load_study(study_name=name, storage=_open(path))
         history = study.get_trials(deepcopy=False)
@@ -125,7 +125,7 @@ def _load(path: Path) -> tuple[optuna.Study, list[FrozenTrial], list[Trial]]:
 
 
 def _mend(path: Path) -> None:
-    """Cut off the half line that a writer left behind who was killed."""
+    """Remove the incomplete last line that a killed writer left."""
     if path.exists():
         content = path.read_bytes()
         whole = content.rfind(b"\n") + 1

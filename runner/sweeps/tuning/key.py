@@ -13,23 +13,23 @@ RANGES = (
     "range(start, stop, step) for a grid"
 )
 
-_INSIDE = 0.618  # of the way from low to high: a place that no round number of a user stands at
-_NEAR_END = 0.02  # of the range
-_DIGITS = 9  # of a value, so that a trial's command can be read and typed
+_INSIDE = 0.618  # fraction of the range above low; no round number of a user is there
+_NEAR_END = 0.02  # fraction of the range
+_DIGITS = 9  # digits of a value, so that a trial's command can be read and typed
 _DIGITS_ON_GRID = 12
 
 
 @dataclass(frozen=True)
 class Key:
-    """A key that is tuned.
+    """Tuned key.
 
     Attributes:
         name: The key, such as "controller.natural_frequency".
-        low: Its smallest value.
-        high: Its largest value.
-        step: Distance between two of its values; None where it may take any.
-        log: Whether it is looked at on a logarithmic scale.
-        integer: Whether it takes whole numbers alone.
+        low: Smallest value of the key.
+        high: Largest value of the key.
+        step: Distance between two values; None if the key has no grid.
+        log: True if the scale of the key is logarithmic.
+        integer: True if the key takes only whole numbers.
     """
 
     name: str
@@ -51,12 +51,12 @@ class Key:
 
     @property
     def probes(self) -> tuple[float, ...]:
-        """Both ends of its range and a value between them."""
+        """Both ends of the range and a value between them."""
         between = self.low * (self.high / self.low) ** _INSIDE if self.log else self._at(_INSIDE)
         return (self.value(self.low), self.value(between), self.value(self.high))
 
     def value(self, proposed: float) -> float:
-        """Return the value of this key next to a proposed one: whole or on its grid where it has one."""
+        """Return the nearest allowed value to a proposed one: whole, or on the grid, if the key requires it."""
         if self.integer and self.step is None:
             return round(proposed)
         if self.step is not None:
@@ -65,13 +65,13 @@ class Key:
         return min(max(float(f"{proposed:.{_DIGITS}g}"), self.low), self.high)
 
     def end_near(self, value: float) -> Literal["lower", "upper"] | None:
-        """Return the end of the range within 2 % of which a value lies on the key's scale; None away from both."""
+        """Return the end of the range that is within 2 % of a value on the key's scale; None if neither is."""
         low, high, at = (math.log(each) if self.log else each for each in (self.low, self.high, value))
         share = (at - low) / (high - low)
         return "lower" if share <= _NEAR_END else "upper" if share >= 1.0 - _NEAR_END else None
 
     def override(self, value: float) -> str:
-        """Return the override that sets it."""
+        """Return the override that sets the key to a value."""
         return f"{self.name}={value!r}"
 
     def _at(self, share: float) -> float:
@@ -79,10 +79,10 @@ class Key:
 
 
 def read_key(override: Override) -> Key | None:
-    """Return the key that an override tunes, or None where it gives one value.
+    """Return the key that an override tunes, or None if the override gives one value.
 
     Raises:
-        ConfigError: for a range that is empty or of another kind, and for several values.
+        ConfigError: if the range is empty or of another kind, or the override gives several values.
     """
     found: Any = override.value()
     if not override.is_sweep_override():

@@ -16,11 +16,11 @@ Direction = Literal["minimize", "maximize"]
 
 @dataclass(frozen=True)
 class Objective:
-    """A metric and the direction in which it is better; of a run its median over the repetitions counts.
+    """Metric and the direction in which it improves; the value of a run is the median over the repetitions.
 
     Attributes:
         metric: Name of the metric.
-        direction: Whether less or more of it is better.
+        direction: Direction in which the metric improves.
 
     Raises:
         RunnerError: If there is no such metric.
@@ -44,16 +44,16 @@ class Objective:
 
     @property
     def sign(self) -> float:
-        """1 where less is better, -1 where more is."""
+        """1 if lower values are better, otherwise -1."""
         return 1.0 if self.direction == "minimize" else -1.0
 
     @property
     def worst(self) -> float:
-        """What no value is worse than."""
+        """Worst possible value."""
         return self.sign * math.inf
 
     def read(self, run: Run) -> float | None:
-        """Return the median of the metric in a good run, or None where it is beyond every number.
+        """Return the median of the metric in a successful run, or None if it is beyond every number.
 
         Raises:
             RunnerError: If runs of this kind have no such metric.
@@ -68,13 +68,13 @@ class Objective:
 
 @dataclass(frozen=True)
 class Trial:
-    """What was tried, and what came of it.
+    """Finished trial: parameters and result.
 
     Attributes:
         params: Value of each tuned key.
-        values: Value of each objective; the worst there is where the trial failed.
-        run: Hash of its run; empty where its config could not be run.
-        failure: Why it failed; empty for a good one.
+        values: Value of each objective; the worst possible value if the trial failed.
+        run: Hash of the run; empty if the config could not be run.
+        failure: Reason of the failure; empty for a successful trial.
     """
 
     params: Mapping[str, float]
@@ -84,17 +84,17 @@ class Trial:
 
 
 def best(trials: Sequence[Trial], objectives: Sequence[Objective]) -> list[int]:
-    """Return the numbers of the best trials: of one objective the first best, of several the Pareto front.
+    """Return the numbers of the best trials: the first best for one objective, the Pareto front for several.
 
-    On the front stands a good trial that no other beats in one objective without losing in another, by ascending
-    (descending where more is better) first objective; of equal ones the first.
+    The front contains each successful trial that no other trial dominates, and only the first of equal trials. It is
+    sorted by the first objective, the best value first.
     """
     good = [number for number, trial in enumerate(trials) if not trial.failure]
     signs = np.array([objective.sign for objective in objectives])
     losses = np.array([trials[number].values for number in good]).reshape(len(good), len(signs)) * signs
     front: list[int] = []
     for place in np.lexsort(losses.T[::-1]).tolist():
-        # In this order nothing that comes later can beat or equal what stands on the front.
+        # In this order, no later trial can dominate or equal a trial that is already in the front.
         if not any((losses[other] <= losses[place]).all() for other in front):
             front.append(place)
     return [good[place] for place in front]

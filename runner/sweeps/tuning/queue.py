@@ -23,7 +23,7 @@ from runner.sweeps.writer import Rules
 
 @dataclass(frozen=True)
 class _Started:
-    """A trial that was chosen: its values, its run, and why there is no run."""
+    """Chosen trial: its values, its run, and the failure if there is no run."""
 
     params: Mapping[str, float]
     run: str
@@ -31,16 +31,16 @@ class _Started:
 
 
 class TrialQueue(Queue):
-    """Chooses trials when there is room for them, and tells the journal of those that ended, in order.
+    """Queue that chooses a trial when a place is free, and appends finished trials to the journal in order.
 
-    What trial n is follows from the seed and the trials before n - at_once alone: not from how many processes are at
-    work, which of them is faster, or where a tuning was interrupted.
+    Trial n depends only on the seed and the trials up to n - at_once. It does not depend on the number of processes,
+    their speed, or interruptions of the tuning.
 
     Args:
-        study: What is tuned.
-        journal: The trials that have ended already.
-        loader: Composes their configs.
-        rules: How their runs are made and kept.
+        study: Definition of the tuning.
+        journal: Journal of the finished trials.
+        loader: Composer of the configs.
+        rules: Rules for the execution and storage of the runs.
         trials: Number of trials after which to end.
         seed: Seed of the search.
     """
@@ -58,31 +58,31 @@ class TrialQueue(Queue):
 
     @property
     def left(self) -> int:
-        """Number of trials that have not ended."""
+        """Number of unfinished trials."""
         return max(0, self._trials - len(self._journal.trials))
 
     def _composed(self, cells: Sequence[int]) -> Iterator[tuple[Sequence[int], Sequence[Composed]]]:
-        """Yield each run that is to do with its config; cells are counted in the order in which they were put."""
+        """Yield each cell with its config; cells are numbered in the order of their calls of `put`."""
         return (([cell], [self._configs[cell]]) for cell in cells)
 
     def take(self, workers: int) -> Chunk | None:
-        """Return the next runs, or None when others must end before more are chosen; see Queue."""
+        """Return the next runs, or None if other trials must end before the next choice; see Queue."""
         while len(self._started) < min(self._study.at_once, self.left):
             self._start(self._choose())
             self._settle()
         return super().take(workers)
 
     def learn(self, report: Report) -> None:
-        """Take note of how long a chunk took, and how its runs ended."""
+        """Update the time for a tick from the report of a chunk, and add the outcomes of its runs."""
         super().learn(report)
         self.note(report.outcomes)
 
     def note(self, outcomes: Sequence[store.Outcome]) -> None:
-        """Take note of how runs ended.
+        """Add the outcomes of runs.
 
         Raises:
-            RunnerError: if a good run lacks the metric of an objective.
-            StoreError: if a run cannot be read, or the journal not be written.
+            RunnerError: if a successful run lacks the metric of an objective.
+            StoreError: if a run cannot be read, or the journal cannot be written.
         """
         for end in outcomes:
             self._ends[end.name] = end
@@ -114,7 +114,7 @@ class TrialQueue(Queue):
             self.put(cell)
 
     def _settle(self) -> None:
-        """Tell the journal of the trials that ended, up to the first that has not."""
+        """Append the finished trials to the journal, up to the first unfinished one."""
         while self._started and (self._started[0].failure or self._started[0].run in self._ends):
             self._journal.append(self._judge(self._started[0]))
             self._started.popleft()

@@ -39,21 +39,21 @@ def tune(
     command: str,
     config_dirs: Sequence[Path] = (),
 ) -> Tuning:
-    """Make the trials of a tuning that have not been made yet.
+    """Execute the missing trials of a tuning.
 
     Args:
         overrides: Overrides, such as "robot=macro" and "controller.natural_frequency=interval(5,50)".
-        objectives: What is to get better.
-        trials: Number of trials after which to end, those of earlier commands included.
-        at_once: Number of trials under way at once; the choice of trials depends on it.
-        command: The command that makes it and goes on with it, kept with it.
-        config_dirs: Config folders of the user's.
+        objectives: The objectives.
+        trials: Number of trials after which to end, including those of earlier commands.
+        at_once: Number of simultaneous trials; the choice of trials depends on it.
+        command: The command that starts and continues the tuning, stored with it.
+        config_dirs: User config folders.
 
     Raises:
-        ConfigError: if a key cannot be tuned, or a config in its range not be run; nothing has been started then.
-        RunnerError: if there are too many trials, a run lacks a metric, another sweep is at work there, or the Dask
-            scheduler does not answer.
-        StoreError: if the disk does not take the runs, or a worker cannot work.
+        ConfigError: if a key cannot be tuned, or a config in its range cannot be run; no trial has been started.
+        RunnerError: if there are too many trials, a run lacks a metric, another sweep uses the outputs folder, or the
+            Dask scheduler does not answer.
+        StoreError: if a result cannot be written, or a worker fails.
     """
     if excess := TRIALS.excess(trials):
         raise RunnerError(f"the tuning {excess}; take fewer")
@@ -85,7 +85,7 @@ def tune(
 
 
 def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, ended: int) -> None:
-    """Make all trials of a queue; once more where the last ones brought their workers down."""
+    """Execute all trials of a queue; start workers again if the last trials crashed theirs."""
     while queue.left:
         for report in make_jobs(plan, checked, queue, np.zeros(queue.left, dtype=np.intp), engine, ended):
             if report.trouble:
@@ -131,7 +131,7 @@ def _read_key(override: Override, known_groups: Sequence[str]) -> Key | None:
 
 
 def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
-    """Check that keys stand for numbers, or null; one that is unknown is found with its neighbours' names later."""
+    """Check that keys have a number or null as their value; a later check rejects unknown keys and proposes names."""
     resolved = plan.composed(0).resolved
     problems = []
     for key in keys:
@@ -145,7 +145,7 @@ def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
 
 
 def _check_ranges(loader: Composer, shared: Sequence[str], keys: Sequence[Key]) -> tuple[Plan, Checked]:
-    """Check the configs at both ends and inside of the ranges; return the plan of the last one and what they gave."""
+    """Check the configs at both ends of the ranges and between; return the last plan and the result of its check."""
     problems: dict[str, None] = {}
     names: list[str] = []
     for values in zip(*(key.probes for key in keys), strict=True):

@@ -15,7 +15,7 @@ SPREAD = 10
 """Number of the first trials of `runner tune`, which are spread evenly over the ranges."""
 
 _FAILED = "failed"  # name of the constraint that a failed trial violates
-_FEWEST_FOR_IMPORTANCE = 20  # trials, of which the best tenth is compared with all
+_FEWEST_FOR_IMPORTANCE = 20  # trials; the best tenth is compared with all trials
 
 
 def propose(
@@ -26,20 +26,19 @@ def propose(
     seed: int,
     spread: int = SPREAD,
 ) -> dict[str, float]:
-    """Return the values to try next; they follow from the arguments alone.
+    """Return the values of the next trial; they depend only on the arguments.
 
-    The first ones are spread evenly over the ranges (a scrambled Sobol sequence; Owen, 1998). Then those values are
-    taken that are likely among the best trials and unlikely among the others, failed ones and those under way counted
-    with the latter (Bergstra et al., Algorithms for Hyper-Parameter Optimization, 2011; Watanabe, Tree-Structured
-    Parzen Estimator, 2023).
+    The first trials are spread evenly over the ranges (a scrambled Sobol sequence; Owen, 1998). Later values are
+    likely among the best trials and unlikely among the others, which include failed and unfinished trials (Bergstra et
+    al., Algorithms for Hyper-Parameter Optimization, 2011; Watanabe, Tree-Structured Parzen Estimator, 2023).
 
     Args:
         keys: The keys to choose values for.
-        objectives: What is to get better.
-        history: The trials that have ended, as `ended` gives them.
-        under_way: Values of the trials that have not.
+        objectives: The objectives.
+        history: The finished trials, from `make_optuna_trial`.
+        under_way: Values of the unfinished trials.
         seed: Seed of the search.
-        spread: Number of the first trials, which are spread evenly.
+        spread: Number of first trials that are spread evenly.
     """
     number = len(history) + len(under_way)
     if number < spread:
@@ -54,7 +53,7 @@ def propose(
 
 
 def _spread(keys: Sequence[Key], objectives: Sequence[Objective], number: int, seed: int) -> dict[str, float]:
-    """Return a point of the sequence by its number; the one before the sequence's first is drawn at random."""
+    """Return a point of the sequence by its number; point 0, before the start of the sequence, is random."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
         study = _study(objectives, optuna.samplers.QMCSampler(scramble=True, seed=seed))
@@ -63,7 +62,7 @@ def _spread(keys: Sequence[Key], objectives: Sequence[Objective], number: int, s
 
 
 def make_optuna_trial(keys: Sequence[Key], trial: Trial) -> FrozenTrial:
-    """Return a trial that has ended, as Optuna keeps it; a failed one violates a constraint, and so ranks last."""
+    """Return a finished trial as an Optuna object; a failed trial violates a constraint and therefore ranks last."""
     return create_trial(
         params=dict(trial.params),
         distributions=_distributions(keys),
@@ -74,18 +73,18 @@ def make_optuna_trial(keys: Sequence[Key], trial: Trial) -> FrozenTrial:
 
 
 def read_ended(frozen: FrozenTrial) -> Trial:
-    """Return what `ended` was given."""
+    """Return the trial that `make_optuna_trial` converted."""
     return Trial(frozen.params, tuple(frozen.values), frozen.user_attrs["run"], frozen.user_attrs["failure"])
 
 
 def importances(keys: Sequence[Key], trials: Sequence[Trial], objective: Objective, place: int) -> dict[str, float]:
-    """Return how much each key decides whether a trial is among the best tenth, in shares; none of few trials.
+    """Return the importance of each key for a place among the best tenth, as fractions; empty for too few trials.
 
     Args:
         keys: The keys.
         trials: The trials.
-        objective: The objective that tells which are best.
-        place: Its place among the objectives.
+        objective: The objective that ranks the trials.
+        place: Index of the objective.
 
     Source:
         PED-ANOVA: Watanabe et al., Efficiently Quantifying Hyperparameter Importance in Arbitrary Subspaces, 2023.

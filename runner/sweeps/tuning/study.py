@@ -18,14 +18,14 @@ _MEND = "the tuning's command makes it again"
 
 @dataclass(frozen=True)
 class Study:
-    """What is tuned, and towards what.
+    """Definition of a tuning.
 
     Attributes:
-        overrides: The overrides that all trials share, as typed; what only says how and where they are made left out.
+        overrides: The overrides that all trials share, as typed, without those that do not affect the simulation.
         keys: The tuned keys.
-        objectives: What is to get better.
-        at_once: Number of trials under way at once: each is chosen when all but so many before it are known.
-        command: The command that makes it and goes on with it.
+        objectives: The objectives.
+        at_once: Number of simultaneous trials: trial n is chosen when the trials up to n - at_once have ended.
+        command: The command that starts and continues the tuning.
     """
 
     overrides: Sequence[str]
@@ -39,22 +39,22 @@ class Study:
         return [*self.overrides, *(key.override(trial.params[key.name]) for key in self.keys)]
 
     def folder(self, outputs: Path, probes: Sequence[str]) -> Path:
-        """Return the folder that it is kept in.
+        """Return the folder of the tuning.
 
         Args:
             outputs: The outputs folder.
-            probes: Hashes of runs in its ranges, which stand for all that its trials share: another config, robot or
-                source is another tuning.
+            probes: Hashes of runs in the ranges. They change with the config, robot and source that the trials share,
+                so a change of these gives another tuning.
         """
         objectives = [asdict(objective) for objective in self.objectives]
         content = [list(probes), [asdict(key) for key in self.keys], objectives, self.at_once]
         return outputs / "tunings" / hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]
 
     def write(self, folder: Path, trials: Sequence[Trial]) -> None:
-        """Write what is tuned, and the list of its runs: with that it is a sweep to all other commands.
+        """Write the definition and the list of runs, which makes the tuning a sweep for all other commands.
 
         Raises:
-            StoreError: if the disk does not take it.
+            StoreError: if a file cannot be written.
         """
         write_atomically(folder / _FILE, sealed_json({**asdict(self), "trials": len(trials)}))
         write_jobs(folder, [(self.trial_overrides(trial), trial.run) for trial in trials if trial.run], self.command)
@@ -62,12 +62,12 @@ class Study:
 
 @dataclass(frozen=True)
 class Tuning:
-    """A stored tuning, at work or ended.
+    """Stored tuning, running or finished.
 
     Attributes:
-        folder: Its folder.
-        study: What is tuned.
-        trials: The trials that ended.
+        folder: Folder of the tuning.
+        study: Definition of the tuning.
+        trials: The finished trials.
     """
 
     folder: Path
@@ -76,7 +76,7 @@ class Tuning:
 
 
 def at_ends(tuning: Tuning) -> list[str]:
-    """Return a sentence for each end of a range near which the chosen trial lies, or some of several."""
+    """Return a sentence for each end of a range that is near the value of a chosen trial."""
     study, numbers = tuning.study, best(tuning.trials, tuning.study.objectives)
     found = []
     for key in study.keys:
@@ -105,7 +105,7 @@ def open_tuning(folder: Path) -> Tuning:
     """Open a stored tuning.
 
     Raises:
-        DamagedError: if the folder is no tuning or damaged.
+        DamagedError: if the folder is not a tuning, or is damaged.
     """
     from runner.sweeps.tuning.journal import read_trials  # imports Optuna
 
