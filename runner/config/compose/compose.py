@@ -21,11 +21,11 @@ class Composed:
     """A composed config before validation.
 
     Attributes:
-        resolved: The config as plain data, interpolations resolved, quantities such as 20ms in SI units.
-        overrides: The overrides that it was composed with, as typed.
+        resolved: The config as plain data, with interpolations resolved and quantities such as 20ms in SI units.
+        overrides: The overrides of the composition, as typed.
         choices: The option chosen in each group, such as {"robot": "macro"}.
         config_dirs: Config folders of the user.
-        root: Name of the file in conf/ that the groups hang on: "config" of a run, "calibrate" of a calibration.
+        root: Name of the root file in conf/: "config" for a run, "calibrate" for a calibration.
     """
 
     resolved: Mapping[str, object]
@@ -41,10 +41,10 @@ def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: st
     Args:
         overrides: Hydra overrides, such as "robot=macro" and "noise.position=1e-3".
         config_dirs: Config folders of the user.
-        root: Name of the file in conf/ that the groups hang on.
+        root: Name of the root file in conf/.
 
     Raises:
-        ConfigError: for an option or key that does not exist, a value that cannot be parsed, a file that is not YAML.
+        ConfigError: for an unknown option or key, a value that cannot be parsed, or a file that is not YAML.
     """
     composer = Composer(config_dirs, root)
     config = composer.load(overrides)
@@ -61,15 +61,15 @@ def from_hydra(
     """Resolve a config that Hydra composed.
 
     Args:
-        config: The config, with or without Hydra's own node; it is completed in place.
-        chosen: The option of each group, with the groups of Hydra.
+        config: The config, with or without Hydra's own node; the function completes it in place.
+        chosen: The option of each group, including groups of Hydra.
         overrides: The overrides, as typed.
         config_dirs: Config folders of the user.
-        root: Name of its file in conf/.
+        root: Name of the root file in conf/.
 
     Raises:
-        ConfigError: for an interpolation of a key that does not exist, a key that is not a string, or a built-in robot
-            whose file a config folder has under the same name.
+        ConfigError: for an interpolation of an unknown key, a key that is not a string, or a built-in robot if a config
+            folder has a robot file of the same name.
     """
     try:
         choices = {group: name for group, name in chosen.items() if name is not None and not group.startswith("hydra/")}
@@ -93,7 +93,7 @@ def from_hydra(
 
 
 def _strange_keys(value: object, place: str = "") -> Iterator[str]:
-    """Yield a problem for each key that is not a string: no part of the runner has such a key."""
+    """Yield a problem for each key that is not a string, because the runner has no such keys."""
     if isinstance(value, Mapping):
         for key, item in value.items():
             if isinstance(key, str):

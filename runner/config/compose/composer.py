@@ -47,10 +47,10 @@ class Composer:
 
     Args:
         config_dirs: Config folders of the user.
-        root: Name of the file in conf/ that the groups hang on: "config" of a run, "calibrate" of a calibration.
+        root: Name of the root file in conf/: "config" for a run, "calibrate" for a calibration.
 
     Attributes:
-        config_dirs: As given, as absolute paths.
+        config_dirs: Config folders of the user, as absolute paths.
     """
 
     def __init__(self, config_dirs: Sequence[Path] = (), root: str = "config") -> None:
@@ -68,12 +68,12 @@ class Composer:
 
         Args:
             overrides: Hydra overrides.
-            root: The file in conf/ instead of the one given before.
-            mode: MULTIRUN leaves out what is swept.
+            root: Name of the root file in conf/; "" for that of the composer.
+            mode: Run mode of Hydra; MULTIRUN leaves out overrides with several values.
 
         Raises:
-            ConfigError: for an option that does not exist, a value that cannot be parsed, a file that is not YAML or
-                sets what no file may, and a config that refers to itself.
+            ConfigError: for an unknown option, a value that cannot be parsed, a file that is not YAML or sets a key
+                that no file may set, and a config that refers to itself.
         """
         lines = [*user_overrides(), *prepare(overrides)]
         known = groups(self.config_dirs)
@@ -94,10 +94,10 @@ class Composer:
         return config
 
     def sweeper(self, overrides: Sequence[str]) -> DictConfig:
-        """Return the config of the sweeper, as `runner -m OVERRIDES` takes it.
+        """Return the config of the sweeper for `runner -m OVERRIDES`.
 
         Raises:
-            ConfigError: as `load`.
+            ConfigError: see `load`.
         """
         config: DictConfig = self.load(overrides, mode=RunMode.MULTIRUN).hydra.sweeper
         return config
@@ -112,10 +112,10 @@ class Composer:
 
 
 def parse(overrides: Sequence[str]) -> list[Override]:
-    """Return overrides as Hydra reads them; they must not be changed.
+    """Return overrides parsed by Hydra; callers must not change them.
 
     Raises:
-        OverrideParseException: for what is not an override.
+        OverrideParseException: for an invalid override.
     """
     return [_parse(text) for text in overrides]
 
@@ -126,7 +126,7 @@ def _parse(text: str) -> Override:
 
 
 def put_values(config: DictConfig, overrides: Sequence[str]) -> None:
-    """Put the values of overrides into a config that Hydra composed, also those of unknown keys.
+    """Put the values of overrides into a config that Hydra composed, including values of unknown keys.
 
     Raises:
         ConfigError: see `prepare`.
@@ -151,9 +151,9 @@ def check_composed(config: DictConfig) -> None:
 
 
 def _chooses_option(override: Override, known: Sequence[str]) -> bool:
-    """Return True if an override chooses or removes an option of a group; a mapping holds values instead.
+    """Return True if an override chooses or removes an option of a group; a mapping contains values instead.
 
-    Also for several values, which Hydra rejects in a single run.
+    Also True for several values, which Hydra rejects in a single run.
     """
     key = override.key_or_group
     is_group = key in known or "/" in key or override.package is not None
@@ -164,9 +164,9 @@ def _chooses_option(override: Override, known: Sequence[str]) -> bool:
 def _load_options(
     config_dirs: tuple[Path, ...], options: tuple[str, ...], root: str, mode: RunMode, *_: object
 ) -> bytes:
-    """Return the config of some options as Hydra composes it, pickled.
+    """Return the pickled config that Hydra composes from options.
 
-    The last arguments are the other things that it depends on: the files as they are, and the plant of `default`.
+    The last arguments are the other inputs of the result: the state of the files, and the plant of `default`.
     """
     config = Composer(config_dirs).hydra.load_configuration(root, list(options), mode, from_shell=False)
     try:

@@ -15,15 +15,15 @@ from runner.base.sanitize import VALUE, one_line, quoted
 from runner.config.compose.options import group_options
 from runner.config.compose.syntax_errors import explain_parser
 
-# What Hydra raises for a config that it cannot compose: ValueError and OSError for a file that is no text, or no
-# mapping; and OmegaConf where a value refers to itself.
 _AMBIGUOUS = re.compile(r"Ambiguous value for argument '(.*)'$", re.M)
 _LACKING = re.compile(r"Interpolation key '(.*)' not found")
+# Exceptions of Hydra for a config that it cannot compose. ValueError and OSError: a file that is not text, or not a
+# mapping. RecursionError: OmegaConf, for a value that refers to itself.
 COMPOSITION_ERRORS = (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, OSError, RecursionError)
 
 
 def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
-    """Return the message for what Hydra, OmegaConf or YAML say of a config."""
+    """Return an error of Hydra, OmegaConf or YAML as ConfigError with a message for users."""
     if isinstance(error, HydraException) and not str(error) and isinstance(error.__cause__, OmegaConfBaseException):
         error = error.__cause__  # Hydra adds nothing to it
     if isinstance(error, yaml.YAMLError):
@@ -53,5 +53,5 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
     several = _AMBIGUOUS.match(text)
     if several is not None:
         given = f"{quoted(several[1])} gives several values"
-        return ConfigError([f"{given}; `runner -m` sweeps over them; a list stands in brackets: KEY=[A,B]"])
+        return ConfigError([f"{given}; `runner -m` sweeps over them; write a list in brackets: KEY=[A,B]"])
     return ConfigError([" ".join(text.split("\nSee https")[0].split("\nTo append")[0].split())])

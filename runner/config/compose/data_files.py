@@ -12,7 +12,7 @@ from runner.base.paths import check_inside
 
 
 def has_data_file(resolved: Mapping[str, Any]) -> bool:
-    """Tell whether a config names a data file of its trajectory."""
+    """Return True if a config names a data file of its trajectory."""
     group = resolved.get("trajectory")
     return isinstance(group, Mapping) and group.get("kind") == "from_file" and isinstance(group.get("file"), str)
 
@@ -22,10 +22,10 @@ def take_data_file(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> 
 
     Args:
         resolved: The config as plain data.
-        config_dirs: Config folders of the user's, searched before the working folder.
+        config_dirs: Config folders of the user, searched before the working folder.
 
     Raises:
-        ConfigError: if there is no such file, or it holds no motion.
+        ConfigError: if the file does not exist, or contains no motion.
     """
     if not has_data_file(resolved):
         return

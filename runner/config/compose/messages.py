@@ -22,7 +22,7 @@ _NUMBERS = {
     "int_type": "must be a whole number",
     "int_from_float": "must be a whole number",
     "bool_type": "must be true or false",
-    "string_type": "must be a text",
+    "string_type": "must be a string",
     "string_too_short": "must not be empty",
     "string_too_long": "must have at most {max_length} characters",
     "list_type": "must be a list of numbers",
@@ -38,11 +38,11 @@ def describe(group: str, model: type[StrictModel], error: ValidationError) -> It
     Args:
         group: Name of the group, "" for the root.
         model: The model that the group was checked against.
-        error: What pydantic raised.
+        error: Exception of pydantic.
     """
     items = [(*_locate(group, item["loc"]), dict(item)) for item in error.errors()]
     renamed = {KEYS[key] for key, location, item in items if _is_renamed(model, key, location, item)}
-    seen = set(renamed)  # their values stand under the former keys
+    seen = set(renamed)  # their values are under the former keys
     for key, location, item in items:
         if key not in seen:  # a union reports each of its branches
             seen.add(key)
@@ -51,7 +51,7 @@ def describe(group: str, model: type[StrictModel], error: ValidationError) -> It
 
 
 def _locate(group: str, place: tuple[int | str, ...]) -> tuple[str, list[str]]:
-    """Return the dotted key of a problem, and its parts below the group."""
+    """Return the dotted key of a problem, and the parts of the key below the group."""
     location = [str(part) for part in place if not str(part).startswith(("list[", "[key]", "function-", "constrained"))]
     return ".".join([*([group] if group else []), *location]), location
 
@@ -88,7 +88,7 @@ def _explain(model: type[StrictModel], location: list[str], item: dict[str, Any]
 
 
 def _innermost(model: type[StrictModel], location: list[str]) -> type[StrictModel]:
-    """Return the model of the group of keys that the last of some keys stands in."""
+    """Return the model of the innermost group that contains the last key."""
     for part in location[:-1]:
         field = model.model_fields.get(part)
         model = (nested_model(field.annotation) if field is not None else None) or model

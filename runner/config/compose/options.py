@@ -5,11 +5,11 @@ from pathlib import Path
 
 from runner.base.paths import STUDY_FILE, conf_dir
 
-_HEAD = 10_000  # characters, in which the first comment of a file stands
+_HEAD = 10_000  # characters to search for the first comment of a file
 
 
 def groups(config_dirs: Sequence[Path] = ()) -> list[str]:
-    """Return the names of the config groups, sorted; Hydra's own are none of them."""
+    """Return the sorted names of the config groups, without Hydra's own groups."""
     found = {
         entry.name
         for folder in (*config_dirs, conf_dir())
@@ -25,10 +25,10 @@ def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str
 
     Args:
         group: Name of the group, such as "robot".
-        config_dirs: Config folders of the user's.
+        config_dirs: Config folders of the user.
 
     Returns:
-        Name of each option, such as "thesis/figure_3_5", and its file's first comment that is no directive.
+        Name of each option, such as "thesis/figure_3_5", and the first comment in its file except directives.
     """
     found: dict[str, str] = {}
     for folder in (conf_dir(), *config_dirs):
@@ -64,11 +64,11 @@ def place_in(folder: Path, config_path: str) -> str:
 
 
 def option_in(folder: Path, group: str, name: str) -> str:
-    """Return by which option of a group a file of a folder is chosen: NAME/x for the experiment x of the study NAME."""
+    """Return the option name of a file in a folder: NAME/x for the experiment x of the study NAME."""
     return f"{folder.resolve().name}/{name}" if group == _GROUP and _own(folder) else name
 
 
 def _own(folder: Path) -> str:
-    """Return how the configs of a study's experiments begin; nothing for a folder that is none, or holds such a one."""
+    """Return the prefix of a study's experiments; "" for another folder, or one that has a folder of that prefix."""
     own = f"{_GROUP}/{folder.resolve().name}"
     return own if (folder / STUDY_FILE).is_file() and not (folder / own).is_dir() else ""

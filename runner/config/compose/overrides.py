@@ -12,7 +12,7 @@ from runner.config.compose.syntax_errors import find_syntax_error
 from runner.config.compose.units import with_numbers
 from runner.config.compose.user_settings import SAYS_HOW
 
-_CHARACTERS = 20_000  # Hydra takes some seconds for a list of that length
+_CHARACTERS = 20_000  # Hydra needs a few seconds for a list of this length
 _MAY_BE_TYPED = re.compile(r"[+]*hydra\.sweeper\.(workers|address|params(\.[^@:]*)?)")
 _LOOKS_LIKE_A_VALUE = re.compile(r"(?i)(null|true|false|[-+.\d][-+.\de]*)$")
 
@@ -20,11 +20,11 @@ _LOOKS_LIKE_A_VALUE = re.compile(r"(?i)(null|true|false|[-+.\d][-+.\de]*)$")
 def prepare(overrides: Sequence[str]) -> list[str]:
     """Check overrides; return them with ranges in SI units, and with each option of a group as a name.
 
-    Hydra would take an option such as `noise=1` for a number, and its message would not contain the group.
+    Hydra would read an option such as `noise=1` as a number, and its message would not contain the group.
 
     Raises:
-        ConfigError: for overrides that are too long, nested too deeply or malformed, choose an option of Hydra's own,
-            give a group no name to choose, call a function, or for a range in a unit that does not fit its key.
+        ConfigError: for an override that is too long, nested too deeply or malformed, that sets a key of Hydra, names
+            no option of a group or calls a function, and for a range in a unit that does not fit its key.
     """
     names = set(groups())
     problems = [problem for override in overrides if (problem := _problem(override, names))]
@@ -41,11 +41,11 @@ def _named(override: str, names: set[str]) -> str:
 def force(overrides: Sequence[str]) -> list[str]:
     """Return prepared overrides in a form in which Hydra composes unknown keys.
 
-    Validation then reports all of them, with the nearest keys. Hydra would stop at the first and suggest to add the
-    key, which no part of the runner would read.
+    Validation then reports all unknown keys, with the nearest valid keys. Hydra would stop at the first and suggest to
+    add the key, which the runner would never read.
 
     Raises:
-        ConfigError: as `prepare`.
+        ConfigError: see `prepare`.
     """
     names = "|".join(map(re.escape, groups()))
     unknown = re.compile(rf"(?!hydra|(?:{names})=)[A-Za-z_][\w.]*=")
@@ -69,7 +69,7 @@ def _problem(override: str, names: set[str]) -> str | None:
     if (says := SAYS_HOW.search(key)) and says[1] == "hydra" and not _MAY_BE_TYPED.fullmatch(key):
         return f"{key}: is Hydra's own; you may set hydra.sweeper.workers, .address and .params; folders: --config-dir"
     if given and group in names and (not value or "${" in value):
-        return f"{group}: {quoted(value)} is no option; choose by name, see `runner list`"
+        return f"{group}: {quoted(value)} is not an option; choose by name, see `runner list`"
     return None
 
 

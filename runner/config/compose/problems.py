@@ -14,13 +14,13 @@ T = TypeVar("T")
 
 
 class Problems:
-    """What checks have found wrong so far.
+    """Problems that checks have found so far.
 
     Args:
-        memory: What checks gave for the same parts before, so that they need not be made again; None to make them all.
+        memory: Cache of earlier results of checks for the same parts; None to run every check.
 
     Attributes:
-        found: A text for each problem.
+        found: A message for each problem.
     """
 
     def __init__(self, memory: Memory | None = None) -> None:
@@ -41,7 +41,7 @@ class Problems:
     ) -> T | None: ...
 
     def attempt(self, check: Callable[..., T], /, *parts: object) -> T | None:
-        """Return what a check makes of some parts; None where one of these is None, or it finds a problem."""
+        """Return the result of a check of parts; None if one of the parts is None, or if the check finds a problem."""
         if any(part is None for part in parts):
             return None
         value, problems = _made(check, *parts)
@@ -49,7 +49,7 @@ class Problems:
         return value
 
     def recall(self, check: Callable[..., T], /, *parts: object) -> T | None:
-        """Return the same of a check that gives for the same parts what it gave before; see Memory.recall."""
+        """Return the result of `attempt`, cached for equal parts; see Memory.recall."""
         for part in parts:
             if part is None:
                 return None
@@ -68,7 +68,7 @@ class Problems:
 
 
 def _made(check: Callable[..., T], *parts: object) -> tuple[T | None, Sequence[str]]:
-    """Return what a check makes of some parts, and the problems that it finds."""
+    """Return the result of a check of parts, and the problems that it finds."""
     try:
         return check(*parts), ()
     except ConfigError as error:
@@ -76,6 +76,6 @@ def _made(check: Callable[..., T], *parts: object) -> tuple[T | None, Sequence[s
 
 
 def require(value: T | None) -> T:
-    """Return what a check gave, which is there once no problem was found."""
-    assert value is not None  # noqa: S101 - a check that gives nothing has found a problem
+    """Return the result of a check that found no problem."""
+    assert value is not None  # noqa: S101 - a check without result has found a problem
     return value

@@ -33,17 +33,17 @@ from runner.config.compose.user_settings import refuse_settings, settings_error
 
 _SCHEME = "checked"
 _USERS = "command-line"  # Hydra's name of where such a folder comes from
-_HEAD = 512  # characters, in which Hydra looks for the package of a file
-_ENDS = re.compile(r"_global_.?|[./:@]")  # of the parts of a package; `_global_` makes what follows an absolute one
+_HEAD = 512  # characters that Hydra searches for the package of a file
+_ENDS = re.compile(r"_global_.?|[./:@]")  # of the parts of a package; a package after `_global_` is absolute
 _folders: ContextVar[Sequence[Path] | None] = ContextVar("folders", default=None)
 
 
 @contextlib.contextmanager
 def checked_sources(config_dirs: Sequence[Path]) -> Iterator[None]:
-    """Let Hydra find and read config files only by the source of this module, in conf/ and in folders of the user.
+    """Let Hydra find and read config files only with CheckedSource, in conf/ and in folders of the user.
 
-    In the folder of a study, experiments have the study's name; see place_in. Only conf/plant/default.yaml calls a
-    function.
+    In the folder of a study, names of experiments begin with the name of the study; see place_in. Only
+    conf/plant/default.yaml calls a function.
     """
     for plugin in (CheckedSource, CheckedSearchPath):
         Plugins.instance().register(plugin)
@@ -59,7 +59,7 @@ class CheckedSearchPath(SearchPathPlugin):
     """The search path of Hydra within `checked_sources`."""
 
     def manipulate_search_path(self, search_path: ConfigSearchPath) -> None:
-        """Read the primary folder and those of the user by our source, which Hydra also asks first for each name."""
+        """Read the primary folder and those of the user with CheckedSource, which Hydra also searches first."""
         folders = _folders.get()
         if folders is None:  # another program that uses Hydra
             return
@@ -76,7 +76,7 @@ class CheckedSource(ConfigSource):
 
     @staticmethod
     def scheme() -> str:
-        """Return the beginning of its paths."""
+        """Return the URL scheme of paths of this source."""
         return _SCHEME
 
     def available(self) -> bool:
@@ -91,15 +91,15 @@ class CheckedSource(ConfigSource):
         """Return True if the folder has a config.
 
         Raises:
-            ConfigError: for a name that leads out of the folder. Hydra asks each source, and its own would follow it.
+            ConfigError: for a name that leads out of the folder. Hydra asks every source, and its own would read it.
         """
         if config_path.startswith("/") or ".." in config_path.split("/"):
-            named = f"{quoted(config_path)}: no config of a folder; a defaults list or an override names it"
+            named = f"{quoted(config_path)}: not a config in a folder; a defaults list or an override names it"
             raise ConfigError([f"{named}; allowed: names without '..' and '/' in front"])
         return self._file(config_path).is_file() and not self._is_hidden(config_path)
 
     def _is_hidden(self, config_path: str) -> bool:
-        """Return True for a file of a user's folder that is not read: one of Hydra, or a second root file."""
+        """Return True for an ignored file in a user's folder: a config of Hydra, or a second root file."""
         return self.provider == _USERS and (
             config_path.startswith("hydra/") or ("/" not in config_path and self._has_ours(config_path))
         )
@@ -118,14 +118,14 @@ class CheckedSource(ConfigSource):
         """Return the content of a config.
 
         Raises:
-            ConfigError: for a file that sets what no file may, is not YAML, is too large or lies elsewhere.
+            ConfigError: for a file that sets a forbidden key, is not YAML, is too large or is outside the folder.
         """
         path = self._file(config_path)
         check_inside(path, [Path(self.path)])
         status = path.stat()
         content, package = pickle.loads(_read(path, status.st_mtime_ns, status.st_size))  # noqa: S301 - made by _read
         if not ships(path):
-            if self.provider == _USERS and self._has_ours(config_path):  # it is unclear which one is meant
+            if self.provider == _USERS and self._has_ours(config_path):  # ambiguous name
                 group, _, option = config_path.rpartition("/")
                 raise ConfigError(
                     [f"{group}: '{option}' is a built-in option, and {path} has the same name; rename that file"]
@@ -142,7 +142,7 @@ class CheckedSource(ConfigSource):
 
 @lru_cache(maxsize=512)
 def _read(path: Path, *_: int) -> bytes:
-    """Return content and package of a config file, pickled, as they were at some time of change and size."""
+    """Return the pickled content and package of a config file; its time of change and size are keys of the cache."""
     try:
         text = read_text(path, CONFIG.size)
         if not ships(path):
@@ -161,7 +161,7 @@ def _read(path: Path, *_: int) -> bytes:
 
 
 def _check_settings(content: Any, config_path: str, package: str | None, path: Path) -> None:
-    """Check that a file of the user, in its package, does not set how or where runs are simulated."""
+    """Check that a file of the user, in its package, does not control how or where runs are simulated."""
     groups = list(_groups(content))
     refuse_settings(groups, path)
     group = config_path.rpartition("/")[0]
@@ -176,7 +176,7 @@ def _check_settings(content: Any, config_path: str, package: str | None, path: P
 
 
 def _is_leading(package: str) -> bool:
-    """Return True if a package may be Hydra's or name the outputs folder, once Hydra has resolved it."""
+    """Return True if a package may be that of Hydra or of the outputs folder after Hydra has resolved it."""
     return "$" in package or not {"hydra", "outputs"}.isdisjoint(_ENDS.split(package))
 
 

@@ -15,15 +15,15 @@ from runner.config.robot import ArmConfig
 
 
 def complete_stages(config: DictConfig, choices: Mapping[str, str], config_dirs: Sequence[Path]) -> None:
-    """Complete mappings that name some stages with what their group's file takes from elsewhere for the others.
+    """Add the missing stages to mappings that override some stages, with the values that the group's file refers to.
 
-    A group's file says `period: ${robot.period}`. An override of one stage replaces that reference by a mapping that
-    has this stage alone; here the others come back, so that a mapping override merges.
+    For example, a group's file contains `period: ${robot.period}`. An override of one stage replaces this reference by
+    a mapping with only that stage. This function adds the other stages, so that the override merges.
 
     Args:
         config: The composed config, completed in place.
         choices: The option chosen in each group.
-        config_dirs: Config folders of the user's, searched before ours.
+        config_dirs: Config folders of the user, searched before conf/.
     """
     for group, option in choices.items():
         for key, reference in _references(group, option, config_dirs):
@@ -36,7 +36,7 @@ def complete_stages(config: DictConfig, choices: Mapping[str, str], config_dirs:
 
 
 def _references(group: str, option: str, config_dirs: Sequence[Path]) -> list[tuple[str, str]]:
-    """Return key and target of each value that is one reference, in the file of an option."""
+    """Return key and target of each value in the file of an option that is a single reference."""
     for folder in (*config_dirs, conf_dir()):
         path = folder / group / f"{option}.yaml"
         if path.is_file():
@@ -58,10 +58,10 @@ def _references_of(text: str, path: Path) -> list[tuple[str, str]]:
 def complete_stage_arms(config: DictConfig) -> None:
     """Move the defaults of one arm from a robot that has stages to its stages, in place.
 
-    What stands at the robot itself though it is of one arm, and is no default, stays there: validation refuses it.
+    A key of one arm whose value is not the default remains at the robot. Validation then rejects it.
 
     Args:
-        config: The composed config; one whose robot has no stages is left as it is.
+        config: The composed config, unchanged if the robot has no stages.
     """
     group = config.get("robot")
     robot: Any = OmegaConf.to_container(group, resolve=False) if isinstance(group, DictConfig) else None

@@ -13,37 +13,37 @@ _OF_THE_PARSER = re.compile(
 
 
 def find_syntax_error(override: str) -> str | None:
-    """Return what is wrong with the form of KEY=VALUE, and how to mend it; None where nothing is seen."""
+    """Return the syntax error of an override KEY=VALUE, and its repair; None if none is found."""
     key, given, value = override.partition("=")
     if not given:
         return None
     if key != key.strip() or value != value.lstrip() or " " in key:
-        return f"remove the spaces beside the '=', as in {quoted(f'{key.strip()}={value.strip()}')}"
+        return f"remove the spaces around the '=', as in {quoted(f'{key.strip()}={value.strip()}')}"
     if not key:
-        return "there is no key before the '='"
+        return "the key before the '=' is missing"
     if value.startswith("="):
         return "there are two '=' in a row; remove one"
     return next(_faults(value), None)
 
 
 def explain_parser(text: str) -> str:
-    """Return what Hydra says of an override, in words where it speaks of its tokens."""
+    """Return Hydra's message for an override, or a plain one if Hydra names tokens of its parser."""
     if not _OF_THE_PARSER.match(text):
         return text
     return (
-        "it must read KEY=VALUE; a value with signs such as ( ) [ ] { } ^ # ; & ! stands in quotes within those of the "
+        "it must read KEY=VALUE; a value with signs such as ( ) [ ] { } ^ # ; & ! needs quotes inside those of the "
         "shell, as in \"KEY='VALUE'\""
     )
 
 
 def _faults(value: str) -> Iterator[str]:
-    """Yield what is wrong with quotes, brackets and commas of a value."""
+    """Yield the errors in quotes, brackets and commas of a value."""
     open_ones: list[str] = []
-    before, quote = "", ""  # the last sign that is no space; the quote that is open
+    before, quote = "", ""  # the last sign except spaces; the open quote
     signs = iter(value)
     for sign in signs:
         if sign == "\\":
-            next(signs, "")  # what follows stands for itself
+            next(signs, "")  # an escaped sign
             before = sign
         elif quote:
             quote = "" if sign == quote else quote
@@ -57,17 +57,17 @@ def _faults(value: str) -> Iterator[str]:
     if open_ones:
         yield f"the bracket '{open_ones[-1]}' is not closed by a '{_CLOSING[open_ones[-1]]}'"
     if before == ",":
-        yield "nothing stands behind the last comma; remove it, or give one more value"
+        yield "a value after the last comma is missing; remove the comma, or give one more value"
 
 
 def _at(sign: str, before: str, open_ones: list[str]) -> Iterator[str]:
-    """Yield what is wrong at a sign outside of quotes, and keep which brackets are open."""
+    """Yield the errors at a sign outside of quotes, and update the open brackets."""
     if sign == "," and before in ("", ",", "(", "[", "{"):
-        yield "nothing stands before a comma; remove it, or give a value there"
+        yield "a value before a comma is missing; remove the comma, or give the value"
     if sign in _CLOSING:
         open_ones.append(sign)
     elif sign in _CLOSING.values():
         if not open_ones or _CLOSING[open_ones.pop()] != sign:
             yield f"the bracket '{sign}' closes none that is open"
         if before == ",":
-            yield f"nothing stands between a comma and '{sign}'; remove the comma, or give one more value"
+            yield f"a value between a comma and '{sign}' is missing; remove the comma, or give one more value"

@@ -20,8 +20,8 @@ def to_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> None
     Quantities that do not fit their key remain: validation reports them with all other problems.
 
     Args:
-        resolved: The config as plain data, interpolations resolved; it is changed.
-        config_dirs: The user's config folders, which may hold the robot's file: a joint that slides takes lengths.
+        resolved: The config as plain data, interpolations resolved; the function changes it.
+        config_dirs: Config folders of the user. They may contain the robot's file, which defines prismatic joints.
     """
     of_joints: list[tuple[Place, str, bool]] = []
     for place, text in leaves(resolved):
@@ -42,7 +42,7 @@ def to_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> None
 
 
 def _sliding_joints(resolved: Mapping[str, object], config_dirs: Sequence[Path]) -> Mapping[str, Mapping[str, bool]]:
-    """Return by stage and joint whether it slides; empty for a robot whose files cannot be read."""
+    """Return by stage and joint True for a prismatic joint; empty for a robot whose files cannot be read."""
     from runner.config.arms import sliding_joints
     from runner.config.parsing import group_of, parse_robot
 
@@ -53,7 +53,7 @@ def _sliding_joints(resolved: Mapping[str, object], config_dirs: Sequence[Path])
 
 
 def _of_place(place: Place, joints: Mapping[str, Mapping[str, bool]]) -> set[bool]:
-    """Return whether the joints that a place in a config stands for slide; empty if the joints are not known."""
+    """Return the joint types at a path in a config, True for prismatic; empty if the joints are unknown."""
     stages = [joints[key] for key in map(str, place) if key in joints] or joints.values()
     named = [joint for stage in stages for joint in stage.items()]
     last = place[-1]
@@ -64,15 +64,15 @@ def _of_place(place: Place, joints: Mapping[str, Mapping[str, bool]]) -> set[boo
 
 
 def key_unit(key: str) -> str:
-    """Return the unit of a dotted key, such as "rad/s" of "controller.natural_frequency".
+    """Return the unit of a dotted key, such as "rad/s" for "controller.natural_frequency".
 
-    It is "1" for a key without unit, an unknown key, and a key whose unit differs between the kinds of its group.
+    The unit is "1" for a key without unit, an unknown key, and a key whose unit differs between kinds of its group.
     """
     return _unit_of_key(key).first or "1"
 
 
 def unit_at(resolved: Mapping[str, Any], place: Sequence[str | int]) -> Unit:
-    """Return the unit of a place in a config, for the kinds that the config chooses: keys, and numbers in lists."""
+    """Return the unit at a path in a config (keys, and indices in lists), for the kinds that the config chooses."""
     group, *rest = [str(part) for part in place]
     options = resolved.get(group)
     kind = options.get("kind") if rest and isinstance(options, Mapping) else None
@@ -86,7 +86,7 @@ def _units_of_key(key: str) -> Sequence[str]:
 
 
 def _unit_of_key(key: str) -> Unit:
-    """Return the unit of a dotted key; none if it differs between the kinds of its group."""
+    """Return the unit of a dotted key; an empty one if the unit differs between the kinds of its group."""
     group, *rest = key.split(".")
     found = {model.find_unit(rest or [group]) for model in _models(group if rest else "", rest)} - {None}
     return found.pop() or Unit() if len(found) == 1 else Unit()
@@ -100,8 +100,8 @@ def as_numbers(values: Sequence[object], key: str) -> list[float] | None:
         key: The dotted key.
 
     Returns:
-        The numbers; None if there is no quantity, or a value is no number in a unit of the key. All quantities have the
-        same unit, because a joint either turns or slides.
+        The numbers; None if there is no quantity, or if a value has no number in a unit of the key. All quantities have
+        the same unit, because a joint is either revolute or prismatic.
     """
     read = [(value, read_quantity(value)) for value in values]
     if not any(quantity for _, quantity in read):
@@ -141,7 +141,7 @@ def with_numbers(override: str) -> str:
 
 
 def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Iterator[type[StrictModel]]:
-    """Yield the models of a group, or of the one kind of it that is chosen."""
+    """Yield the models of a group, or only that of the chosen kind."""
     from runner.config.groups import GROUPS, PLUGGED
     from runner.config.robot import OneArmConfig, StageConfig
     from runner.config.settings import RunSettings
@@ -158,7 +158,7 @@ def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Itera
         yield from (StageConfig, OneArmConfig)
     elif isinstance(known, Kinds):
         for kind in known.names() if chosen is None else [chosen]:
-            with contextlib.suppress(ConfigError):  # a part of the user's that cannot be imported
+            with contextlib.suppress(ConfigError):  # a user-supplied part that cannot be imported
                 yield known.config_model(kind)
     elif group in PLUGGED and chosen is not None:
         with contextlib.suppress(ConfigError):

@@ -1,8 +1,8 @@
 """User settings: outputs folder, number of workers, and address of a Dask scheduler.
 
-The file is `arm-control-runner/config.yaml` in XDG_CONFIG_HOME or ~/.config. Its keys are KEYS, as on the command line.
-Only the command line and this file may set them; config files from outside may not. The settings change no result, so
-that a command has the same meaning on another machine.
+The file is `arm-control-runner/config.yaml` in XDG_CONFIG_HOME or ~/.config. The file has the keys KEYS, as on the
+command line. Only the command line and this file may set them; third-party config files may not. The settings change
+no result, so that a command has the same meaning on another machine.
 """
 
 import os
@@ -20,10 +20,14 @@ _AXES = "hydra.sweeper.params"
 
 
 def refuse_settings(given: Iterable[str], path: Path) -> None:
-    """Check that keys or overrides in a file from outside say nothing of how or where runs are made.
+    """Check that a third-party file does not control how or where runs are simulated.
+
+    Args:
+        given: Keys or overrides in the file.
+        path: The file.
 
     Raises:
-        ConfigError: for `outputs` and all of `hydra`, but the axes of a sweep; names the line.
+        ConfigError: for `outputs` and every key of `hydra` except the axes of a sweep; names the line.
     """
     for text in given:
         if SAYS_HOW.search(text.partition("=")[0].removeprefix(f"{_AXES}.")):
@@ -31,16 +35,16 @@ def refuse_settings(given: Iterable[str], path: Path) -> None:
 
 
 def settings_error(text: str, path: Path) -> ConfigError:
-    """Return the error for a key or an override in a file from outside that says how or where runs are made."""
+    """Return the error for a key or override in a third-party file that controls how or where runs are simulated."""
     from runner.base.bounded_yaml import line_with
 
     where = f"set it on the command line or in {settings_path()}; allowed here: keys of {_AXES}"
     found = f"{line_with(text, path)}: {quoted(text)}"
-    return ConfigError([f"{found} says how or where runs are made, which no file may; {where}"])
+    return ConfigError([f"{found} controls how or where runs are simulated, which no file may do; {where}"])
 
 
 def settings_path() -> Path:
-    """Return the file of the settings, which need not be there."""
+    """Return the path of the settings file, which may be missing."""
     base = os.environ.get("XDG_CONFIG_HOME") or "~/.config"
     return Path(os.path.expanduser(base)) / "arm-control-runner" / "config.yaml"  # noqa: PTH111 - never raises
 
@@ -49,18 +53,18 @@ def user_settings() -> Mapping[str, str]:
     """Return the settings by key.
 
     Raises:
-        ConfigError: with file and line, for a file that cannot be read, an unknown key or a value that is none.
+        ConfigError: with file and line, for a file that cannot be read, an unknown key or an invalid value.
     """
     return _read(settings_path())
 
 
 def user_overrides() -> list[str]:
-    """Return what stands before the overrides that are typed."""
+    """Return the settings as overrides, which precede the typed overrides."""
     return [f"{key}={value}" for key, value in user_settings().items()]
 
 
 def outputs_dir() -> Path:
-    """Return the outputs folder where no command line names one."""
+    """Return the outputs folder for a command line that names none."""
     return Path(user_settings().get("outputs", "outputs"))
 
 
@@ -77,5 +81,5 @@ def _read(path: Path) -> Mapping[str, str]:
     for key, value in content.items() if isinstance(content, dict) else [(str(content), None)]:
         if key not in KEYS or not isinstance(value, str | int):
             known = f"{nearest(key, KEYS)}; settings: {', '.join(KEYS)}"
-            raise ConfigError([f"{line_with(key, path)}: {quoted({key: value})} is no setting{known}"])
+            raise ConfigError([f"{line_with(key, path)}: {quoted({key: value})} is not a setting{known}"])
     return {key: os.path.expanduser(str(value)) for key, value in content.items()}  # noqa: PTH111 - of a folder

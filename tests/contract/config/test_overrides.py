@@ -46,8 +46,8 @@ def test_no_pickle_is_read(cli, tmp_path, flag):
         ("seed=" + "1," * 20_000, "it is too long; allowed: up to 20000 characters"),
         ("hydra/launcher=", "hydra/launcher: is Hydra's own; you may set hydra.sweeper.workers"),
         ("+hydra/job_logging=default", "+hydra/job_logging: is Hydra's own"),
-        ("noise=", "noise: '' is no option; choose by name, see `runner list`"),
-        ("torque_limits=${robot.name}", "torque_limits: '${robot.name}' is no option"),
+        ("noise=", "noise: '' is not an option; choose by name, see `runner list`"),
+        ("torque_limits=${robot.name}", "torque_limits: '${robot.name}' is not an option"),
         ('torque_limits=${oc.decode:"1e400"}', "calls a function; a value may only refer to keys"),
         *(
             (f"{key}=1", f"{key}: is Hydra's own; you may set hydra.sweeper.workers, .address and .params")

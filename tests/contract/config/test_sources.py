@@ -15,7 +15,7 @@ from runner.config.compose.compose import compose
 
 HEAD = "# @package _global_\n# A stranger's\n# experiment\n"
 OURS, HYDRAS = conf_dir(), Path(hydra.__file__).parent / "conf"
-WHY = "says how or where runs are made, which no file may; set it on the command line or in "
+WHY = "controls how or where runs are simulated, which no file may do; set it on the command line or in "
 
 
 @pytest.fixture
@@ -119,17 +119,17 @@ def test_axes_of_an_experiment_stay_free(stranger):
 @pytest.mark.parametrize(
     ("params", "problem"),
     [
-        ("3", "line 6: 'hydra.sweeper.params' says how"),
-        ("${x}\nx: {outputs: there}", "line 6: 'hydra.sweeper.params' says how"),
+        ("3", "line 6: 'hydra.sweeper.params' controls how"),
+        ("${x}\nx: {outputs: there}", "line 6: 'hydra.sweeper.params' controls how"),
         ("{seed: MAKE}", "is not a valid override"),
         ("{seed: '${nope}'}", "hydra.sweeper.params.seed: it refers to nope"),
         (
             "{hydra.sweeper.address: 'tcp://127.0.0.1:9'}",
-            "line 6: 'hydra.sweeper.params.hydra.sweeper.address' says how",
+            "line 6: 'hydra.sweeper.params.hydra.sweeper.address' controls how",
         ),
-        ("{outputs: there}", "line 6: 'hydra.sweeper.params.outputs' says how"),
-        ("{++outputs: there}", "line 6: 'hydra.sweeper.params.++outputs' says how"),
-        ("{'noise@hydra.sweeper': none}", "'hydra.sweeper.params.noise@hydra.sweeper' says how"),
+        ("{outputs: there}", "line 6: 'hydra.sweeper.params.outputs' controls how"),
+        ("{++outputs: there}", "line 6: 'hydra.sweeper.params.++outputs' controls how"),
+        ("{'noise@hydra.sweeper': none}", "'hydra.sweeper.params.noise@hydra.sweeper' controls how"),
         ("{robot.name: '${x}{oc.env:HOME}'}\nx: $", "'robot.name=${oc.env:HOME}' calls a function"),
     ],
 )
@@ -219,14 +219,14 @@ def test_a_config_outside_of_every_folder_is_refused(stranger, tmp_path, entry, 
         ending = stranger(text, "-m")
     assert (ending.code, ending.out) == (2, "")
     assert str(secret) not in seen
-    assert "no config of a folder" in ending.err
+    assert "not a config in a folder" in ending.err
 
 
 @pytest.mark.parametrize("value", ["../../secret", "a/../b"])
 def test_nor_does_an_override_name_one(cli, value):
     ending = cli("robot=macro", f"noise={value}")
     assert (ending.code, ending.out) == (2, "")
-    assert f"noise/{value}': no config of a folder" in ending.err
+    assert f"noise/{value}': not a config in a folder" in ending.err
 
 
 @pytest.mark.parametrize("file", ["experiment/trap.yaml", "noise", "robots/own.urdf", "own.csv"])

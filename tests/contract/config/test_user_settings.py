@@ -70,15 +70,15 @@ def test_workers_of_the_settings_are_used(cli, settings):
 @pytest.mark.parametrize(
     ("text", "line", "found"),
     [
-        ("outputs: a\noutput: b\n", ", line 2", "{'output': 'b'} is no setting (did you mean outputs?)"),
-        ("hydra:\n  sweeper: {workers: 1}\n", ", line 1", "{'hydra': {'sweeper': {'workers': 1}}} is no setting"),
-        ("outputs: [a]\n", ", line 1", "{'outputs': ['a']} is no setting"),
-        ("plugin: a=b\n", ", line 1", "{'plugin': 'a=b'} is no setting"),
+        ("outputs: a\noutput: b\n", ", line 2", "{'output': 'b'} is not a setting (did you mean outputs?)"),
+        ("hydra:\n  sweeper: {workers: 1}\n", ", line 1", "{'hydra': {'sweeper': {'workers': 1}}} is not a setting"),
+        ("outputs: [a]\n", ", line 1", "{'outputs': ['a']} is not a setting"),
+        ("plugin: a=b\n", ", line 1", "{'plugin': 'a=b'} is not a setting"),
         ("outputs: ${oc.env:HOME}\n", ", line 1", "'${oc.env:HOME}' calls a function"),
         ("outputs: a\noutputs: b\n", ", line 2", "the key 'outputs' stands twice"),
         ("outputs: !!python/name:os.mkdir\n", ", line 1", "the tag"),
-        ("3\n", ", line 1", "is no setting"),
-        ("[outputs]\n", "", "is no setting"),
+        ("3\n", ", line 1", "is not a setting"),
+        ("[outputs]\n", "", "is not a setting"),
     ],
 )
 def test_bad_settings_are_told_with_their_line(cli, settings, text, line, found):

@@ -37,7 +37,7 @@ ABOVE_ZERO = "must be a number above 0, or a list of such numbers with one for e
         ("trajectory=quintic trajectory.duration=1e9", "limits.memory: a run of 1e+09 s (1e+11 ticks of 0.01 s"),
         ("trajectory=quintic trajectory.duration=0", "trajectory.duration: must be above 0; found 0"),
         ("outputs=", "outputs: must not be empty; found ''"),
-        ("outputs=3", "outputs: must be a text; found 3"),
+        ("outputs=3", "outputs: must be a string; found 3"),
         ("controller.feedforward=1", "controller.feedforward: must be true or false; found 1"),
         ("controller.period=0", "controller.period: must be above 0; found 0"),
         ("controller.period=inf", "controller.period: must be a finite number; found inf"),

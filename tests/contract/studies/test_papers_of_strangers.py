@@ -115,18 +115,20 @@ def test_nor_does_any_other_file(paper, tmp_path, file, line):
 )
 def test_runs_yaml_does_not_say_how_runs_are_made(paper, tmp_path, text, given, key, value):
     text, given = (each.replace("KEY", key).replace("VALUE", value) for each in (text, given))
-    line = f"{last_line(text)}'{given}' says how or where runs are made, which no file may"
+    line = f"{last_line(text)}'{given}' controls how or where runs are simulated, which no file may do"
     assert refused(paper({"runs.yaml": text}), tmp_path, line)
 
 
 def test_nor_one_that_is_put_together_of_pieces(paper, tmp_path):
     text = f"{GRID}    over:\n      dot: ['.']\n      x: {{y: 'hydra{{{{ dot }}}}searchpath=[file:///]'}}"
-    problem = "paper/runs.yaml: 'hydra.searchpath=[file:///]' says how or where runs are made, which no file may"
+    problem = (
+        "paper/runs.yaml: 'hydra.searchpath=[file:///]' controls how or where runs are simulated, which no file may do"
+    )
     assert refused(paper({"runs.yaml": text}), tmp_path, problem)
 
 
 def test_nor_do_gains(paper, tmp_path):
-    problem = "paper/gains.yaml, line 2: 'hydra.sweeper.workers' says how or where runs are made, which no file may"
+    problem = "paper/gains.yaml, line 2: 'hydra.sweeper.workers' controls how or where runs are simulated"
     assert refused(paper({"gains.yaml": "a/b:\n- {hydra.sweeper.workers: 1000}\n"}), tmp_path, problem)
 
 

@@ -12,11 +12,11 @@ GOOD = (
     "a=10N m", "a=[[1,2],[3,4]]", "a=['x,',\"y\"]",
 )  # fmt: skip
 BAD = {
-    "robot=macro,": "nothing stands behind the last comma; remove it, or give one more value",
-    "robot=,macro": "nothing stands before a comma; remove it, or give a value there",
-    "seed=0,1,,2": "nothing stands before a comma; remove it, or give a value there",
-    "a=[1,,2]": "nothing stands before a comma; remove it, or give a value there",
-    "a=[1,2,]": "nothing stands between a comma and ']'; remove the comma, or give one more value",
+    "robot=macro,": "a value after the last comma is missing; remove the comma, or give one more value",
+    "robot=,macro": "a value before a comma is missing; remove the comma, or give the value",
+    "seed=0,1,,2": "a value before a comma is missing; remove the comma, or give the value",
+    "a=[1,,2]": "a value before a comma is missing; remove the comma, or give the value",
+    "a=[1,2,]": "a value between a comma and ']' is missing; remove the comma, or give one more value",
     "a=[0,1": "the bracket '[' is not closed by a ']'",
     "a={b:[1}": "the bracket '}' closes none that is open",
     "a=}": "the bracket '}' closes none that is open",
@@ -24,10 +24,10 @@ BAD = {
     "seed=range(0,3": "the bracket '(' is not closed by a ')'",
     "robot.name='a": "the quote ' is not closed",
     'a=["x]': 'the quote " is not closed',
-    "robot = macro": "remove the spaces beside the '=', as in 'robot=macro'",
-    "robot= macro": "remove the spaces beside the '=', as in 'robot=macro'",
+    "robot = macro": "remove the spaces around the '=', as in 'robot=macro'",
+    "robot= macro": "remove the spaces around the '=', as in 'robot=macro'",
     "robot ": None,
-    "=3": "there is no key before the '='",
+    "=3": "the key before the '=' is missing",
     "robot==macro": "there are two '=' in a row; remove one",
 }
 
