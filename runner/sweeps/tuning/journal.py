@@ -120,7 +120,7 @@ def _load(path: Path) -> tuple[optuna.Study, list[FrozenTrial], list[Trial]]:
         return study, history, [read_ended(frozen) for frozen in history]
     except (OSError, ValueError, LookupError, TypeError, AttributeError, AssertionError, RecursionError) as error:
         raise DamagedError(
-            f"cannot read {path}: it is damaged: {error}; remove it to begin the tuning anew (its runs are found again)"
+            f"cannot read {path}: it is damaged: {error}; remove it to restart the tuning (its runs are found again)"
         ) from error
 
 

@@ -97,4 +97,4 @@ def read_key(override: Override) -> Key | None:
             raise ConfigError([f"{name}: its range is empty; {found.start} to {found.stop} has no two values"])
         integer = all(isinstance(value, int) for value in values)
         return Key(name, values[0], values[-1], step=abs(found.step), log=False, integer=integer)
-    raise ConfigError([f"'{override.input_line}' is no range to tune in; ranges: {RANGES}"])
+    raise ConfigError([f"'{override.input_line}' is not a range to tune in; ranges: {RANGES}"])

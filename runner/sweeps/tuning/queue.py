@@ -23,7 +23,7 @@ from runner.sweeps.writer import Rules
 
 @dataclass(frozen=True)
 class _Started:
-    """Chosen trial: its values, its run, and the failure if there is no run."""
+    """Chosen trial: its values, its run, and the failure if it has none."""
 
     params: Mapping[str, float]
     run: str

@@ -124,7 +124,7 @@ def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[s
 def _read_key(override: Override, known_groups: Sequence[str]) -> Key | None:
     key = read_key(override)
     if key is not None and key.name in known_groups:
-        raise ConfigError([f"{key.name}: is a group of options, no number"])
+        raise ConfigError([f"{key.name}: is a group of options, not a number"])
     if key is not None and not is_simulated(key.name):
         raise ConfigError([f"{key.name}: says how runs are made, not what is simulated; it cannot be tuned"])
     return key
@@ -139,7 +139,7 @@ def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
         if isinstance(found, dict):
             problems.append(f"{key.name}: is a group of keys ({', '.join(map(str, found))}); tune one of them")
         elif isinstance(found, bool | str | list):
-            problems.append(f"{key.name}: is no number; found {found!r}")
+            problems.append(f"{key.name}: is not a number; found {found!r}")
     if problems:
         raise ConfigError(problems)
 

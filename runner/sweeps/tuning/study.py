@@ -122,7 +122,7 @@ def open_tuning(folder: Path) -> Tuning:
         ended = content["trials"]
     except (KeyError, TypeError) as error:
         raise DamagedError(
-            f"cannot read {path}: it is no tuning's: {type(error).__name__}: {error}; {_MEND}"
+            f"cannot read {path}: it does not describe a tuning: {type(error).__name__}: {error}; {_MEND}"
         ) from error
     trials = read_trials(journal)
     if len(trials) < ended:

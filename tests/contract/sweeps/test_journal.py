@@ -50,7 +50,7 @@ def test_the_journal_of_another_tuning_is_told(tmp_path):
     Journal(one, KEYS, GOALS).append(TRIALS[0])
     shutil.copy(one, other)
     for read in (read_trials, lambda path: Journal(path, KEYS, GOALS)):
-        with pytest.raises(StoreError, match=r"other/journal\.log: it is damaged: .*; remove it to begin"):
+        with pytest.raises(StoreError, match=r"other/journal\.log: it is damaged: .*; remove it to restart"):
             read(other)
     kept = shutil.copytree(one.parent, tmp_path / "kept")  # a copy elsewhere may bear any name
     assert read_trials(kept / "journal.log") == TRIALS[:1]
@@ -114,7 +114,7 @@ def test_a_damaged_journal_is_told(path, content):
     path.write_bytes(content)
     with pytest.raises(StoreError, match=r"cannot read .*journal\.log"):
         read_trials(path)
-    with pytest.raises(StoreError, match=r"remove it to begin the tuning anew"):
+    with pytest.raises(StoreError, match=r"remove it to restart the tuning"):
         Journal(path, KEYS, GOALS)
 
 

@@ -137,13 +137,13 @@ def test_a_run_that_takes_too_long_failed(tuned):
     ("overrides", "why"),
     [
         (["controller.natural_frequncy=interval(1,2)"], "unknown key (did you mean natural_frequency?)"),
-        (["controller.kind=interval(1,2)"], "controller.kind: is no number; found 'operational_space'"),
+        (["controller.kind=interval(1,2)"], "controller.kind: is not a number; found 'operational_space'"),
         (
             ["controller.feedforward=interval(0,1)"],
-            "controller.feedforward: is no number; found True",
+            "controller.feedforward: is not a number; found True",
         ),
-        (["trajectory.goal=interval(0,1)"], "trajectory.goal: is no number"),
-        (["controller=interval(1,2)"], "controller: is a group of options, no number"),
+        (["trajectory.goal=interval(0,1)"], "trajectory.goal: is not a number"),
+        (["controller=interval(1,2)"], "controller: is a group of options, not a number"),
         (
             ["robot=combined", "controller.period=interval(0.1,0.2)"],
             "is a group of keys (macro, mini)",
@@ -153,7 +153,7 @@ def test_a_run_that_takes_too_long_failed(tuned):
         (["controller.damping_ratio=interval(2,1)"], "controller.damping_ratio: its range is empty"),
         (["plant.step=0.001", "controller.period=interval(0.01,0.02)"], "controller.period"),
         (["repetitions=interval(1,5)"], "repetitions: must be a whole number"),
-        ([FREQUENCY, "robot=macro,mini"], "'robot=macro,mini' is no range to tune in"),
+        ([FREQUENCY, "robot=macro,mini"], "'robot=macro,mini' is not a range to tune in"),
         ([FREQUENCY, "sweep.trace=never"], "sweep.trace: a tuning keeps the trace of every run; found 'never'"),
         ([FREQUENCY, "hydra.sweeper.workers=-1"], "hydra.sweeper.workers: must be a whole number"),
         ([FREQUENCY, "robot=macr"], "robot: no 'macr' (did you mean macro?)"),
@@ -191,7 +191,7 @@ def test_two_at_once_in_one_folder(tuned, tmp_path, monkeypatch):
 def test_a_damaged_tuning_is_told(tuned):
     folder = tuned(trials=1).folder
     (folder / "tuning.json").write_bytes(sealed_json({}))
-    with pytest.raises(StoreError, match=r"tuning\.json: it is no tuning's: KeyError: 'overrides'"):
+    with pytest.raises(StoreError, match=r"tuning\.json: it does not describe a tuning: KeyError: 'overrides'"):
         open_tuning(folder)
     (folder / "tuning.json").write_text('{"schema": 2}')
     with pytest.raises(SchemaError, match=r"tuning\.json: it has schema 2, and this version reads schema 3; make it "):

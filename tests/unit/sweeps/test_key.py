@@ -40,10 +40,10 @@ def test_one_value_is_no_range(text):
         ("a=range(5,6)", "a: its range is empty; 5 to 6 has no two values"),
         ("a=tag(log,interval(0,5))", "a: on a logarithmic scale low must be above 0; found 0"),
         ("a=interval(0,inf)", "a: its range must be finite; found 0 to inf"),
-        ("a=1,2", "'a=1,2' is no range to tune in; ranges: interval"),
-        ("a=choice(1,2)", "is no range to tune in"),
-        ("a=tag(lin,interval(1,2))", "is no range to tune in"),
-        ("a=tag(log,range(1,5))", "is no range to tune in"),
+        ("a=1,2", "'a=1,2' is not a range to tune in; ranges: interval"),
+        ("a=choice(1,2)", "is not a range to tune in"),
+        ("a=tag(lin,interval(1,2))", "is not a range to tune in"),
+        ("a=tag(log,range(1,5))", "is not a range to tune in"),
     ],
 )
 def test_what_cannot_be_tuned_is_told(text, why):
