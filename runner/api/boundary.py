@@ -17,7 +17,7 @@ _GO_ON = "interrupted; finished runs are stored; the same call continues"
 
 
 def public(function: Callable[P, T]) -> Callable[P, T]:
-    """Show the progress of a function; raise errors of the user, and interruptions, without the frames within it."""
+    """Wrap a public function: show its progress, and raise user errors and interrupts without internal stack frames."""
 
     @functools.wraps(function)
     def through(*args: P.args, **kwargs: P.kwargs) -> T:
@@ -33,16 +33,16 @@ def public(function: Callable[P, T]) -> Callable[P, T]:
 
 
 def public_class(kind: type[T], stored: Any) -> T:
-    """Return a stored run, sweep or tuning as the public class that inherits from its own."""
+    """Return a stored run, sweep or tuning as the public class that inherits from its class."""
     return kind(**{each.name: getattr(stored, each.name) for each in fields(stored)})
 
 
 @contextmanager
 def workers_only_work() -> Iterator[None]:
-    """Keep processes that are started within from running the user's program, as Python else lets each of them do.
+    """Keep worker processes that start inside this context from running the user's program.
 
-    A new process imports what `__main__` came from; a plain script would begin again there, and its sweep with it. Our
-    workers need nothing of it.
+    By default a new process imports the file of `__main__`. A plain script, with its sweep, would then start again in
+    each worker. The workers do not need that file.
     """
     main = sys.modules["__main__"].__dict__
     kept: dict[str, Any] = {name: main[name] for name in ("__file__", "__spec__") if name in main}

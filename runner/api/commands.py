@@ -18,7 +18,7 @@ Folders = Sequence[str | Path] | str | Path
 
 @public
 def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (), **values: object) -> Run:
-    """Make one run, or find it stored: what `runner OVERRIDES` does.
+    """Simulate one run, or return the stored run, as `runner OVERRIDES` does.
 
         >>> runner.run("robot=macro", "noise=thesis", duration=0.1, controller__period=0.01).status
         'ok'
@@ -27,14 +27,14 @@ def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (),
 
     Args:
         overrides: Overrides as on the command line, such as "robot=macro" and "noise.position=1e-3".
-        config_dirs: Config folders of yours, searched before ours.
-        plugins: Parts of yours as GROUP=MODULE, such as "controller=mine/spring.py"; they stay in use, and Python must
-            be started again once such a file was edited.
-        values: Overrides as keywords; two underscores stand for a dot. Texts are read as on the command line.
+        config_dirs: Your config folders, searched before the built-in ones.
+        plugins: Your plug-ins as GROUP=MODULE, such as "controller=mine/spring.py". They stay loaded; restart Python
+            after you edit such a file.
+        values: Overrides as keywords; two underscores mean a dot. Strings are read as on the command line.
 
     Raises:
-        RunnerError: for a config that cannot be run (a ConfigError, which lists all its problems), or a folder that
-            cannot be written.
+        RunnerError: if the config cannot be run (a ConfigError, which lists all its problems), or a folder cannot be
+            written.
     """
     from runner.sweeps import job
 
@@ -52,9 +52,9 @@ def sweep(
     plugins: Sequence[str] = (),
     **values: object,
 ) -> Sweep:
-    """Make every combination of some values: what `runner -m OVERRIDES` does.
+    """Simulate every combination of some values, as `runner -m OVERRIDES` does.
 
-    Runs that are stored are not made again, so that the same call goes on where it was interrupted.
+    Stored runs are reused, so the same call resumes an interrupted sweep.
 
         >>> sweep = runner.sweep("noise=thesis", robot=["macro", "mini"], duration=0.1, workers=0)
         >>> sweep.run(robot="mini").status
@@ -62,15 +62,15 @@ def sweep(
 
     Args:
         overrides: Overrides as on the command line: "robot=macro,mini", "seed=range(0,20)".
-        workers: Number of processes on this machine; 0 makes the runs in this process.
-        address: Address of a running Dask scheduler, such as "tcp://127.0.0.1:8786", in place of `workers`.
+        workers: Number of processes on this machine; 0 simulates the runs in this process.
+        address: Address of a running Dask scheduler, such as "tcp://127.0.0.1:8786", instead of `workers`.
         config_dirs: See `run`.
         plugins: See `run`.
-        values: See `run`; a list, tuple, range or array is an axis of the sweep. One value that is itself a list
-            stands in a list of its own: `torque_limits__max=[[1, 2, 3]]`.
+        values: See `run`; a list, tuple, range or array is an axis of the sweep. Wrap a single value that is itself a
+            list in another list: `torque_limits__max=[[1, 2, 3]]`.
 
     Raises:
-        RunnerError: for a config that cannot be run, before any run is made; if another sweep is at work there.
+        RunnerError: if a config cannot be run, before the first run starts; if another sweep uses the outputs folder.
     """
     from runner.config.compose.composer import Composer
     from runner.sweeps.finer_step import work_out_sweep
@@ -79,7 +79,7 @@ def sweep(
 
     use_plugins(plugins)
     folders, texts = config_folders(config_dirs), sweep_overrides(overrides, values)
-    _refuse_hydra(texts)
+    _reject_hydra(texts)
     engine, loader = Engine(workers, address), Composer(folders)
     brought = loader.sweeper(texts).params or {}  # axes that an experiment brings along
     plan = Grid([*(f"{key}={value}" for key, value in brought.items()), *texts], loader)
@@ -103,7 +103,7 @@ def tune(
     plugins: Sequence[str] = (),
     **values: object,
 ) -> Tuning:
-    """Choose numbers so that metrics get better: what `runner tune OVERRIDES --minimize METRIC` does.
+    """Tune numbers of the config to optimize metrics, as `runner tune OVERRIDES --minimize METRIC` does.
 
         >>> tuning = runner.tune(robot="macro", trajectory="quintic", duration=0.1, workers=0, trials=2,
         ...                      controller__natural_frequency=(5, 50), minimize="max_tracking_error")
@@ -111,18 +111,18 @@ def tune(
         2
 
     Args:
-        overrides: Overrides as on the command line, "controller.natural_frequency=interval(5,50)" for a key to tune.
-        minimize: Metrics that are to be small.
-        maximize: Metrics that are to be large.
-        trials: Number of trials in all, those of earlier calls included.
-        jobs: Number of trials that run at once; the choice of trials depends on it.
-        workers: Number of processes on this machine; 0 makes the trials in this process.
+        overrides: Overrides as on the command line; "controller.natural_frequency=interval(5,50)" tunes a key.
+        minimize: Metrics to minimize.
+        maximize: Metrics to maximize.
+        trials: Total number of trials, including those of earlier calls.
+        jobs: Number of trials that run at the same time; the choice of trials depends on it.
+        workers: Number of processes on this machine; 0 simulates the trials in this process.
         config_dirs: See `run`.
         plugins: See `run`.
-        values: See `run`; a tuple (low, high) is a range in which a key is tuned.
+        values: See `run`; a tuple (low, high) is the range of a tuned key.
 
     Raises:
-        RunnerError: if a key cannot be tuned, a config in its range not be run, or there is no such metric.
+        RunnerError: if a key cannot be tuned, a config in its range cannot be run, or a metric does not exist.
     """
     from runner.sweeps.run import Engine
     from runner.sweeps.tuning import run as tuning
@@ -130,7 +130,7 @@ def tune(
 
     use_plugins(plugins)
     folders, texts = config_folders(config_dirs), tuning_overrides(overrides, values)
-    _refuse_hydra(texts)
+    _reject_hydra(texts)
     Engine(workers, None)  # its check
     objectives = [Objective(metric, "minimize") for metric in _several(minimize)]
     objectives += [Objective(metric, "maximize") for metric in _several(maximize)]
@@ -149,7 +149,7 @@ def tune(
 def calibrate(
     *overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (), **values: object
 ) -> store.Calibration:
-    """Calibrate a tool or a sensor in simulation, or find that stored: what `runner calibrate OVERRIDES` does.
+    """Calibrate a tool or sensor in simulation, or return the stored result, as `runner calibrate OVERRIDES` does.
 
         >>> runner.calibrate(calibration="gravity", calibration__orientations=8, repetitions=2).status
         'ok'
@@ -161,7 +161,7 @@ def calibrate(
         values: See `run`.
 
     Raises:
-        RunnerError: for a config that cannot be carried out, or a folder that cannot be written.
+        RunnerError: if the config cannot be carried out, or a folder cannot be written.
     """
     from runner.sweeps import calibration_job
 
@@ -181,14 +181,14 @@ def _check_counts(**counts: int) -> None:
         raise ConfigError(wrong)
 
 
-def _refuse_hydra(texts: Sequence[str]) -> None:
+def _reject_hydra(texts: Sequence[str]) -> None:
     found = [f"{text}: give workers=... and address=... as arguments" for text in texts if text.startswith("hydra.")]
     if found:
         raise ConfigError(found)
 
 
 def _command(words: Sequence[str], folders: Sequence[Path], texts: Sequence[str]) -> str:
-    """Return the command that does the same, kept with what is made."""
+    """Return the equivalent command line, which is stored with the result."""
     added = [word for text in named_parts() for word in ("--plugin", text)]
     own = [word for folder in folders for word in ("--config-dir", str(folder))]
     return shlex.join(["runner", *added, *words, *own, *texts])

@@ -21,10 +21,10 @@ Comparable = Run | Sweep | str | Path
 def compare(
     first: Comparable, second: Comparable, *others: Comparable, metrics: str | Sequence[str] = ()
 ) -> "pd.DataFrame":
-    """Compare runs, or sweeps, with the first of them: the statistics that `runner compare` prints.
+    """Compare runs or sweeps with the first of them, and return the statistics that `runner compare` prints.
 
-    The repetitions of equal seeds are compared in pairs, and sweeps in the cells that both have. The columns are first
-    and second, which are A for the first argument, B for the second and so on, then those of `Sweep.compare`.
+    Repetitions with equal seeds are compared in pairs. Sweeps are compared in the cells that both have. The columns are
+    first and second (A for the first argument, B for the second and so on), then those of `Sweep.compare`.
 
         >>> common = ("robot=macro", "noise=thesis", "duration=0.1", "repetitions=6")
         >>> runs = [runner.run(*common, controller__damping_ratio=ratio) for ratio in (1.0, 0.7)]
@@ -33,8 +33,8 @@ def compare(
 
     Args:
         first: A run or a sweep, or its folder.
-        second: Another one of the same sort.
-        others: More of them.
+        second: Another run or sweep, of the same kind.
+        others: More runs or sweeps of that kind.
         metrics: Names of metrics; empty for all shared metrics.
 
     Raises:

@@ -22,10 +22,11 @@ def open_run(folder: str | Path) -> "Run":
         'ok'
 
     Args:
-        folder: Its folder, such as "outputs/runs/0871075a1b2c3d4e5f607182"; "latest" for what was made or found last.
+        folder: Folder of the run, such as "outputs/runs/0871075a1b2c3d4e5f607182"; "latest" for the run that was
+            simulated or reused last.
 
     Raises:
-        RunnerError: if the folder is no run, one that was not finished, or damaged.
+        RunnerError: if the folder is not a run, or the run is unfinished or damaged.
     """
     from runner.api.run import Run
 
@@ -34,13 +35,13 @@ def open_run(folder: str | Path) -> "Run":
 
 @public
 def open_sweep(folder: str | Path) -> "Sweep":
-    """Open a stored sweep, at work or ended.
+    """Open a stored sweep, still running or ended.
 
     Args:
-        folder: Its folder in `outputs/sweeps`; "latest" for the one made or found last.
+        folder: Folder of the sweep in `outputs/sweeps`; "latest" for the one simulated or reused last.
 
     Raises:
-        RunnerError: if the folder is no sweep, or damaged.
+        RunnerError: if the folder is not a sweep, or is damaged.
     """
     from runner.api.sweep import Sweep
 
@@ -57,10 +58,10 @@ def open_tuning(folder: str | Path) -> "Tuning":
         2
 
     Args:
-        folder: Its folder in `outputs/tunings`; "latest" for the one made or found last.
+        folder: Folder of the tuning in `outputs/tunings`; "latest" for the one simulated or reused last.
 
     Raises:
-        RunnerError: if the folder is not a tuning, or damaged.
+        RunnerError: if the folder is not a tuning, or is damaged.
     """
     from runner.api.tuning import Tuning
     from runner.sweeps.tuning import study

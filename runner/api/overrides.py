@@ -20,24 +20,24 @@ class _WrittenError(Exception):
 
 
 def run_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[str]:
-    """Return the overrides of one run: those given as texts, and those given as keywords, in this order.
+    """Return the overrides of one run: first those given as strings, then those given as keywords.
 
-    A keyword is a key, with two underscores in place of a dot: `controller__period=0.01` is controller.period. A text
-    means what it means on the command line behind `KEY=`; a Path is taken letter by letter.
+    A keyword is a key with two underscores instead of each dot: `controller__period=0.01` sets controller.period. A
+    string has the same meaning as on the command line after `KEY=`; a Path is taken literally.
 
         >>> run_overrides(["noise=thesis"], {"robot": "macro", "controller__period": 0.01, "torque_limits.max": [1, 2]})
         ['noise=thesis', 'robot=macro', 'controller.period=0.01', 'torque_limits.max=[1,2]']
 
     Raises:
-        ConfigError: for keys and values of which no override can be made; lists all of them.
+        ConfigError: if a key or value cannot be written as an override; lists all such keys and values.
     """
     return _overrides(given, values, _text)
 
 
 def sweep_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[str]:
-    """Return the overrides of a sweep: as of a run, and a list, tuple, range or array is an axis.
+    """Return the overrides of a sweep: as for a run, but a list, tuple, range or array is an axis.
 
-    One value that is itself a list stands in a list of its own.
+    A single value that is itself a list must be wrapped in another list.
 
         >>> sweep_overrides([], {"robot": ["macro", "mini"], "seed": range(20), "torque_limits__max": [[1, 2, 3]]})
         ['robot=macro,mini', 'seed=range(0,20)', 'torque_limits.max=[1,2,3]']
@@ -46,7 +46,7 @@ def sweep_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[
 
 
 def tuning_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[str]:
-    """Return the overrides of a tuning: as of a run, and a tuple of two numbers is the range in which a key is tuned.
+    """Return the overrides of a tuning: as for a run, but a tuple of two numbers is the range of a tuned key.
 
     >>> tuning_overrides([], {"robot": "macro", "controller__natural_frequency": (5, 50)})
     ['robot=macro', 'controller.natural_frequency=interval(5,50)']
@@ -56,13 +56,17 @@ def tuning_overrides(given: Sequence[str], values: Mapping[str, object]) -> list
 
 def _overrides(given: Sequence[str], values: Mapping[str, object], text: Callable[[object], str]) -> list[str]:
     problems = [
-        f"{quoted(each)} is not a valid override; write KEY=VALUE as a text" for each in given if type(each) is not str
+        f"{quoted(each)} is not a valid override; write KEY=VALUE as a string"
+        for each in given
+        if type(each) is not str
     ]
     found = list(given)
     for name, value in values.items():
         key = name.replace("__", ".")
         if not _KEY.fullmatch(key):
-            problems.append(f"{quoted(name)} is no key; write controller__period=... or **{{'controller.period': ...}}")
+            problems.append(
+                f"{quoted(name)} is not a key; write controller__period=... or **{{'controller.period': ...}}"
+            )
             continue
         try:
             found.append(f"{key}={text(value)}")
@@ -95,12 +99,12 @@ def _interval(value: object) -> str:
 
 
 def _text(value: object) -> str:
-    """Return a value as it stands behind `KEY=`; a text as it is."""
+    """Return a value as written after `KEY=`; a string is returned unchanged."""
     return value if type(value) is str else _item(value)
 
 
 def _item(value: object) -> str:
-    """Return a value as it stands in a list, in which a text is always one value."""
+    """Return a value as written in a list, in which a string is always one value."""
     if isinstance(value, np.generic | np.ndarray):
         value = value.tolist()
     if value is None:
@@ -125,17 +129,17 @@ def _name(key: object) -> str:
 
 
 def _letters(text: str) -> str:
-    """Return a text that Hydra reads as one value, letter by letter where it holds more than a name or a number."""
+    """Return a string as one Hydra value, quoted if it contains more than a name or a number."""
     if _PLAIN.fullmatch(text):
         return text
     return QuotedString(text.replace("${", r"\${"), Quote.single).with_quotes()
 
 
 def config_folders(given: "Sequence[str | Path] | str | Path") -> list[Path]:
-    """Return config folders of the user's.
+    """Return the user's config folders as paths.
 
     Raises:
-        ConfigError: for one that does not exist.
+        ConfigError: if a folder does not exist.
     """
     folders = [Path(each) for each in ([given] if isinstance(given, str | Path) else given)]
     missing = [f"config_dirs: no folder {folder}" for folder in folders if not folder.is_dir()]

@@ -8,17 +8,17 @@ from runner.base.sanitize import plain
 
 
 def text(value: object) -> str:
-    """Return a value as text that HTML shows letter by letter."""
+    """Return a value as escaped HTML, which a browser shows literally."""
     return html.escape(plain(str(value)))
 
 
 def heading(words: str, remark: str = "") -> str:
-    """Return a line in bold with a remark behind it."""
+    """Return a line in bold, followed by a remark."""
     return f"<p><strong>{text(words)}</strong>{f' {text(remark)}' if remark else ''}</p>"
 
 
 def line(words: str) -> str:
-    """Return a line; nothing where it is empty."""
+    """Return a paragraph; an empty string for an empty line."""
     return f"<p>{text(words)}</p>" if words else ""
 
 
@@ -32,7 +32,7 @@ def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
 
 
 def listed(title: str, items: Sequence[str]) -> str:
-    """Return a list under a title; nothing where it is empty."""
+    """Return a list under a title; an empty string for an empty list."""
     points = "".join(f"<li>{text(item)}</li>" for item in items)
     return f"<p>{text(title)}</p><ul>{points}</ul>" if items else ""
 
@@ -43,6 +43,6 @@ def code(words: object) -> str:
 
 
 def picture(svg: str, words: str) -> str:
-    """Return an SVG as a picture, in which no script runs and whose names clash with none on the page."""
+    """Return an SVG as an image element: its scripts do not run, and its names do not clash with others on the page."""
     content = base64.b64encode(svg.encode()).decode("ascii")
     return f'<img alt="{text(words)}" style="max-width:40em;width:100%" src="data:image/svg+xml;base64,{content}">'

@@ -24,11 +24,11 @@ _TITLES = {
     "tip": "tip position",
     "desired": "desired tip position",
 }
-_BESIDE = {"tip": "desired"}  # what is drawn dashed beside a signal
+_BESIDE = {"tip": "desired"}  # signal drawn dashed together with another
 
 
 def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:
-    """Return the signals of a trace that are drawn together: the columns of each, by the name of joint or axis.
+    """Return the signals of a trace that are drawn together: the columns of each, by the name of the joint or axis.
 
     >>> families(["t", "q1", "tau1", "tau2", "error_x", "error_y"])
     {'position': {'1': 'q1'}, 'torque': {'1': 'tau1', '2': 'tau2'}, 'error': {'x': 'error_x', 'y': 'error_y'}}
@@ -44,16 +44,16 @@ def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:
 
 
 def figure_of(signals: Signals, name: str) -> Figure:
-    """Return a signal over time: a panel for each unit, a curve for each joint or axis.
+    """Return the figure of a signal over time: a panel for each unit, a curve for each joint or axis.
 
     Raises:
-        RunnerError: if there is no such signal; tells which there are.
+        RunnerError: if there is no such signal; lists the existing signals.
     """
     return as_figure(_curves(signals, name))
 
 
 def svg_of(signals: Signals, name: str) -> str:
-    """Return the same as SVG."""
+    """Return the figure of a signal as SVG; see `figure_of`."""
     return draw(_curves(signals, name))
 
 

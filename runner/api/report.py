@@ -21,9 +21,9 @@ class Report:
     """A written report.
 
     Attributes:
-        folder: Its folder.
-        html: The page, one file that needs no network; None where it was not asked for.
-        pdf: The PDF; None where it was not asked for.
+        folder: Folder of the report.
+        html: HTML page, one file that needs no network; None if not requested.
+        pdf: PDF file; None if not requested.
     """
 
     folder: Path
@@ -44,19 +44,19 @@ class Report:
 def report(
     things: Thing | Sequence[Thing], formats: str | Sequence[str] = ("html", "pdf"), metrics: str | Sequence[str] = ()
 ) -> Report:
-    """Write the report on runs, sweeps or a tuning: what `runner report` does.
+    """Write the report on runs, sweeps or a tuning, as `runner report` does.
 
         >>> made = runner.report(runner.run(robot="macro", duration=0.1), formats="html")
         >>> made.html.name
         'report.html'
 
     Args:
-        things: Runs, sweeps or a tuning, or their folders; several sweeps are held against each other.
+        things: Runs, sweeps or a tuning, or their folders; several sweeps are compared with each other.
         formats: "html", "pdf" or both.
-        metrics: What a sweep is compared by; the first ranks it. None of them: the report chooses.
+        metrics: Metrics for the comparison in a sweep; the first one ranks it. If empty, the report chooses them.
 
     Raises:
-        RunnerError: for a folder that holds none of these, an unknown metric or an unknown format.
+        RunnerError: if a folder contains none of these, or a metric or format is unknown.
     """
     from runner.reporting.stored import write
 

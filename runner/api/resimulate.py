@@ -1,4 +1,4 @@
-"""Signals of any repetition of a stored run; all but the first are simulated again."""
+"""Signals of any repetition of a stored run; every repetition except the first is simulated again."""
 
 import math
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ class Signals:
     """The signals of one repetition.
 
     Attributes:
-        frame: A row per tick, a column per signal.
+        frame: One row per tick, one column per signal.
         units: Unit of each column.
     """
 
@@ -30,12 +30,12 @@ class Signals:
 
 
 def signals_of(run: store.Run, repetition: int) -> Signals:
-    """Return the signals of a repetition: of the first as stored, else simulated again.
+    """Return the signals of a repetition: the first is read from the store, any other is simulated again.
 
-    What is simulated again has the metrics that are stored, to the last bit, or it is refused.
+    The metrics of the new simulation must equal the stored metrics, to the last bit.
 
     Raises:
-        RunnerError: if there is no such repetition, or the code, the robot's file or the machine gives another one.
+        RunnerError: if there is no such repetition, or the code, the robot's file or the machine gives another result.
         DamagedError: if the run is damaged.
     """
     count = run.repetitions
@@ -68,21 +68,21 @@ def _simulated(run: store.Run, repetition: int) -> Signals:
 
 
 def _checked(run: store.Run, repetition: int) -> "RunConfig":
-    """Return the config of a run, once it is sure that it describes what was simulated."""
+    """Return the config of a run; raise an error if the code or the robot has changed since the run."""
     from runner.config.validation import validate
 
     cannot = f"repetition {repetition} of {run.hash} cannot be simulated again: "
     if store.run_hash(run.config, run.urdf) != run.hash:
         raise RunnerError(
-            f"{cannot}the code has changed since the run (our source, a plug-in, or the version of an engine), or a "
-            "plug-in of it is not in use; make the run anew by runner.run"
+            f"{cannot}the code has changed since the run (the runner, a plug-in, or the version of an engine), or one "
+            "of its plug-ins is not loaded; simulate it again with runner.run"
         )
     try:
         config = validate(run.config, run.config_dirs)
     except ConfigError as error:
         raise RunnerError(f"{cannot}{'; '.join(error.problems)}") from None
     if config.arm.urdf != run.urdf:
-        raise RunnerError(f"{cannot}the file of its robot has changed since the run; make the run anew by runner.run")
+        raise RunnerError(f"{cannot}the file of its robot has changed since the run; simulate it again with runner.run")
     return config
 
 

@@ -36,7 +36,7 @@ class Run(store.Run):
     """
 
     def to_frame(self) -> "pd.DataFrame":
-        """Return the metrics as a table: a row for each, with unit, median, min, max and n, the number of values."""
+        """Return a table with one row per metric: unit, median, min, max and n, the number of values."""
         import numpy as np
         import pandas as pd
 
@@ -49,12 +49,12 @@ class Run(store.Run):
 
     @public
     def trace(self, repetition: int = 0) -> "pd.DataFrame":
-        """Return the signals of a repetition, a row per tick; `units` tells the columns' units.
+        """Return the signals of a repetition, one row per tick; `units` has the units of the columns.
 
-        That of repetition 0 is stored. Another one is simulated again, and has the very metrics that are stored.
+        Repetition 0 is stored. Any other repetition is simulated again, and its metrics must equal the stored metrics.
 
         Raises:
-            RunnerError: if there is no such repetition, or it cannot be had as the code has changed since.
+            RunnerError: if there is no such repetition, or the code has changed since the run.
         """
         from runner.api.resimulate import signals_of
 
@@ -62,14 +62,14 @@ class Run(store.Run):
 
     @public
     def plot(self, signal: str = "error", repetition: int = 0) -> "Figure":
-        """Return a signal over time as a figure of matplotlib, to be changed or saved.
+        """Return a Matplotlib figure of a signal over time, to be changed or saved.
 
         Args:
-            signal: Such as "error", "tip", "torque", "position" or "velocity".
-            repetition: Which repetition; see `trace`.
+            signal: Name of the signal, such as "error", "tip", "torque", "position" or "velocity".
+            repetition: Number of the repetition; see `trace`.
 
         Raises:
-            RunnerError: if the run has no such signal; tells which it has.
+            RunnerError: if the run has no such signal; lists the signals that it has.
         """
         from runner.api.plots import figure_of
         from runner.api.resimulate import signals_of
@@ -78,7 +78,7 @@ class Run(store.Run):
 
     @public
     def sensitivity(self, parameters: str | Sequence[str] = (), repetition: int = 0) -> "Sensitivity":
-        """Return the derivatives of its metrics by its parameters: what `runner sensitivity` prints, as arrays.
+        """Return the derivatives of the metrics with respect to the parameters, as `runner sensitivity` prints them.
 
         The result has `metrics`, `parameters` and `derivatives`, with an array over the parameters for each metric;
         `elasticities(metric)`; `ranked(metric)`, the order of the parameters; `left_out`, parameters by reason.
@@ -99,15 +99,15 @@ class Run(store.Run):
     def compare_recording(
         self, recording: str | Path, columns: str | Path, fill_gaps: float = 0.0
     ) -> "RecordingComparison":
-        """Hold the recording of a real arm against repetition 0: what `runner compare` prints and writes as a report.
+        """Compare repetition 0 with the recording of a real arm, as `runner compare` does.
 
-        The result has `offset`, when the run begins in the recording; `residuals`, a list of signals with `mean`,
-        `rms`, `largest` and `fit`; `metrics`, of the run and of the recording by name; `friction`, that of its joints.
+        The result has `offset`, the time in the recording at which the run begins; `residuals`, a list of signals with
+        `mean`, `rms`, `largest` and `fit`; `metrics` of the run and of the recording by name; `friction` of the joints.
 
         Args:
             recording: The recording, a CSV file or a ROS bag.
-            columns: The YAML file that says what its columns hold, as docs/recordings.md tells.
-            fill_gaps: Longest gap of the recording that is filled, in s; 0 for none.
+            columns: The YAML file that describes the columns of the recording; see docs/recordings.md.
+            fill_gaps: Longest gap in the recording that is filled, in s; 0 for none.
 
         Raises:
             RunnerError: if a file cannot be read, or the recording does not fit the run.
@@ -154,5 +154,5 @@ class Run(store.Run):
         try:
             signals = Signals(super().trace(), self.units)
         except RunnerError:
-            return ""  # it kept no trace, or that is damaged: what is left is shown
+            return ""  # no trace, or a damaged one: the page shows the other parts
         return page.picture(svg_of(signals, "error"), "tip position error of repetition 0 over time")

@@ -41,7 +41,7 @@ class Sweep(store.Sweep):
 
     @property
     def axes(self) -> Mapping[str, Sequence[float] | Sequence[str]]:
-        """What was swept: the values of each key."""
+        """Swept keys and their values."""
         return {axis.name: axis.values for axis in self._axes}
 
     def __len__(self) -> int:
@@ -49,10 +49,10 @@ class Sweep(store.Sweep):
         return len(self.hashes)
 
     def runs(self) -> Iterator[Run]:
-        """Open its runs, one after the other, in the order of the cells.
+        """Open the runs one after the other, in the order of the cells.
 
         Raises:
-            RunnerError: if one is missing or damaged.
+            RunnerError: if a run is missing or damaged.
         """
         return (public_class(Run, run) for run in super().runs())
 
@@ -61,7 +61,7 @@ class Sweep(store.Sweep):
         """Return the one run with some values of the axes; two underscores in a keyword stand for a dot.
 
         Raises:
-            RunnerError: if there is no such axis or value, no such run, or more than one; tells what is left to say.
+            RunnerError: if there is no such axis, value or run, or more than one run; names the axes that need a value.
         """
         chosen = np.ones(len(self), dtype=bool)
         for name, value in values.items():
@@ -80,17 +80,17 @@ class Sweep(store.Sweep):
     def to_frame(
         self, metrics: str | Sequence[str] | None = None, level: Literal["cells", "repetitions"] = "cells"
     ) -> "pd.DataFrame":
-        """Return its metrics: a row for each cell and metric, or for each repetition of a cell and metric.
+        """Return the metrics: one row for each cell and metric, or for each repetition of a cell and metric.
 
         The first columns are the axes under their keys. For cells then come metric and unit; median; low and high, the
         ends of the median's 95 % interval over the repetitions, missing if these are too few; n, the number of
         repetitions that have a value; status and the number of caveats. `runner table` writes one row for each cell,
-        with quantiles. For repetitions then come repetition, metric, unit and value. The value is infinite, which is
-        beyond every number, if the repetition failed or never settled.
+        with quantiles. For repetitions then come repetition, metric, unit and value. The value is infinite if the
+        repetition failed or never settled.
 
         Args:
             metrics: Names of metrics; None for all.
-            level: What a row is: "cells" or "repetitions".
+            level: Meaning of a row: "cells" or "repetitions".
 
         Raises:
             RunnerError: if there is no such metric or level, or if runs are missing.
@@ -136,17 +136,17 @@ class Sweep(store.Sweep):
     def compare(
         self, *, by: str, within: str | Sequence[str] | None = None, metrics: str | Sequence[str] | None = None
     ) -> "pd.DataFrame":
-        """Return how the values of an axis differ from its first one, in pairs of runs that differ in nothing else.
+        """Compare each value of an axis with its first value, in pairs of runs that differ in nothing else.
 
-        The columns are the axes compared within, "all" where over all of them; first and second, the two values; metric
-        and unit; difference, second minus first (Hodges-Lehmann), low and high, the ends of its interval, n the number
-        of pairs; effect, from -1 (smaller in every pair) to 1; p, corrected (Holm); and the word: what may be said. The
-        interval excludes zero exactly if p is below 0.05. What is swept beyond that is pooled: a draw counts once.
+        The columns are the axes in `within`, "all" if compared over all their values; first and second, the two values;
+        metric and unit; difference, second minus first (Hodges-Lehmann); low and high, the ends of its interval; n, the
+        number of pairs; effect, from -1 (smaller in every pair) to 1; p, corrected (Holm); and word, the conclusion.
+        The interval excludes zero exactly if p is below 0.05. Other swept axes are pooled: each draw counts once.
 
         Args:
             by: The axis, such as "controller".
-            within: Axes within each combination of whose values it is compared; None for over all others, and then
-                within all of them but the seed.
+            within: Axes; the comparison is repeated for each combination of their values. None compares over all other
+                axes, and then within all of them except the seed.
             metrics: Names of metrics; None for all.
 
         Raises:
@@ -158,17 +158,20 @@ class Sweep(store.Sweep):
         return answer_frame(compare_levels(self._measurements, by, inside, self._names(metrics) if metrics else ()))
 
     def __repr__(self) -> str:
-        told = _told(find_status(self))
+        told = _progress_text(find_status(self))
         return "\n  ".join(map(one_line, [f"Sweep of {len(self)} runs: {told}", *self._over(), str(self.folder)]))
 
     def _repr_html_(self) -> str:
         status = find_status(self)
-        parts = [page.heading("Sweep", f"{len(self)} runs: {_told(status)}"), page.listed("Swept over", self._over())]
+        parts = [
+            page.heading("Sweep", f"{len(self)} runs: {_progress_text(status)}"),
+            page.listed("Swept over", self._over()),
+        ]
         parts += [] if status.left else [self._cells()]
         return "".join([*parts, page.code(self.folder)])
 
     def _cells(self) -> str:
-        """Return the first cells as a table, with the medians of the metrics that its report would compare."""
+        """Return a table of the first cells, with the medians of the metrics that the report of the sweep compares."""
         from runner.reporting.metric_titles import title
         from runner.reporting.sweep.subject import choose
 
@@ -201,12 +204,12 @@ class Sweep(store.Sweep):
 
     @cached_property
     def _measurements(self) -> Measurements:
-        """The cells with their values; an incomplete sweep is read again each time."""
+        """Cells with their values; an incomplete sweep is read again each time."""
         return measure_sweep(self)
 
 
-def _told(status: Status) -> str:
-    """Say how far a sweep is."""
+def _progress_text(status: Status) -> str:
+    """Return the progress of a sweep as a message."""
     texts = [f"{status.left} not made yet" if status.left else "all made"]
     texts += [f"{status.failed} failed"] if status.failed else []
     doubted = sum(map(bool, status.caveats))

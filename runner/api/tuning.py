@@ -20,9 +20,9 @@ class Tuning(study.Tuning):
     """A stored tuning: `runner.tune` makes one, `runner.open_tuning` opens one."""
 
     def to_frame(self) -> "pd.DataFrame":
-        """Return the trials, a row for each: the tuned keys, the objectives, failure, hash of the run, and best.
+        """Return the trials, one row each: the tuned keys, the objectives, failure, hash of the run, and best.
 
-        `best` tells the best trial; of several objectives, those of the Pareto front.
+        `best` is True for the best trial; with several objectives, for the trials on the Pareto front.
         """
         import pandas as pd
 
@@ -38,7 +38,7 @@ class Tuning(study.Tuning):
 
     @public
     def best(self) -> Run:
-        """Return the run of the best trial; of several objectives, that of the Pareto front's first.
+        """Return the run of the best trial; with several objectives, of the first trial on the Pareto front.
 
         Raises:
             RunnerError: if all trials failed.
