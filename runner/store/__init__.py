@@ -54,7 +54,7 @@ _MODULES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import what is used when it is used, so that `latest` needs neither NumPy nor pydantic."""
+    """Import a name at its first use, so that `latest` needs neither NumPy nor pydantic."""
     for module, names in _MODULES.items():
         if name in names.split():
             return getattr(import_module(f"runner.store.{module}"), name)

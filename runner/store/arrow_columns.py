@@ -10,21 +10,21 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     import pyarrow
 
-_MOST_BYTES = 2**31 - 1  # of all texts of a column
+_MOST_BYTES = 2**31 - 1  # total size of the strings of a column
 
 
 def text_column(values: Sequence[str]) -> "pyarrow.Array":
-    """Return a column of texts.
+    """Return a column of strings.
 
     Raises:
-        ValueError: for more than 2 GB of them.
+        ValueError: if the strings take more than 2 GB.
     """
     import pyarrow
 
     encoded = [value.encode() for value in values]
     ends = np.array([0, *accumulate(map(len, encoded))])
     if ends[-1] > _MOST_BYTES:
-        raise ValueError("the texts of a column take more than 2 GB")
+        raise ValueError("the strings of a column take more than 2 GB")
     buffers = [None, pyarrow.py_buffer(ends.astype(np.int32)), pyarrow.py_buffer(b"".join(encoded))]
     return pyarrow.Array.from_buffers(pyarrow.string(), len(values), buffers)
 
@@ -46,14 +46,14 @@ def optional_column(values: NDArray[np.float64]) -> "pyarrow.Array":
 
 
 def whole_column(values: Sequence[int]) -> "pyarrow.Array":
-    """Return a column of whole numbers of 32 bits."""
+    """Return a column of 32-bit integers."""
     import pyarrow
 
     return _plain(pyarrow.int32(), np.array(values, dtype=np.int32), len(values))
 
 
 def truth_column(values: Sequence[bool]) -> "pyarrow.Array":
-    """Return a column of true and false."""
+    """Return a column of booleans."""
     import pyarrow
 
     return _plain(pyarrow.bool_(), _bits(np.array(values, dtype=bool)), len(values))
@@ -64,8 +64,8 @@ def list_column(values: NDArray[np.float64], sizes: NDArray[np.intp], present: N
 
     Args:
         values: The numbers of all lists in order, shape (n,); NaN for none.
-        sizes: How many each list has, shape (rows,); 0 of one that is not present.
-        present: Whether there is a list, shape (rows,).
+        sizes: Length of each list, shape (rows,); 0 if there is no list.
+        present: True for each row that has a list, shape (rows,).
     """
     import pyarrow
 
@@ -86,7 +86,7 @@ def _bits(values: NDArray[np.bool_]) -> NDArray[np.uint8]:
 
 
 def _unless_all(present: NDArray[np.bool_]) -> Any:
-    """Return which entries are present as Arrow holds it: nothing where all are."""
+    """Return the Arrow validity bitmap of the entries; None if all are present."""
     import pyarrow
 
     return None if present.all() else pyarrow.py_buffer(_bits(present))

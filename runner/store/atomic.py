@@ -17,15 +17,16 @@ _STALE = 60.0  # s; a temporary file lives for milliseconds
 
 
 def write_atomically(path: Path, content: bytes, flush: bool = True) -> None:
-    """Write a file through a temporary one in the same folder, which is made when missing.
+    """Write a file through a temporary file in the same folder; create the folder if it is missing.
 
     Args:
         path: The file.
-        content: What it shall hold.
-        flush: Whether it is on the disk on return; else a power cut may leave it empty, for its reader to find out.
+        content: Content of the file.
+        flush: Whether the file is on the disk on return. Otherwise a power cut may leave it empty, and its reader must
+            detect that.
 
     Raises:
-        StoreError: if the folder or disk does not take it; what stood there before is untouched.
+        StoreError: if the file cannot be written; an existing file is untouched.
     """
     with open_atomically(path, flush) as file:
         file.write(content)
@@ -33,10 +34,10 @@ def write_atomically(path: Path, content: bytes, flush: bool = True) -> None:
 
 @contextlib.contextmanager
 def open_atomically(path: Path, flush: bool = True) -> Iterator[BinaryIO]:
-    """Open a file to write it part by part; see write_atomically. It is there once all is written without error.
+    """Open a file to write it part by part; see write_atomically. It appears after everything is written without error.
 
     Raises:
-        StoreError: if the folder or disk does not take it; what stood there before is untouched.
+        StoreError: if the file cannot be written; an existing file is untouched.
     """
     temporary = path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}.tmp")
     try:
@@ -55,7 +56,7 @@ def open_atomically(path: Path, flush: bool = True) -> Iterator[BinaryIO]:
 
 
 def remove_leftovers(folder: Path) -> None:
-    """Remove temporary files of writers that were killed: whose process is gone, or that are older than a minute."""
+    """Remove temporary files whose writing process is gone, and those older than a minute."""
     for path in folder.glob(".*.tmp"):
         host, _, process = path.name.removesuffix(".tmp").rpartition(".")
         with contextlib.suppress(OSError):
@@ -65,7 +66,7 @@ def remove_leftovers(folder: Path) -> None:
 
 
 def _is_alive(process: str) -> bool:
-    """Tell whether a process may still write; one that ended and that its parent has not asked about may not."""
+    """Return True if a process may still write; an ended process that its parent has not reaped may not."""
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
     except (OSError, IndexError):

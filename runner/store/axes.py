@@ -10,7 +10,7 @@ from runner.base.errors import StoreError
 
 _PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}")
 _OTHER_KIND = re.compile(r"(?i)null|true|false|[+-]?(inf|nan|[\d._]+(e[+-]?[\d_]+)?)")
-_LISTED_UP_TO = 1000  # values of a range; so a short range and the same numbers one by one are one sweep
+_LISTED_UP_TO = 1000  # values of a range; a short range and the same numbers in a list are then the same sweep
 
 
 @dataclass(frozen=True)
@@ -19,19 +19,19 @@ class SweepAxis:
 
     Attributes:
         key: The key as an override begins, such as "noise.position" or "+robot.note".
-        values: Its values: numbers in SI units, strings, lists and so on. A range of integers is not expanded.
+        values: Values of the key: numbers in SI units, strings, lists and so on. A range of integers is not expanded.
     """
 
     key: str
     values: Sequence[Any]
 
     def text(self, number: int) -> str:
-        """Return the override of a value, which is given by its number."""
+        """Return the override for the value with a given index."""
         return f"{self.key}={override_value(self.values[number])}"
 
 
 class Axes(Sequence[tuple[str, ...]]):
-    """The overrides of each cell of a grid, made when asked for; the last axis changes fastest.
+    """The overrides of each cell of a grid, created on access; the last axis changes fastest.
 
     Args:
         entries: The swept keys, and the overrides that all cells share as typed, in the order of the command line.
@@ -68,12 +68,12 @@ class Axes(Sequence[tuple[str, ...]]):
                 yield entry, successive
 
     def content(self) -> list[Any]:
-        """Return the axes as they are stored; see `read_axes`."""
+        """Return the axes in their stored format; see `read_axes`."""
         return [entry if isinstance(entry, str) else _content(entry) for entry in self.entries]
 
 
 def digits(number: int, sizes: Sequence[int]) -> list[int]:
-    """Return the digits of a number whose places count up to these sizes; the last one changes fastest."""
+    """Return the digits of a number in a mixed radix with these sizes; the last digit changes fastest."""
     found = []
     for size in reversed(sizes):
         number, digit = divmod(number, size)
@@ -82,13 +82,13 @@ def digits(number: int, sizes: Sequence[int]) -> list[int]:
 
 
 def is_simulated(override: str) -> bool:
-    """Tell whether a key, or an override of it, says what is simulated, not how and where that is done."""
+    """Return True if a key, or an override of it, affects the simulation, not only how and where it runs."""
     key = override.lstrip("+~").partition("=")[0].partition(".")[0]
     return key not in ("caveats", "hydra", "limits", "outputs", "spec", "sweep")
 
 
 def override_value(value: object) -> str:
-    """Return a value as it is written behind `KEY=`, so that it is read back as the same value."""
+    """Return a value as written after `KEY=`, so that it is read back as the same value."""
     if value is None:
         return "null"
     if isinstance(value, bool):
@@ -123,7 +123,7 @@ def read_axes(content: object) -> Axes:
     A range has start, stop and step.
 
     Raises:
-        StoreError: if they are none.
+        StoreError: if the content is not a valid list of axes.
     """
     if not isinstance(content, list):
         raise StoreError("its axes are not a list")

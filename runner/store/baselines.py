@@ -1,4 +1,4 @@
-"""Baselines of `runner check`: bands for the metrics of a run, and what the cells of a sweep gave.
+"""Baselines of `runner check`: bands for the metrics of a run, and stored metrics of the cells of a sweep.
 
 A file of bands is `{schema: 1, metrics: {NAME: {min:, max:, reason:}}}`. `runner check --save-baseline` writes the file
 of a sweep, `{schema: 1, cells: {OVERRIDES: {NAME: {unit:, median:, min:, max:, seeds:}}}}`.
@@ -30,7 +30,7 @@ from runner.store.atomic import write_atomically
 
 SCHEMA = 1
 _BOUNDS = Bounds(Limit(200_000_000, "bytes"), values=5_000_000)  # about 10^5 cells
-_ROUNDING = 1e-6  # of a value: what another machine's rounding may change
+_ROUNDING = 1e-6  # relative; rounding differences between machines
 _FOLDER = "references"  # of a study
 
 
@@ -48,8 +48,8 @@ class Spread(StrictModel):
     """Values of one metric over the seeds.
 
     Attributes:
-        unit: Its unit.
-        median: Its median over the repetitions; null if half of them or more have no value.
+        unit: Unit of the metric.
+        median: Median over the repetitions; null if half of them or more have no value.
         min: Smallest value; null if no repetition has one.
         max: Largest value; null if any repetition has none.
         seeds: Number of repetitions.
@@ -170,7 +170,7 @@ def load_baseline(path: Path, name: str = "") -> Bands | Cells:
         content = read_yaml(text, path, _BOUNDS)
         if not isinstance(content, dict):
             raise ValueError("it must have schema, and metrics or cells")
-        if "cells" not in content:  # written by hand, and so read as a config is: 1e-3 is a number
+        if "cells" not in content:  # written by hand, so read like a config: 1e-3 is a number
             content = OmegaConf.to_container(OmegaConf.create(text), resolve=False)
     except YamlError as error:
         raise StoreError(f"baseline {error}") from error
@@ -186,7 +186,7 @@ def load_baseline(path: Path, name: str = "") -> Bands | Cells:
 
 
 def check_run(run: Run, baseline: Bands) -> list[Finding]:
-    """Compare the medians of a run with a baseline; every metric of a failed run falls short."""
+    """Compare the medians of a run with a baseline; every metric of a failed run is out of its band."""
     findings = []
     for metric, band in baseline.bands.items():
         value = run.metrics[metric].median if metric in run.metrics else None
@@ -270,7 +270,7 @@ def find_shipped(run: Run) -> Bands:
     """Return the bundled baseline for the experiment and preset that a run was composed from.
 
     Raises:
-        RunnerError: if there is none; says how to list them.
+        RunnerError: if there is none; the message names the command that lists them.
     """
     choices = run.provenance.get("choices", {})
     name = f"{choices.get('experiment')}.{choices.get('preset')}"

@@ -37,13 +37,13 @@ class Calibration(Stored):
 
     @property
     def consistency(self) -> Mapping[str, Any] | None:
-        """Mean normalised error squared, its 99 % band and whether it holds; None where something has no error."""
+        """Mean normalised error squared, its 99 % band and whether it is in it; None if a quantity has no error."""
         consistency: Mapping[str, Any] | None = self.record["consistency"]
         return consistency
 
     @property
     def postures(self) -> NDArray[np.float64]:
-        """True joint positions in which the arm was read, shape (N, nq), in rad."""
+        """True joint positions at which the arm was measured, shape (N, nq), in rad."""
         return np.array(self.record["postures"])
 
     def summary(self, table: Table, name: str) -> Mapping[str, Any]:
@@ -52,16 +52,16 @@ class Calibration(Stored):
         return summary
 
     def values(self, table: Table, *names: str) -> NDArray[np.float64]:
-        """Return the values of names in a table, all where none is given, shape (repetitions, number of names)."""
+        """Return the values of names in a table, of all if none is given, shape (repetitions, number of names)."""
         columns = [self.record[table][name]["values"] for name in names or self.record[table]]
         return np.array(columns, dtype=float).T
 
 
 def find_calibration(outputs: Path, name: str) -> Calibration | None:
-    """Return the calibration of that hash, or None when there is none that was finished.
+    """Return the finished calibration with a hash, or None if there is none.
 
     Raises:
-        DamagedError: if it is damaged.
+        DamagedError: if the calibration is damaged.
     """
     folder = outputs / "calibrations" / name
     if not (folder / _RECORD).exists():
@@ -74,7 +74,7 @@ def open_calibration(folder: Path) -> Calibration:
     """Open a stored calibration.
 
     Raises:
-        DamagedError: if the folder is none, or damaged.
+        DamagedError: if the folder is not a calibration, or is damaged.
     """
     record, config = read_job(folder, _RECORD)
     missing = [key for key in _NEEDED if key not in record]
@@ -91,7 +91,7 @@ def write_calibration(
     """Store a calibration, its result last.
 
     Raises:
-        StoreError: if the disk does not take it.
+        StoreError: if it cannot be written.
     """
     folder = outputs / "calibrations" / name
     text = yaml.safe_dump(dict(config), sort_keys=False)

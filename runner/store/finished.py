@@ -16,10 +16,10 @@ from runner.store.stored import check_job
 
 
 def find_run(outputs: Path, name: str) -> Run | None:
-    """Return the run of that hash that has a folder of its own, or None when there is none that was finished.
+    """Return the finished run with a hash from its own run folder, or None if there is none.
 
     Raises:
-        DamagedError: if it is damaged.
+        DamagedError: if the run is damaged.
     """
     folder = outputs / "runs" / name
     if not (folder / "metrics.json").exists():
@@ -29,10 +29,10 @@ def find_run(outputs: Path, name: str) -> Run | None:
 
 
 def find_outcome(outputs: Path, name: str) -> Outcome | None:
-    """Return how the run of that hash in a folder of its own ended, or None when there is none that was finished.
+    """Return the outcome of the finished run with a hash in its own run folder, or None if there is none.
 
     Raises:
-        DamagedError: if it is damaged.
+        DamagedError: if the run is damaged.
     """
     if not os.path.exists(f"{outputs}/runs/{name}/metrics.json"):  # noqa: PTH110 - asked of each run of a sweep
         return None
@@ -41,21 +41,21 @@ def find_outcome(outputs: Path, name: str) -> Outcome | None:
 
 
 class Finished:
-    """The finished runs, as they are when this is made; of two outcomes of one run the better counts.
+    """Finished runs at the time of construction. If a run has two outcomes, the better one counts.
 
-    A good one is better than a failed one, and that is better than one that was cut short. Else that with a folder of
-    its own counts, then that of the later shard.
+    A good run is better than a failed run, and a failed run is better than an aborted run. Of equal outcomes, the one
+    in a run folder counts, then the one in the later shard.
 
     Args:
         outputs: The outputs folder.
 
     Attributes:
-        damage: What is damaged of what was looked at, a text for each file; it counts as not there.
+        damage: Message for each damaged file that was read; such a file counts as missing.
         names: Names of the runs in shards, ascending, shape (n,).
-        rank: Rank of the outcome of each, shape (n,); see Outcome.
-        caveats: Number of caveats of each, shape (n,).
-        shard: Number of the shard that holds each, shape (n,); see `shard_of`.
-        row: Its row there, shape (n,).
+        rank: Rank of the outcome of each run, shape (n,); see Outcome.
+        caveats: Number of caveats of each run, shape (n,).
+        shard: Index of the shard that contains each run, shape (n,); see `shard_of`.
+        row: Row of each run in its shard, shape (n,).
     """
 
     def __init__(self, outputs: Path) -> None:
@@ -74,7 +74,7 @@ class Finished:
         self._take(parts)
 
     def _take(self, parts: Sequence[Outcomes]) -> None:
-        """Keep the better outcome of each run, by ascending name."""
+        """Keep the best outcome of each run, by ascending name."""
         sizes = [len(part) for part in parts]
         names = np.concatenate([part.names for part in parts] or [np.zeros(0, dtype="S1")])
         rank = np.concatenate([part.rank for part in parts] or [np.zeros(0, dtype=np.int8)])
@@ -87,20 +87,20 @@ class Finished:
         self._failures = {(shard, row): text for shard, part in enumerate(parts) for row, text in part.failures.items()}
 
     def folders(self, names: Names) -> set[str]:
-        """Return those of some runs that may have a folder of their own."""
+        """Return the given runs that may have their own run folder."""
         return self._folders.intersection(names) if self._folders else set()
 
     def places(self, names: Names) -> NDArray[np.intp]:
-        """Return the places in `names` of those of some runs that are in shards, ascending."""
+        """Return the indices in `names` of the given runs that are in shards, ascending."""
         found = np.unique(self.places_of(names))
         return found[found >= 0]
 
     def places_of(self, names: Names) -> NDArray[np.intp]:
-        """Return the place in `names` of each of some runs, shape (n,); -1 for one that is in no shard."""
+        """Return the index in `names` of each given run, shape (n,); -1 for a run that is in no shard."""
         return look_up(names.texts, self.names)
 
     def in_folder(self, name: str) -> Outcome | None:
-        """Return how the run in a folder of its own ended, or None when there is none."""
+        """Return the outcome of a run in its own run folder, or None if there is none."""
         if name not in self._folders:
             return None
         try:
@@ -110,21 +110,21 @@ class Finished:
             return None
 
     def in_shard(self, name: str) -> Outcome | None:
-        """Return how the run in a shard ended, or None when there is none."""
+        """Return the outcome of a run in a shard, or None if there is none."""
         place = int(look_up(Names.of([name]).texts, self.names)[0])
         return None if place < 0 else self.outcome_at(place)
 
     def outcome_at(self, place: int) -> Outcome:
-        """Return how the run at a place of `names` ended."""
+        """Return the outcome of the run at an index of `names`."""
         failure = self._failures.get((int(self.shard[place]), int(self.row[place])), "")
         return Outcome(self.names[place].decode(), failure, bool(self.rank[place] == 2), int(self.caveats[place]))
 
     def shard_of(self, place: int) -> Path:
-        """Return the shard that holds the run at a place of `names`."""
+        """Return the shard that contains the run at an index of `names`."""
         return self._shards[int(self.shard[place])]
 
     def outcome(self, name: str) -> Outcome | None:
-        """Return how a run ended, or None when it is not finished."""
+        """Return the outcome of a run, or None if it is not finished."""
         ends = [end for end in (self.in_folder(name), self.in_shard(name)) if end is not None]
         return min(ends, key=lambda end: end.rank, default=None)
 
@@ -132,7 +132,7 @@ class Finished:
         """Open a run.
 
         Raises:
-            StoreError: if it is not finished, or damaged; tells damaged shards, in which it may be.
+            StoreError: if the run is unfinished or damaged; lists the damaged shards that may contain it.
         """
         place = int(look_up(Names.of([name]).texts, self.names)[0])
         if place < 0:

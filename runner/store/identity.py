@@ -14,28 +14,28 @@ from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest
 from runner.symbolic.engine import evaluator
 
-# These say where and under which name a run is kept, and what is told of it, not what is simulated.
+# Keys for the location, name and report of a run. They do not affect the simulation.
 _LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")
-_OWN = ("kinematic", "none", "rk4", "rk4_flexible_links")  # our plants that need no engine
+_OWN = ("kinematic", "none", "rk4", "rk4_flexible_links")  # built-in plants without an external engine
 _ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), **dict.fromkeys(_OWN, ())}
 
-_MEMORY = Memory(4096)  # what the groups of configs give: texts, and the kinds that they name
-_PLACES = 12  # bytes of a digest that make a name
+_MEMORY = Memory(4096)  # JSON strings of config groups, and the kinds that the groups name
+_PLACES = 12  # bytes of the digest in a name
 
 
 def run_hash(resolved: Mapping[str, Any], urdf: str) -> str:
-    """Return the name of a run's folder: SHA-256 over all that its result follows from.
+    """Return the name of a run's folder: SHA-256 over everything that determines the result.
 
-    That is the resolved config (without outputs, sweep, limits, caveats, spec, and preset, whose values the groups have
-    taken), the URDF's text, the content of the physics and of the user's parts that it uses, and the versions of the
-    plant's engine, Pinocchio and what evaluates compiled laws. It is hashed as JSON with sorted keys; the text of a
-    group is kept for others that share it, which must not be changed.
+    The digest covers the resolved config (without outputs, sweep, limits, caveats, spec, and preset, whose values are
+    already in the groups), the URDF, the content of the physics and of the plug-ins that the run uses, and the versions
+    of the plant's engine, of Pinocchio and of the evaluator of compiled laws. It is taken over JSON with sorted keys.
+    The JSON of a group is cached for runs that share the group, so a group must not be changed afterwards.
     """
     return hashlib.sha256("".join(_content(resolved, urdf)).encode()).digest()[:_PLACES].hex()
 
 
 def run_hashes(resolved: Mapping[str, Any], urdf: str, seeds: Sequence[int]) -> Names:
-    """Return the names of runs that differ in nothing but their seed; see run_hash."""
+    """Return the names of runs that differ only in their seed; see run_hash."""
     texts = list(_content(resolved, urdf))
     place = sorted(simulated_part(resolved)).index("seed")
     start, end = texts[place].removesuffix(json_text(resolved["seed"])), "".join(texts[place + 1 :]).encode()
@@ -50,7 +50,7 @@ def run_hashes(resolved: Mapping[str, Any], urdf: str, seeds: Sequence[int]) -> 
 
 
 def _content(resolved: Mapping[str, Any], urdf: str) -> Iterator[str]:
-    """Yield the text that is hashed, JSON with sorted keys, in parts: one begins with each key of the config."""
+    """Yield the hashed JSON with sorted keys in parts, one part for each key of the config."""
     config = simulated_part(resolved)
     before = '{"config": {'
     for key in sorted(config):
@@ -64,7 +64,7 @@ def _content(resolved: Mapping[str, Any], urdf: str) -> Iterator[str]:
 
 
 def json_text(value: object) -> str:
-    """Return a value of a config as JSON with sorted keys; that of a group is kept, which must not be changed."""
+    """Return a config value as JSON with sorted keys; that of a group is cached, so the group must not be changed."""
     return _MEMORY.recall(_sorted_text, value) if isinstance(value, Mapping) else _sorted_text(value)
 
 
@@ -73,13 +73,13 @@ _key_text = lru_cache(maxsize=256)(_sorted_text)
 
 
 def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys of a config that decide about the result: of a data file its content, and not its name."""
+    """Return the keys of a config that determine the result; a data file is given by its content, not its name."""
     kept = {key: value for key, value in resolved.items() if key not in _LEFT_OUT}
     return kept | {"trajectory": _MEMORY.recall(without_file_name, kept["trajectory"])} if has_data_file(kept) else kept
 
 
 def _parts(resolved: Mapping[str, Any]) -> set[tuple[str, str]]:
-    """Return name and module of the user's parts that a run uses: whose kinds its config names, and all metrics."""
+    """Return name and module of the plug-ins that a run uses: those whose kind the config names, and all metrics."""
     points = [(group, point) for group in GROUPS for point in added_parts(group)]
     if not points:
         return set()
@@ -91,21 +91,21 @@ def _parts(resolved: Mapping[str, Any]) -> set[tuple[str, str]]:
 
 
 def _kinds(group: Mapping[str, Any]) -> frozenset[str]:
-    """Return every `kind` that a group of a config names, at whatever depth."""
+    """Return every `kind` in a group of a config, at any depth."""
     inner = (_kinds(value) for key, value in group.items() if isinstance(value, Mapping) and key != "kind")
     return frozenset([str(group["kind"])] if "kind" in group else []).union(*inner)
 
 
 @lru_cache(maxsize=16)
 def _engines(plant: str) -> dict[str, str]:
-    """Return the versions of what a plant, given by its kind, is simulated by; a stranger's may use any engine."""
+    """Return the versions of the engines that simulate a kind of plant; a plug-in plant may use any engine."""
     used = _ENGINES.get(plant, ("mujoco", "pybullet"))
     return installed_versions((*used, "pin")) | evaluator()
 
 
 @lru_cache(maxsize=16)
 def _parts_digest(parts: tuple[tuple[str, str], ...]) -> str:
-    """Return a digest of the content of parts, given by name and module, as it is when they are first used."""
+    """Return a digest of the content of plug-ins, given by name and module, at their first use."""
     files = [(name, path) for name, module in parts for path in source_files(module)]
     sources = {f"{number} {name} {path.name}": path.read_bytes() for number, (name, path) in enumerate(files)}
     return content_digest(sources, {name: name for name in sources})

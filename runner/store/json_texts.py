@@ -9,22 +9,22 @@ encode_finite = json.JSONEncoder(allow_nan=False).encode
 """Return the JSON text of a value, as `json.dumps` does.
 
 Raises:
-    ValueError: for a number that is not finite.
+    ValueError: if a number is not finite.
 """
 
 
 class JsonTexts:
-    """Texts as `json.dumps` gives them; what stands below the root and comes again is encoded once.
+    """Encoder with the output of `json.dumps` that encodes a repeated value below the root only once.
 
-    It is known again as the same object under the same key, and must not be changed in between.
+    A value is recognized as the same object under the same key. It must not be changed between calls.
     """
 
     def __init__(self) -> None:
         self._known: dict[tuple[str, int], str] = {}
-        self._kept: list[object] = []  # so that no other object takes the place of one in memory
+        self._kept: list[object] = []  # keeps the objects alive, so that their ids stay unique
 
     def of(self, content: Mapping[str, Any]) -> str:
-        """Return the text of a mapping."""
+        """Return the JSON of a mapping."""
         known = self._known.get
         entries = [known((key, id(value))) or self._entry(key, value) for key, value in content.items()]
         return "{" + ", ".join(entries) + "}"

@@ -1,4 +1,4 @@
-"""Kinds of stored things: folder, files and command of each, the name `latest`, and one way to open a folder."""
+"""Kinds of stored results: folder, files and command of each, the name `latest`, and a function that opens a folder."""
 
 import json
 import sys
@@ -24,12 +24,12 @@ _NOTES = "newest"  # folder in an outputs folder: a file for each kind, so that 
 
 @dataclass(frozen=True)
 class StoredKind:
-    """Folder, files and command of a kind of stored thing.
+    """Folder, files and command of a kind of stored result.
 
     Attributes:
-        folder: Folder in the outputs folder that its folders are in.
-        files: Files by which its folder is recognized, the record first.
-        command: Command that makes it.
+        folder: Name of its parent folder in the outputs folder.
+        files: Files by which a result's folder is recognized, the record first.
+        command: Command that creates such a result.
     """
 
     folder: str
@@ -57,7 +57,7 @@ def note(folder: Path) -> None:
     place = folder.resolve()
     outputs, kind = place.parent.parent, place.parent.name
     if all(each.folder != kind for each in KINDS.values()):
-        return  # a copy in another place
+        return  # a copy elsewhere
     order = max([time.time_ns(), *(known + 1 for known, _ in _notes(outputs, tuple(KINDS)))])
     try:
         content = json.dumps({"name": place.name, "order": order}).encode()
@@ -69,7 +69,7 @@ def note(folder: Path) -> None:
 def find_folder(text: str | Path, kinds: Sequence[Kind]) -> Path:
     """Return the folder that a user names: by its path, by `latest`, or by OUTPUTS/latest in another outputs folder.
 
-    A folder with the name `latest` is that folder. The kind follows from the names of files; no file is read.
+    An existing folder named `latest` takes precedence. The kind follows from the file names; no file is read.
 
     Args:
         text: The name as typed.
@@ -96,7 +96,7 @@ def kind_of(folder: Path) -> Kind | None:
 
 
 def outputs_of(folder: Path) -> Path:
-    """Return the outputs folder of a stored thing; ./outputs for a copy in another place."""
+    """Return the outputs folder of a stored result; ./outputs for a copy elsewhere."""
     stored = any(of.folder == folder.resolve().parent.name for of in KINDS.values())
     return folder.parent.parent if stored else outputs_dir()
 
@@ -105,8 +105,8 @@ def open_stored(folder: Path) -> "Run | Sweep | Calibration":
     """Open a folder; a tuning is opened as the sweep of its trials.
 
     Raises:
-        StoreError: if the folder is none of these, or its run was not finished.
-        DamagedError: if it is damaged.
+        StoreError: if the folder is none of these, or its run is unfinished.
+        DamagedError: if the result is damaged.
     """
     from runner.store.calibration import open_calibration
     from runner.store.run import open_run

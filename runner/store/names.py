@@ -13,13 +13,13 @@ Texts = NDArray[np.bytes_]
 
 
 class Names(Sequence[str]):
-    """Names of runs, 24 bytes each, where a text takes three times as much.
+    """Names of runs, 24 bytes each; a string takes three times as much.
 
     Args:
         texts: The names as ASCII, shape (n,).
 
     Attributes:
-        texts: As given.
+        texts: Names as given.
     """
 
     def __init__(self, texts: Texts) -> None:
@@ -27,16 +27,16 @@ class Names(Sequence[str]):
 
     @classmethod
     def of(cls, names: Iterable[str]) -> "Names":
-        """Return names that were given as texts."""
+        """Return names that are given as strings."""
         return cls(np.array([name.encode() for name in names], dtype=np.bytes_).reshape(-1))
 
     @classmethod
     def unpacked(cls, content: bytes) -> "Names":
-        """Return names that were stored: 12 bytes each."""
+        """Return names from their stored bytes, 12 bytes each."""
         return cls(np.frombuffer(content.hex().encode(), dtype=f"S{_HEX}"))
 
     def packed(self) -> bytes:
-        """Return the names as they are stored: 12 bytes each; all must be hexadecimal."""
+        """Return the stored bytes of the names, 12 bytes each; all names must be hexadecimal."""
         return bytes.fromhex(self.texts.astype(f"S{_HEX}").tobytes().decode())
 
     def __len__(self) -> int:
@@ -56,11 +56,11 @@ class Names(Sequence[str]):
 
 
 def look_up(names: Texts, ordered: Texts) -> NDArray[np.intp]:
-    """Return at which place of ascending names others stand, shape (n,); -1 for one that does not.
+    """Return the index of each name in an ascending array, shape (n,); -1 for a missing name.
 
     Args:
-        names: What is looked for, shape (n,).
-        ordered: Where it is looked for, shape (m,).
+        names: Names to look up, shape (n,).
+        ordered: Names in ascending order, shape (m,).
     """
     if not len(ordered):
         return np.full(len(names), -1, dtype=np.intp)
@@ -70,11 +70,11 @@ def look_up(names: Texts, ordered: Texts) -> NDArray[np.intp]:
 
 
 def best_of_each(names: Texts, *badness: NDArray[Any]) -> NDArray[np.intp]:
-    """Return the place of the best entry of each distinct name, by ascending name.
+    """Return the index of the best entry of each distinct name, by ascending name.
 
     Args:
         names: Name of each entry, shape (n,).
-        badness: What entries of one name are ordered by, most important first, shape (n,) each; the least is best.
+        badness: Sort keys for the entries of one name, most important first, shape (n,) each; the smallest is best.
     """
     order = np.lexsort((*badness[::-1], names))
     first = np.ones(len(order), dtype=bool)

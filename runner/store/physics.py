@@ -18,7 +18,7 @@ from runner.base.paths import package_dir
 from runner.store import syntax
 from runner.symbolic.cache import read_answer, write_answer
 
-# Folders and their modules. A module's id stands behind "=", or is its name.
+# Folders and their modules. A module's id follows "="; without "=" it is the module's name.
 _TABLE = """
     base: trace
     calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations tool
@@ -69,7 +69,7 @@ _TABLE = """
 
 
 def module_ids() -> dict[str, str]:
-    """Return the id of each module of the physics, by its file in the package, such as "robots/chain.py"."""
+    """Return the id of each physics module by its file in the package, such as "robots/chain.py"."""
     ids, folder = {}, ""
     for word in _TABLE.split():
         name, _, own = word.partition("=")
@@ -82,18 +82,18 @@ def module_ids() -> dict[str, str]:
 
 @cache
 def physics_digest() -> str:
-    """Return a digest of the content of the physics, the same on each Python."""
+    """Return a digest of the content of the physics, the same on every Python version."""
     ids, root = module_ids(), package_dir()
     sources = {_dotted(file): (root / file).read_bytes() for file in ids}
     return content_digest(sources, {_dotted(file): own for file, own in ids.items()})
 
 
 def content_digest(sources: Mapping[str, bytes], ids: Mapping[str, str]) -> str:
-    """Return a digest of the content of modules, which is worked out once and kept in the user's cache folder.
+    """Return a digest of the content of modules, computed once and kept in the user's cache folder.
 
     Args:
-        sources: Source of each, by the name under which others import it.
-        ids: Id of each, by the same name.
+        sources: Source of each module, by the name under which others import it.
+        ids: Id of each module, by the same name.
     """
     state = hashlib.sha256(Path(__file__).read_bytes() + Path(syntax.__file__).read_bytes())
     for name, source in sources.items():
@@ -110,7 +110,7 @@ def _digest(trees: Mapping[str, ast.Module], ids: Mapping[str, str]) -> str:
     bound = {own: {name: (module, of) for name, module, of in syntax.imports(tree)} for own, tree in trees.items()}
 
     def resolve(module: str, name: str) -> str:
-        """Resolve a name to the id of the module that defines it, and its name there."""
+        """Return the id of the module that defines a name, and the name in that module."""
         whole = f"{module}.{name}" if name else module
         if whole in ids:
             return ids[whole]
@@ -121,13 +121,13 @@ def _digest(trees: Mapping[str, ast.Module], ids: Mapping[str, str]) -> str:
     digest = hashlib.sha256()
     for name in sorted(trees, key=ids.__getitem__):
         text = syntax.content(trees[name], resolve)
-        if text:  # else it only hands on what it imports
+        if text:  # otherwise it only re-exports its imports
             digest.update(f"{ids[name]}\0{len(text)}\0{text}".encode())
     return digest.hexdigest()
 
 
 def _parsed(source: bytes) -> ast.Module:
-    """Return the syntax tree of a module; of what this Python cannot read, one that holds all its text."""
+    """Return the syntax tree of a module; if this Python cannot parse it, a tree with the source as a constant."""
     try:
         return ast.parse(source)
     except (SyntaxError, ValueError, RecursionError, MemoryError):

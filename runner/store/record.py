@@ -79,7 +79,7 @@ class _Record(_Part):
 
 
 def find_faults(record: Any) -> str:
-    """Return what is wrong with a run's record, in words; empty where nothing is."""
+    """Return a message that describes the faults of a run's record; empty if there are none."""
     try:
         found = _Record.model_validate(record)
     except ValidationError as error:

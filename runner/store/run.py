@@ -1,4 +1,4 @@
-"""Stored run, and its reader."""
+"""Stored run and its reader."""
 
 import itertools
 import shlex
@@ -34,8 +34,8 @@ class Run(Stored):
     """A stored run; its record is the content of metrics.json.
 
     Attributes:
-        text: URDF of a run without a trace, which has no folder of its own.
-        beside: Reads the values of a metric of such a run, if its record does not list them.
+        text: URDF of a run without a trace, which is stored in a shard; None for a run in its own folder.
+        beside: Function that reads the values of a metric of such a run, if its record does not list them.
     """
 
     text: str | None = None
@@ -43,7 +43,7 @@ class Run(Stored):
 
     @cached_property
     def urdf(self) -> str:
-        """The URDF's text that was simulated.
+        """Simulated URDF.
 
         Raises:
             DamagedError: if the file is missing or damaged.
@@ -72,18 +72,18 @@ class Run(Stored):
 
     @property
     def failure(self) -> str | None:
-        """When, where and why the run failed, in words; None for a good run."""
+        """Message with the time, location and reason of the failure; None for a good run."""
         return None if self.failure_record is None else describe_failure(self.failure_record)
 
     @property
     def config_dirs(self) -> Sequence[Path]:
-        """Config folders that its command names, in which the file of its robot is looked for."""
+        """Config folders in the command of the run, which are searched for the robot file."""
         words = shlex.split(str(self.provenance["command"]))
         return [Path(after) for before, after in itertools.pairwise(words) if before == "--config-dir"]
 
     @property
     def overrides(self) -> Sequence[str]:
-        """Overrides of its command."""
+        """Overrides in the command of the run."""
         words = shlex.split(str(self.provenance["command"]))
         return [after for before, after in itertools.pairwise(words) if "--" not in (before[:2], after[:2])]
 
@@ -93,14 +93,14 @@ class Run(Stored):
         return Metrics(self.record, self.values)
 
     def values(self, metric: str) -> FloatArray:
-        """Return a metric in each repetition, shape (repetitions,), NaN where it has no value.
+        """Return a metric in each repetition, shape (repetitions,), NaN if it has no value.
 
         Args:
-            metric: Name of one of its metrics.
+            metric: Name of a metric of the run.
 
         Raises:
-            KeyError: if it has no such metric.
-            DamagedError: if the values stand in a file of their own, and that is missing or damaged.
+            KeyError: if the run has no such metric.
+            DamagedError: if the values are in a separate file, and that file is missing or damaged.
         """
         stored = self.record["metrics"][metric].get("values")
         if stored is not None:
@@ -113,7 +113,7 @@ class Run(Stored):
 
     @property
     def caveats(self) -> Sequence[Mapping[str, Any]]:
-        """Reasons why the metrics may mislead: rule, text, value and number of repetitions of each."""
+        """Caveats, reasons why the metrics may mislead: rule, text, value and number of repetitions of each."""
         caveats: Sequence[Mapping[str, Any]] = self.record["caveats"]
         return caveats
 
@@ -131,7 +131,7 @@ class Run(Stored):
 
     @cached_property
     def spec(self) -> "Spec | None":
-        """Bounds on the metrics, how many repetitions keep them, and the probability of failing them, `failing`.
+        """Bounds on the metrics, number of repetitions that meet them, and failure probability, `failing`.
 
         None for a run without bounds.
         """
@@ -141,11 +141,11 @@ class Run(Stored):
         return None if stored is None else read_spec(stored)
 
     def judged_by(self, bounds: "Mapping[str, Bound]", later: "Histories") -> "Run":
-        """Return this run with other bounds on its metrics, and how many repetitions keep them.
+        """Return this run evaluated against other bounds on its metrics.
 
         Args:
             bounds: The bounds, one or more.
-            later: When bounds were set; those that it was made with were set before.
+            later: Dates on which bounds were set; the run's original bounds were set before.
         """
         from runner.statistics.spec import bounds_of, judge
         from runner.statistics.spec.history import merge_histories, settings
@@ -156,13 +156,13 @@ class Run(Stored):
         return replace(self, record={**self.record, "spec": {**spec.record(), "history": history}})
 
     def trace(self) -> "pd.DataFrame":
-        """Return the signals of repetition 0, a row per tick; `units` has the units of the columns.
+        """Return the signals of repetition 0, one row per tick; `units` has the units of the columns.
 
-        A change of the table changes no later one.
+        Changes to the returned table do not affect later calls.
 
         Raises:
             DamagedError: if the file is missing or damaged.
-            StoreError: if the run kept no trace.
+            StoreError: if the run has no trace.
         """
         return self._frame.copy(deep=False)  # pandas copies what is written to
 
@@ -193,7 +193,7 @@ def units_of(table: Any) -> dict[str, str]:
 
 
 def describe_failure(failure: Mapping[str, Any]) -> str:
-    """Return when, where and why a run failed, in words.
+    """Return a message with the time, location and reason of a failure.
 
     Args:
         failure: Reason, time, joint and repetition, as stored.
@@ -209,8 +209,8 @@ def open_run(folder: Path) -> Run:
     """Open a finished run.
 
     Raises:
-        StoreError: if the folder is no run, or one that was not finished.
-        DamagedError: if it is damaged.
+        StoreError: if the folder is not a run, or the run is unfinished.
+        DamagedError: if the run is damaged.
     """
     if not folder.is_dir():
         raise StoreError(f"no folder {folder}")
@@ -218,7 +218,7 @@ def open_run(folder: Path) -> Run:
         found = {"run": "a run that did not finish", "sweep": "a sweep, not a single run"}
         what = found.get("sweep" if kind_of(folder) == "tuning" else kind_of(folder) or "", "no stored run")
         raise StoreError(
-            f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` makes a run and prints its folder"
+            f"{folder} is {what}: it has no metrics.json; `runner OVERRIDES` simulates a run and prints its folder"
         )
     record, config = read_job(folder, "metrics.json")
     faults = find_faults(record)
@@ -228,9 +228,9 @@ def open_run(folder: Path) -> Run:
 
 
 def judge_run(run: Run, bounds: Mapping[str, Bound], date: str = "") -> Run:
-    """Return a run judged by some bounds; new counts are stored and reported.
+    """Evaluate a run against bounds, and return it; store and report changed counts.
 
-    Nothing is simulated: the counts follow from the stored values. Without bounds the run stays as it is. The date on
+    Nothing is simulated: the counts follow from the stored values. Without bounds the run is unchanged. The date on
     which each bound was first set is also stored.
 
     Args:
@@ -239,7 +239,7 @@ def judge_run(run: Run, bounds: Mapping[str, Bound], date: str = "") -> Run:
         date: The date on which they are set; empty for today.
 
     Raises:
-        StoreError: if the disk does not take them.
+        StoreError: if they cannot be written.
     """
     before = run.spec
     if not bounds or (before is not None and before.config == bounds):

@@ -15,7 +15,7 @@ from runner.base.errors import StoreError
 from runner.base.limits import RECORD, RECORD_VALUES, ExcessError
 
 SCHEMA = 3
-"""Of all that is stored; no other is read."""
+"""Schema of every stored file; files of another schema are rejected."""
 
 _BLANK = "0" * 64
 _DIGEST = re.compile(rb'"digest": "([0-9a-f]{64})"')
@@ -23,7 +23,7 @@ _LINE_HEX = 32
 
 
 class DamagedError(StoreError):
-    """A stored file that is not as it was written."""
+    """A stored file that differs from what was written."""
 
 
 class SchemaError(StoreError):
@@ -47,31 +47,31 @@ def digest(content: bytes) -> str:
 
 
 def sealed_json(content: Mapping[str, Any]) -> bytes:
-    """Return a JSON text of its content, with schema and digest before it; see `sealed`."""
+    """Return content as JSON, with its schema and digest first; see `read_json`."""
     return seal_text(json.dumps({**head(), **content}, indent=1, allow_nan=False) + "\n")
 
 
 def head() -> dict[str, Any]:
-    """Return what a JSON text that is to be sealed begins with: the schema, and a place for the digest."""
+    """Return the first entries of sealed JSON: the schema, and a placeholder for the digest."""
     return {"schema": SCHEMA, "digest": _BLANK}
 
 
 def seal_text(text: str) -> bytes:
-    """Return a JSON text with a digest over all the rest of it in its place."""
+    """Return JSON with its placeholder replaced by a digest over the rest of it."""
     content = text.encode()
     return content.replace(_BLANK.encode(), digest(content).encode(), 1)
 
 
-def read_json(path: Path, mend: str) -> dict[str, Any]:
-    """Return what was given to `sealed_json`, and the schema, once the digest has been found right.
+def read_json(path: Path, remedy: str) -> dict[str, Any]:
+    """Return the content and schema of a file that `sealed_json` encoded, after a check of its digest.
 
     Args:
         path: The file.
-        mend: What makes it anew, in words.
+        remedy: Advice on how to restore the file, which ends the error message.
 
     Raises:
-        DamagedError: if it is not as it was written; names the file and what makes it anew.
-        SchemaError: if it is of another schema.
+        DamagedError: if the file differs from what was written; names the file and the remedy.
+        SchemaError: if the file has another schema.
     """
     try:
         if excess := RECORD.excess(path.stat().st_size):
@@ -81,60 +81,60 @@ def read_json(path: Path, mend: str) -> dict[str, Any]:
             raise ExcessError(excess)
         record = json.loads(content)
     except OSError as error:
-        raise DamagedError(f"cannot read {path}: {error.strerror}; {mend}") from error
+        raise DamagedError(f"cannot read {path}: {error.strerror}; {remedy}") from error
     except (ValueError, RecursionError) as error:
-        raise DamagedError(f"cannot read {path}: it is damaged: {_short(error)}; {mend}") from error
+        raise DamagedError(f"cannot read {path}: it is damaged: {_short(error)}; {remedy}") from error
     schema = record.get("schema") if isinstance(record, dict) else None
     if type(schema) is not int:
-        raise DamagedError(f"cannot read {path}: it is damaged: it names no schema; {mend}")
+        raise DamagedError(f"cannot read {path}: it is damaged: it names no schema; {remedy}")
     if not _is_whole(content) and (schema == SCHEMA or "digest" in record):
-        raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than it says; {mend}")
+        raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than it says; {remedy}")
     if schema != SCHEMA:
         raise SchemaError(path, schema)
     del record["digest"]
     return dict(record)
 
 
-def read_file(path: Path, files: Mapping[str, str], mend: str) -> bytes:
-    """Return the content of a file whose digest stands in the record beside it.
+def read_file(path: Path, files: Mapping[str, str], remedy: str) -> bytes:
+    """Return the content of a file whose digest is in the record of the same folder.
 
     Args:
         path: The file.
         files: Digests by file name.
-        mend: What makes it anew, in words.
+        remedy: Advice on how to restore the file, which ends the error message.
 
     Raises:
-        DamagedError: if it is missing, or not as it was written.
+        DamagedError: if the file is missing, or differs from what was written.
     """
     try:
         content = path.read_bytes()
     except OSError as error:
-        raise DamagedError(f"cannot read {path}: {error.strerror}; {mend}") from error
+        raise DamagedError(f"cannot read {path}: {error.strerror}; {remedy}") from error
     if files.get(path.name) != digest(content):
-        raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than stored; {mend}")
+        raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than stored; {remedy}")
     return content
 
 
 class Lines:
-    """The chain of digests through a file that grows line by line.
+    """Chain of digests in a file that grows line by line.
 
-    Each line begins with half of a SHA-256 over the digest of the line before and its own text: a line that is changed,
-    missing or moved is found.
+    Each line begins with half of a SHA-256 over the digest of the previous line and the content of the line. The chain
+    detects a line that was changed, removed or moved.
     """
 
     def __init__(self) -> None:
         self._last = ""
 
     def seal(self, text: str) -> str:
-        """Return the next line, without its end."""
+        """Return the next line, without a line break."""
         self._last = digest(f"{self._last}\n{text}".encode())[:_LINE_HEX]
         return f"{self._last} {text}"
 
     def read(self, content: bytes) -> Iterator[str]:
-        """Yield the texts of the lines of a file; a half line at its end, of a writer at work or killed, is none.
+        """Yield the content of each line of a file; skip a last line that its writer has not completed.
 
         Raises:
-            ValueError: at the first line that is not as it was written.
+            ValueError: at the first line that differs from what was written.
         """
         for number, line in enumerate(content.decode().split("\n")[:-1], start=1):
             own = line.partition(" ")[2]

@@ -32,12 +32,12 @@ from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest
 
 _COLUMNS = ("run", "config", "urdf", "record", "metrics")
 _SHARED = ["failure", "urdf", "metrics"]  # columns with many equal rows
-_CUT_SHORT = 2  # the rank of that
+_CUT_SHORT = 2  # rank of an aborted run
 METRIC = "metric "
 """Prefix of the name of a metric's column."""
 
 _HEX = 24  # digits of the digest in a name
-_MEND = "remove it, and the sweep's command makes its runs again"
+_REMEDY = "remove it, and the sweep's command simulates its runs again"
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,10 @@ class Outcome:
     """Outcome of a finished run.
 
     Attributes:
-        name: Its hash.
-        failure: When, where and why it failed, in words; empty for a good run.
-        cut_short: Whether something else than its physics ended it, as its time limit.
-        caveats: Number of reasons why its result may not be what it seems.
+        name: Hash of the run.
+        failure: Message with the time, location and reason of the failure; empty for a good run.
+        cut_short: Whether the run was aborted, for example by its time limit, instead of failing in the simulation.
+        caveats: Number of caveats, reasons why the result may mislead.
     """
 
     name: str
@@ -67,12 +67,12 @@ class ShardRow:
     """A run without trace as the row of a shard.
 
     Attributes:
-        outcome: How it ended.
-        config: Its resolved config, as JSON.
-        urdf: The URDF's text.
-        record: Its record, as JSON; without metrics if there are at most MOST_LISTED repetitions.
-        metrics: Names and units of its metrics.
-        values: Their values, shape (repetitions, metrics), NaN for none.
+        outcome: Outcome of the run.
+        config: Resolved config, as JSON.
+        urdf: URDF of the robot.
+        record: Record of the run, as JSON; without metrics if there are at most MOST_LISTED repetitions.
+        metrics: Names and units of the metrics.
+        values: Values of the metrics, shape (repetitions, metrics), NaN for none.
     """
 
     outcome: Outcome
@@ -101,12 +101,12 @@ def next_number(outputs: Path) -> int:
 
 
 def shard_name(number: int, place: int) -> str:
-    """Return the name of a shard without its digest: of a command's number, and the shard's place in it."""
+    """Return the name of a shard without its digest, from the number of the command and of the shard in the command."""
     return f"{number:020d}-{place:06d}"
 
 
 def find_shards(outputs: Path, name: str) -> list[Path]:
-    """Return the files of a shard's name: none before it is written."""
+    """Return the files with a shard's name; empty before it is written."""
     return sorted((outputs / "shards").glob(f"{name}.*parquet"))
 
 
@@ -119,10 +119,10 @@ def _row_of(run: Run) -> ShardRow:
 
 
 def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Path:
-    """Store runs without trace in one file, and return it.
+    """Store runs without trace in one file, and return its path.
 
     Raises:
-        StoreError: if the disk does not take it.
+        StoreError: if the file cannot be written.
     """
     import pyarrow
     import pyarrow.parquet
@@ -157,16 +157,16 @@ class Outcomes(Sequence[Outcome]):
     """Outcomes of the runs of a shard, row by row.
 
     Args:
-        names: Name of each.
-        failures: When, where and why each failed; empty for a good one.
-        cut_short: Whether something else than its physics ended it.
-        caveats: Number of its caveats.
+        names: Name of each run.
+        failures: Failure of each run; empty for a good run.
+        cut_short: Whether each run was aborted.
+        caveats: Number of caveats of each run.
 
     Attributes:
-        names: Name of each, shape (n,).
-        rank: Rank of each, shape (n,); see Outcome.
-        caveats: As given, shape (n,).
-        failures: As given, of the rows that failed.
+        names: Name of each run, shape (n,).
+        rank: Rank of each run, shape (n,); see Outcome.
+        caveats: Number of caveats of each run, shape (n,).
+        failures: Failures by row, only of failed runs.
     """
 
     def __init__(
@@ -192,23 +192,23 @@ def read_outcomes(path: Path) -> Outcomes:
     """Return the outcomes of the runs of a shard.
 
     Raises:
-        DamagedError: if it cannot be read, or is not as it was written.
-        SchemaError: if it is of another schema.
+        DamagedError: if the shard cannot be read, or differs from what was written.
+        SchemaError: if the shard has another schema.
     """
     columns = ("run", "failure", "cut_short", "caveats")
     table = _read(path, columns)
     try:
         return Outcomes(*(table[name].to_pylist() for name in columns))
     except (AttributeError, TypeError, ValueError) as error:
-        raise DamagedError(f"cannot read {path}: it is no shard: {error}; {_MEND}") from error
+        raise DamagedError(f"cannot read {path}: it is not a shard: {error}; {_REMEDY}") from error
 
 
 def open_row(path: Path, row: int) -> Run:
     """Open the run in a row of a shard.
 
     Raises:
-        DamagedError: if it cannot be read, or is not as it was written.
-        SchemaError: if it is of another schema.
+        DamagedError: if the shard cannot be read, or differs from what was written.
+        SchemaError: if the shard has another schema.
     """
     values = _read_rows(path)
     try:
@@ -219,13 +219,13 @@ def open_row(path: Path, row: int) -> Run:
     except (KeyError, ValueError, TypeError, RecursionError) as error:
         fault = str(error)
     if fault:
-        raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_MEND}")
+        raise DamagedError(f"cannot read {path}: row {row} is no run: {fault}; {_REMEDY}")
     folder = path.parent.parent / "runs" / values["run"][row].as_py()
     return Run(folder, config, record, values["urdf"][row].as_py(), beside=partial(_values_in, path, row))
 
 
 def _summarize(table: Any, row: int, names: Sequence[str]) -> dict[str, dict[str, object]]:
-    """Return the metrics of a row as a record of a run's folder has them."""
+    """Return the metrics of a row in the format of the record in a run's folder."""
     if not names:
         return {}
     values = np.array([_list_at(table[METRIC + name], row) for name in names])
@@ -250,7 +250,7 @@ def _list_at(column: Any, row: int) -> FloatArray:
 
 
 def metric_columns(runs: Sequence[tuple[tuple[tuple[str, str], ...], FloatArray]]) -> Iterator[tuple[Any, Any]]:
-    """Yield a column of values for each metric, which are read faster than the records: its field and the values.
+    """Yield the field and the column of values of each metric. Such columns are read faster than the records.
 
     Args:
         runs: Names and units of the metrics of each run, and their values, shape (repetitions, metrics), NaN for none.
@@ -275,11 +275,11 @@ def metric_columns(runs: Sequence[tuple[tuple[tuple[str, str], ...], FloatArray]
 
 
 def read_columns(path: Path, columns: Sequence[str]) -> Any:
-    """Return some columns of a shard, and those of the metrics, as a pyarrow.Table.
+    """Return some columns of a shard, and all columns of metrics, as a pyarrow.Table.
 
     Raises:
-        DamagedError: if it cannot be read, or is not as it was written.
-        SchemaError: if it is of another schema.
+        DamagedError: if the shard cannot be read, or differs from what was written.
+        SchemaError: if the shard has another schema.
     """
     return _read(path, columns, METRIC)
 
@@ -301,7 +301,9 @@ def _read(path: Path, columns: Sequence[str], start: str | None = None) -> Any:
     try:
         content = path.read_bytes()
         if digest(content)[:_HEX] != path.name.split(".")[1]:
-            raise DamagedError(f"cannot read {path}: it is damaged: its content has another digest than named; {_MEND}")
+            raise DamagedError(
+                f"cannot read {path}: it is damaged: its content has another digest than named; {_REMEDY}"
+            )
         file = open_parquet(pyarrow.BufferReader(content))
         schema = (file.schema_arrow.metadata or {}).get(b"schema", b"none").decode(errors="replace")
         if schema != str(SCHEMA):
@@ -309,7 +311,7 @@ def _read(path: Path, columns: Sequence[str], start: str | None = None) -> Any:
         wanted = [*columns, *(name for name in file.schema_arrow.names if start and name.startswith(start))]
         table = file.read(wanted)
     except (OSError, ExcessError, pyarrow.ArrowException) as error:
-        raise DamagedError(f"cannot read {path}: {str(error).splitlines()[0]}; {_MEND}") from error
+        raise DamagedError(f"cannot read {path}: {str(error).splitlines()[0]}; {_REMEDY}") from error
     if table.column_names != wanted:
-        raise DamagedError(f"cannot read {path}: it is no shard: it needs columns {', '.join(columns)}; {_MEND}")
+        raise DamagedError(f"cannot read {path}: it is not a shard: it needs columns {', '.join(columns)}; {_REMEDY}")
     return table

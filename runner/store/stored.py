@@ -13,8 +13,8 @@ from runner.base.bounded_yaml import STORED, YamlError, read_yaml
 from runner.store.atomic import write_atomically
 from runner.store.seal import SCHEMA, DamagedError, digest, read_file, read_json, sealed_json
 
-MEND = "run it again to mend it"
-_NAMED = ("runs", "calibrations")  # folders in which a job's folder bears its name; a copy elsewhere may bear any
+MEND = "run it again to repair it"
+_NAMED = ("runs", "calibrations")  # parents of folders that have the name of their job; a copy may have any name
 _UNUSUAL = re.compile(r"[&?]|\[(?!\])|\{(?!\})|^ {60}|(- ){4}", re.M)
 
 
@@ -24,8 +24,8 @@ class Stored:
 
     Attributes:
         folder: The folder.
-        config: Its resolved config.
-        record: What came out, and where it comes from.
+        config: Resolved config.
+        record: Results and provenance.
     """
 
     folder: Path
@@ -34,23 +34,23 @@ class Stored:
 
     @property
     def hash(self) -> str:
-        """Its content hash, the folder's name."""
+        """Content hash, the name of the folder."""
         return self.folder.name
 
     @property
     def outputs(self) -> Path:
-        """The outputs folder that holds it."""
+        """Outputs folder that contains the job."""
         return self.folder.parent.parent
 
     @property
     def provenance(self) -> Mapping[str, Any]:
-        """Commit, versions, machine, seed, command, warnings, and what more its kind of job tells."""
+        """Commit, versions, machine, seed, command, warnings, and further entries of the kind of job."""
         provenance: Mapping[str, Any] = self.record["provenance"]
         return provenance
 
     @cached_property
     def urdf(self) -> str:
-        """The URDF's text that was simulated.
+        """Simulated URDF.
 
         Raises:
             DamagedError: if the file is missing or damaged.
@@ -58,7 +58,7 @@ class Stored:
         return decode_text(self.folder / "robot.urdf", self.read("robot.urdf"))
 
     def read(self, name: str) -> bytes:
-        """Return the content of one of its files beside the record.
+        """Return the content of a file of the job, other than the record.
 
         Raises:
             DamagedError: if the file is missing or damaged.
@@ -69,17 +69,17 @@ class Stored:
 def write_job(
     folder: Path, record_name: str, record: Mapping[str, Any], files: Mapping[str, bytes], flushed: Sequence[str] = ()
 ) -> dict[str, Any]:
-    """Store a job's files, its record last, whose presence means done; return the record with their digests.
+    """Store a job's files and return the record with their digests. The record is last: it marks the job as complete.
 
     Args:
         folder: The job's folder.
         record_name: File name of the record.
-        record: What came out.
-        files: Content of its other files by name.
-        flushed: Those of them that are on the disk when this returns; the others a power cut may leave empty.
+        record: Results and provenance.
+        files: Content of the other files by name.
+        flushed: Names of files that are on the disk on return. A power cut may leave the others empty.
 
     Raises:
-        StoreError: if the disk does not take them.
+        StoreError: if a file cannot be written.
     """
     for name, content in files.items():
         write_atomically(folder / name, content, flush=name in flushed)
@@ -102,7 +102,7 @@ def read_job(folder: Path, record_name: str) -> tuple[dict[str, Any], dict[str, 
     record = _read_record(folder / record_name)
     path = folder / "config.yaml"
     text = decode_text(path, read_file(path, record["files"], MEND))
-    try:  # the runner writes no aliases and nothing in braces, which are all that could be too much; bounds take time
+    try:  # the runner writes no aliases or braces, and only these can exceed the bounds; the bounds take time
         ours = len(text) <= STORED.size.most and not _UNUSUAL.search(text)
         config = yaml.load(text, yaml.CSafeLoader) if ours else read_yaml(text, path)
     except (yaml.YAMLError, YamlError) as error:
@@ -113,7 +113,7 @@ def read_job(folder: Path, record_name: str) -> tuple[dict[str, Any], dict[str, 
 
 
 def check_job(folder: Path, record_name: str) -> dict[str, Any]:
-    """Return a job's record, once the digests of all its files have been found right; quicker than reading them.
+    """Return a job's record after a check of the digests of all its files; faster than parsing them.
 
     Raises:
         DamagedError: if one of the files is missing or damaged.
@@ -127,7 +127,7 @@ def check_job(folder: Path, record_name: str) -> dict[str, Any]:
 def _read_record(path: Path) -> dict[str, Any]:
     record = read_json(path, MEND)
     if not isinstance(record.get("files"), dict):
-        raise DamagedError(f"cannot read {path}: it is no record of a job: it has no digests of its files; {MEND}")
+        raise DamagedError(f"cannot read {path}: it is not the record of a job: it has no digests of its files; {MEND}")
     folder = path.parent.absolute()
     if folder.parent.name in _NAMED and record.get("name", folder.name) != folder.name:
         raise DamagedError(f"cannot read {path}: it is the record of another job, {record['name']}; {MEND}")
@@ -135,10 +135,10 @@ def _read_record(path: Path) -> dict[str, Any]:
 
 
 def decode_text(path: Path, content: bytes) -> str:
-    """Return a file's content as text.
+    """Return the content of a file as a string.
 
     Raises:
-        DamagedError: if it is none.
+        DamagedError: if the content is not text.
     """
     try:
         return content.decode()

@@ -23,23 +23,23 @@ from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError, digest, head, read_file, read_json, seal_text
 
 _FILE = "sweep.json"
-_RUNS = "runs.bin"  # of a grid: the hash of each cell's run, 12 bytes each
+_RUNS = "runs.bin"  # hashes of the runs of a grid, 12 bytes for each cell
 _AT_ONCE = 10_000  # rows
-_MEND = "the sweep's command writes it again"
+_REMEDY = "the sweep's command writes it again"
 _NO_SPEC: Mapping[str, Bound] = {}
 
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
-    """A stored sweep, at work or ended.
+    """A stored sweep, still running or ended.
 
     Attributes:
-        folder: Its folder.
+        folder: Folder of the sweep.
         overrides: Overrides of each job, in order.
         hashes: Hash of each job's run.
-        command: The command that makes it and goes on with it.
-        spec: Bounds on metrics, by which its runs are judged, whatever they were made with; none for none.
-        history: The bounds that its commands had, each with the date of the first that had it.
+        command: Command that starts or resumes the sweep.
+        spec: Bounds on metrics, against which the runs are evaluated instead of their own; empty for none.
+        history: Bounds of all its commands, each with the date of the first command that had it.
     """
 
     folder: Path
@@ -51,14 +51,14 @@ class Sweep:
 
     @property
     def outputs(self) -> Path:
-        """The outputs folder that holds its runs."""
+        """Outputs folder that contains the runs."""
         return self.folder.parent.parent
 
     def found(self) -> Iterator["tuple[int, Run] | InShard"]:
-        """Find the run of each cell: yield the cell with its run, or many cells with the shard that holds their runs.
+        """Yield the run of each cell: a cell with its run, or many cells with the shard that contains their runs.
 
         Raises:
-            StoreError: if one is missing or damaged.
+            StoreError: if a run is missing or damaged.
         """
         finished, names = Finished(self.outputs), Names.of(self.hashes)
         places = finished.places_of(names)
@@ -73,10 +73,10 @@ class Sweep:
             yield InShard(finished.shard_of(int(places[cells[0]])), finished.row[places[cells]], cells)
 
     def runs(self) -> Iterator[Run]:
-        """Open its runs, one after the other, in the order of the jobs.
+        """Open the runs one after the other, in the order of the jobs.
 
         Raises:
-            StoreError: if one is missing or damaged.
+            StoreError: if a run is missing or damaged.
         """
         finished = Finished(self.outputs)
         for name in self.hashes:
@@ -92,11 +92,11 @@ class Sweep:
 
 @dataclass(frozen=True)
 class InShard:
-    """Cells of a sweep whose runs one shard holds.
+    """Cells of a sweep whose runs are in one shard.
 
     Attributes:
-        path: The shard.
-        rows: Row of the run of each cell there, shape (n,).
+        path: File of the shard.
+        rows: Row in the shard for each cell, shape (n,).
         cells: Numbers of the cells, ascending, shape (n,).
     """
 
@@ -112,17 +112,17 @@ def write_sweep(
     spec: Mapping[str, Bound] = _NO_SPEC,
     date: str = "",
 ) -> Path:
-    """Store which overrides lead to which run, job by job, and return the sweep's folder.
+    """Store the overrides and the run of each job, and return the folder of the sweep.
 
     Args:
         outputs: The outputs folder.
         jobs: Overrides and hash of each run.
-        command: The command that makes the sweep; no part of its name.
-        spec: Bounds on metrics; no part of its name either.
+        command: Command that starts the sweep; not part of its name.
+        spec: Bounds on metrics; not part of the name either.
         date: The date on which they are set; empty for today.
 
     Raises:
-        StoreError: if the disk does not take it.
+        StoreError: if a file cannot be written.
     """
     rows = list(_rows(jobs))
     folder = outputs / "sweeps" / _name(rows)
@@ -131,17 +131,17 @@ def write_sweep(
 
 
 def write_grid(outputs: Path, axes: Axes, names: Names, command: str, spec: Mapping[str, Bound] = _NO_SPEC) -> Path:
-    """Store a sweep over a grid by its axes, with the runs' names in a file beside, and return the sweep's folder.
+    """Store a sweep over a grid as its axes and a file with the names of the runs; return the folder of the sweep.
 
     Args:
         outputs: The outputs folder.
-        axes: What is swept.
+        axes: Swept keys and values.
         names: Hash of each cell's run.
-        command: The command that makes the sweep; no part of its name.
-        spec: Bounds on metrics; no part of its name either.
+        command: Command that starts the sweep; not part of its name.
+        spec: Bounds on metrics; not part of the name either.
 
     Raises:
-        StoreError: if the disk does not take it.
+        StoreError: if a file cannot be written.
     """
     runs = names.packed()
     folder = outputs / "sweeps" / _name(_grid_rows(axes, digest(runs)))
@@ -152,14 +152,14 @@ def write_grid(outputs: Path, axes: Axes, names: Names, command: str, spec: Mapp
 
 
 def write_jobs(folder: Path, jobs: Sequence[tuple[Sequence[str], str]], command: str) -> None:
-    """Store which overrides lead to which run in a folder of another kind, such as a tuning's: see write_sweep."""
+    """Store the overrides and the run of each job in a folder of another kind, such as a tuning; see write_sweep."""
     write_atomically(folder / _FILE, _sealed_sweep(list(_rows(jobs)), _head(folder, command, _NO_SPEC)))
 
 
 def _head(folder: Path, command: str, spec: Mapping[str, Bound], date: str = "") -> dict[str, Any]:
-    """Return what the file of a sweep begins with; it remembers the bounds of the file that it replaces."""
+    """Return the first entries of the file of a sweep; the history includes the bounds of the file that it replaces."""
     try:
-        known = read_json(folder / _FILE, _MEND).get("history", {})
+        known = read_json(folder / _FILE, _REMEDY).get("history", {})
     except DamagedError:
         known = {}
     told = {
@@ -179,7 +179,7 @@ def _rows(jobs: Iterable[tuple[Sequence[str], str]]) -> Iterator[str]:
 
 
 def _name(rows: Iterable[str]) -> str:
-    """Return the name of a sweep's folder: a digest over the rows of its jobs, or over what names a grid."""
+    """Return the name of a sweep's folder: a digest over the rows of its jobs, or over the rows of a grid."""
     found, left, between = hashlib.sha256(), iter(rows), ""
     while some := list(islice(left, _AT_ONCE)):
         found.update((between + "\n".join(some)).encode())
@@ -191,23 +191,23 @@ def open_sweep(folder: Path) -> Sweep:
     """Open a stored sweep.
 
     Raises:
-        StoreError: if the folder is no sweep.
-        DamagedError: if it is damaged.
+        StoreError: if the folder is not a sweep.
+        DamagedError: if the sweep is damaged.
     """
     path = folder / _FILE
     if not path.exists():
         raise StoreError(
             f"{folder} is no sweep: it has no {_FILE}; `runner -m OVERRIDES` makes one, and prints its folder"
         )
-    content = read_json(path, _MEND)
+    content = read_json(path, _REMEDY)
     command = content.get("command", "")
     if not isinstance(command, str):
-        raise DamagedError(f"cannot read {path}: its command is no text; {_MEND}")
+        raise DamagedError(f"cannot read {path}: its command is not a string; {_REMEDY}")
     read = _read_grid if "axes" in content else _read_jobs
     overrides, hashes, rows = read(path, content)
     place = folder.resolve()
     if place.parent.name == "sweeps" and _name(rows) != place.name:
-        raise DamagedError(f"cannot read {path}: it is of another sweep than its folder is named after; {_MEND}")
+        raise DamagedError(f"cannot read {path}: it is of another sweep than its folder is named after; {_REMEDY}")
     return Sweep(folder, overrides, hashes, command, *_read_spec(path, content))
 
 
@@ -215,34 +215,36 @@ def _read_spec(path: Path, content: Mapping[str, Any]) -> tuple[dict[str, Bound]
     try:
         bounds = {metric: Bound.model_validate(bound) for metric, bound in content.get("spec", {}).items()}
         return bounds, merge_histories(dict.fromkeys(bounds, ()), content.get("history", {}))
-    except (AttributeError, TypeError, ValueError) as error:  # of pydantic, too
-        raise DamagedError(f"cannot read {path}: its spec holds no bounds; {_MEND}") from error
+    except (AttributeError, TypeError, ValueError) as error:  # ValueError also covers pydantic
+        raise DamagedError(f"cannot read {path}: its spec holds no bounds; {_REMEDY}") from error
 
 
 def _read_jobs(path: Path, content: Mapping[str, Any]) -> tuple[Sequence[Sequence[str]], Sequence[str], Iterator[str]]:
     """Return overrides and hashes of jobs that are stored one by one, and the rows that name the sweep."""
     jobs = content.get("jobs")
     if not (isinstance(jobs, list) and all(map(_is_job, jobs))):
-        raise DamagedError(f"cannot read {path}: it is no sweep's: it needs jobs with overrides and run each; {_MEND}")
+        raise DamagedError(
+            f"cannot read {path}: it is no sweep's: it needs jobs with overrides and run each; {_REMEDY}"
+        )
     overrides, hashes = [tuple(job["overrides"]) for job in jobs], [job["run"] for job in jobs]
     return overrides, hashes, _rows(zip(overrides, hashes, strict=True))
 
 
 def _read_grid(path: Path, content: Mapping[str, Any]) -> tuple[Sequence[Sequence[str]], Sequence[str], Iterator[str]]:
     """Return overrides and hashes of the cells of a grid, and the rows that name the sweep."""
-    names = Names.unpacked(read_file(path.with_name(_RUNS), {_RUNS: str(content.get("runs"))}, _MEND))
+    names = Names.unpacked(read_file(path.with_name(_RUNS), {_RUNS: str(content.get("runs"))}, _REMEDY))
     try:
         axes = read_axes(content["axes"])
     except StoreError as error:
-        raise DamagedError(f"cannot read {path}: {error}; {_MEND}") from error
+        raise DamagedError(f"cannot read {path}: {error}; {_REMEDY}") from error
     if not len(axes) == len(names) == content.get("cells"):
-        count = f"its axes have {len(axes)} cells, and {len(names)} runs stand beside"
-        raise DamagedError(f"cannot read {path}: {count}; {_MEND}")
+        count = f"its axes have {len(axes)} cells, but there are {len(names)} runs"
+        raise DamagedError(f"cannot read {path}: {count}; {_REMEDY}")
     return axes, names, _grid_rows(axes, str(content["runs"]))
 
 
 def _grid_rows(axes: Axes, runs: str) -> Iterator[str]:
-    """Return what names a grid: its axes, and the digest of the names of its runs."""
+    """Return the rows that identify a grid: its axes, and the digest of the names of its runs."""
     return iter((json.dumps(axes.content()), runs))
 
 
@@ -256,9 +258,9 @@ def _is_job(job: object) -> bool:
 
 
 def open_runs(folder: Path) -> list[Run]:
-    """Open what a folder holds: the runs of a sweep, or one run.
+    """Open the runs of a sweep's folder, or the run of a run's folder.
 
     Raises:
-        StoreError: if it is neither, unfinished or damaged.
+        StoreError: if the folder is neither, or is unfinished or damaged.
     """
     return list(open_sweep(folder).runs()) if kind_of(folder) in ("sweep", "tuning") else [open_run(folder)]

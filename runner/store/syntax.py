@@ -13,7 +13,7 @@ from itertools import groupby
 _OURS = "runner"
 _END = object()  # of a node or list
 
-# The fields that count of each kind of node that has some; `_fields` has those of names, constants, f-strings, raise.
+# Fields of each kind of node that are part of the content; `_fields` treats names, constants, f-strings and raise.
 _TABLE = """
     Expr value; Return value; Delete targets; Assign targets value; AugAssign target op value;
     FunctionDef name type_params args returns decorator_list body; Await value; Yield value; YieldFrom value;
@@ -38,11 +38,11 @@ _FIELDS = {kind: fields for kind, *fields in map(str.split, _TABLE.strip().split
 
 
 def content(tree: ast.Module, resolve: Callable[[str, str], str]) -> str:
-    """Return the content of a module; nothing where it only hands on what it imports.
+    """Return the content of a module; an empty string if it only re-exports its imports.
 
     Args:
-        tree: Its syntax tree.
-        resolve: Gives what stands for a module of this package and a name in it, or "" for the module itself.
+        tree: Syntax tree of the module.
+        resolve: Function that returns the identifier of a name in a module of this package; "" is the module itself.
     """
     found: dict[str, set[str]] = {}
     for bound, module, name in imports(tree):
@@ -69,7 +69,7 @@ def content(tree: ast.Module, resolve: Callable[[str, str], str]) -> str:
 
 
 def imports(tree: ast.Module) -> Iterator[tuple[str, str, str]]:
-    """Yield each name that an import binds, its module, and its name there; "" where it stands for the module."""
+    """Yield each name that an import binds, its module, and its name in the module; "" for the module itself."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             for alias in node.names:
@@ -81,7 +81,7 @@ def imports(tree: ast.Module) -> Iterator[tuple[str, str, str]]:
 
 
 def _counts(node: object) -> bool:
-    """Tell whether an element of a list counts."""
+    """Return True if an element of a list is part of the content."""
     match node:
         case ast.Expr(ast.Constant(str())) | ast.Pass() | ast.Import() | ast.Assign([ast.Name("__all__")]):
             return False
@@ -95,7 +95,7 @@ def _counts(node: object) -> bool:
 
 
 def _fields(node: ast.AST, meanings: Mapping[str, str], resolve: Callable[[str, str], str]) -> list[object]:
-    """Return what counts of a node: nodes, lists of these, texts, numbers or None."""
+    """Return the fields of a node that are part of the content: nodes, lists of nodes, strings, numbers or None."""
     match node:
         case ast.Name(name):
             return [meanings.get(name, name), name in meanings]
@@ -111,7 +111,7 @@ def _fields(node: ast.AST, meanings: Mapping[str, str], resolve: Callable[[str, 
 
 
 def _joined(parts: Sequence[ast.expr]) -> list[object]:
-    """Return the parts of an f-string, texts side by side as one: versions of Python cut them in different places."""
+    """Return the parts of an f-string with adjacent strings joined, because Python versions split them differently."""
     found: list[object] = []
     for text, some in groupby(parts, lambda part: isinstance(part, ast.Constant)):
         same = list(some)

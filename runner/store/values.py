@@ -17,7 +17,7 @@ VALUES_FILE = "values.parquet"
 
 
 def values_parquet(values: Mapping[str, FloatArray]) -> bytes:
-    """Return metrics in each repetition, each of shape (repetitions,), as Parquet: NaN, for none, is null there."""
+    """Return metrics in each repetition, each of shape (repetitions,), as Parquet; NaN, for no value, becomes null."""
     import pyarrow
     import pyarrow.parquet
 
@@ -28,10 +28,10 @@ def values_parquet(values: Mapping[str, FloatArray]) -> bytes:
 
 
 def open_parquet(content: bytes, path: Path) -> Any:
-    """Return a file's content as a pyarrow.parquet.ParquetFile.
+    """Return the content of a file as a pyarrow.parquet.ParquetFile.
 
     Raises:
-        DamagedError: if it is none; names the file.
+        DamagedError: if the content is not Parquet; names the file.
     """
     import pyarrow
 
@@ -42,10 +42,10 @@ def open_parquet(content: bytes, path: Path) -> Any:
 
 
 def read_table(file: Any, path: Path, columns: Sequence[str] | None = None) -> Any:
-    """Return columns of a file that `open_parquet` gave, all where None; `read_table` of pyarrow would import pandas.
+    """Return columns of a file from `open_parquet`; None for all. The `read_table` of pyarrow would import pandas.
 
     Raises:
-        DamagedError: if they cannot be read; names the file.
+        DamagedError: if the columns cannot be read; names the file.
     """
     import pyarrow
 
@@ -59,7 +59,7 @@ def read_column(file: Any, path: Path, name: str) -> FloatArray:
     """Return one column of numbers, shape (rows,), NaN for null.
 
     Raises:
-        DamagedError: if it is not there; names the file.
+        DamagedError: if the column does not exist; names the file.
     """
     table = read_table(file, path, [name])
     if table.column_names != [name]:

@@ -26,10 +26,10 @@ from runner.store.values import VALUES_FILE, values_parquet
 
 
 def prepare(outputs: Path) -> None:
-    """Make sure that runs can be stored in a folder, before anything is computed.
+    """Check that runs can be stored in a folder, before anything is computed.
 
     Raises:
-        StoreError: if it cannot be made or written to.
+        StoreError: if the folder cannot be created or written to.
     """
     probe = outputs / "runs" / ".writable"
     try:
@@ -40,10 +40,10 @@ def prepare(outputs: Path) -> None:
 
 
 def write_run(outputs: Path, name: str, result: RunResult) -> Run:
-    """Store a run in a folder of its own.
+    """Store a run in its own folder.
 
     Raises:
-        StoreError: if the disk does not take it.
+        StoreError: if a file cannot be written.
     """
     folder = outputs / "runs" / name
     config = yaml.dump(dict(result.resolved), sort_keys=False, Dumper=yaml.CSafeDumper)
@@ -89,14 +89,14 @@ def record_texts(
     provenances: Sequence[Mapping[str, Any]],
     texts: JsonTexts,
 ) -> list[str]:
-    """Return the records of runs that ended well, as JSON: those of `make_record` without metrics.
+    """Return the records of good runs as JSON: those of `make_record` without metrics.
 
     Args:
         repetitions: Number of repetitions of each run.
         found: Caveats of each run.
         timing: Measured times, the same for each run.
         provenances: Provenance of each run.
-        texts: Keeps the strings of common values.
+        texts: Encoder that caches the JSON of common values.
     """
     clocked = encode_finite(timing)
     records = []
@@ -125,7 +125,7 @@ def cut_short_record(reason: str, repetitions: int, provenance: Mapping[str, Any
 
 
 def trace_table(trace: Trace) -> Any:
-    """Return a trace as an Arrow table: a column per signal, its unit in the column's metadata."""
+    """Return a trace as an Arrow table: one column per signal, its unit in the metadata of the column."""
     import pyarrow
 
     joints = range(trace.q.shape[1])

@@ -25,7 +25,7 @@ def test_damage_is_named_with_what_makes_it_anew(cli, copy_run):
     counts, problem = ending.out.splitlines()
     assert counts == "runs: 1 unfinished, 1 damaged"
     assert problem.endswith(
-        "trace.parquet: it is damaged: its content has another digest than stored; run it again to mend it"
+        "trace.parquet: it is damaged: its content has another digest than stored; run it again to repair it"
     )
     assert cli(*SHORT).code == 0
     shutil.rmtree(half)

@@ -80,7 +80,7 @@ def test_a_copied_run_is_read_elsewhere(run, tmp_path):
         ("metrics.json", b"{}", "metrics.json: it is damaged: it names no schema"),
         ("metrics.json", b'{"schema": 2, "digest": ""}', "its content has another digest than it says"),
         ("metrics.json", b'{"schema": 3}', "metrics.json: it is damaged: its content has another digest than it says"),
-        ("config.yaml", None, "config.yaml: No such file or directory; run it again to mend it"),
+        ("config.yaml", None, "config.yaml: No such file or directory; run it again to repair it"),
         ("config.yaml", b"a: [\n", "config.yaml: it is damaged: its content has another digest than stored"),
         ("config.yaml", b"3", "config.yaml: it is damaged: its content has another digest than stored"),
     ],
@@ -123,11 +123,11 @@ def test_a_damaged_trace_is_said_and_made_again(cli, run, content):
     path = run.folder / "trace.parquet"
     good = path.read_bytes()
     path.unlink() if content is None else path.write_bytes(good[:1000] if content == b"cut" else content)
-    with pytest.raises(StoreError, match=r"cannot read .*trace\.parquet: .*; run it again to mend it"):
+    with pytest.raises(StoreError, match=r"cannot read .*trace\.parquet: .*; run it again to repair it"):
         _ = open_run(run.folder).trace()
     ending = cli("report", run.folder)
     assert ending.code == 2
-    assert "run it again to mend it" in ending.err
+    assert "run it again to repair it" in ending.err
     with pytest.raises(DamagedError, match=r"trace\.parquet"):
         find_run(run.folder.parent.parent, run.hash)
     assert cli(*RUNS["noise"]).folder == run.folder
@@ -148,7 +148,7 @@ def test_a_run_under_the_name_of_another_is_told_and_made_again(cli, run, copy_r
     shutil.copytree(other, run.folder)
     ending = cli("report", run.folder)
     assert (ending.code, ending.out) == (2, "")
-    assert f"metrics.json: it is the record of another job, {other.name}; run it again to mend it" in ending.err
+    assert f"metrics.json: it is the record of another job, {other.name}; run it again to repair it" in ending.err
     assert cli("verify").code == 1
     assert cli(*RUNS["noise"]).folder == run.folder
     assert open_run(run.folder).metrics == run.metrics
@@ -178,7 +178,7 @@ def test_a_record_that_somebody_made_up_is_told_though_its_digests_are_right(cli
     ending = cli("report", run.folder)
     assert (ending.code, ending.out) == (2, "")
     assert f"metrics.json: it is no run's record: {found}" in ending.err
-    assert ending.err.endswith("; run it again to mend it\n")
+    assert ending.err.endswith("; run it again to repair it\n")
 
 
 def test_who_changes_a_trace_changes_a_copy(run):

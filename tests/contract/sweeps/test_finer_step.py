@@ -69,5 +69,5 @@ def test_a_damaged_file_is_told(tmp_path):
     own = made(tmp_path, ASKED)
     (path,) = (tmp_path / "finer").iterdir()
     path.write_bytes(path.read_bytes().replace(b"0", b"1", 3))
-    with pytest.raises(StoreError, match="delete it: `runner compare` works it out again"):
+    with pytest.raises(StoreError, match="delete it: `runner compare` computes it again"):
         measure_run(own, "A")
