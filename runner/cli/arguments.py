@@ -12,10 +12,10 @@ from runner.store.kinds import Kind, find_folder
 
 
 class Stored:
-    """Argument type: the folder of something stored, or the word `latest`; see find_folder.
+    """Argument type: the folder of a stored result, or the word `latest`; see find_folder.
 
     Args:
-        kinds: Kinds of stored things that the command accepts.
+        kinds: Kinds of stored results that the command accepts.
     """
 
     def __init__(self, *kinds: Kind) -> None:
@@ -27,7 +27,7 @@ class Stored:
 
 
 class Names:
-    """Argument type: a list of names with commas.
+    """Argument type: a comma-separated list of names.
 
     Args:
         allowed: The names that the option takes; empty for any.
@@ -50,7 +50,7 @@ class Names:
 
 
 def count(text: str) -> int:
-    """Return a whole number of 1 or more."""
+    """Return an integer of 1 or more."""
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"must be a whole number, 1 or more; found '{text}'")
     return int(text)
@@ -87,14 +87,14 @@ _MEANINGS = {
 
 
 class UsageError(RunnerError):
-    """Arguments that a command does not take."""
+    """Invalid arguments of a command."""
 
 
 class Parser(argparse.ArgumentParser):
     """A parser without abbreviations; its errors are RunnerErrors.
 
     Attributes:
-        commands: The parsers of the commands by name, if the parser is that of the whole line.
+        commands: Parsers of the commands by name, if this is the parser of the whole line.
         root: File of conf/ that the overrides of the command change.
     """
 
@@ -104,7 +104,7 @@ class Parser(argparse.ArgumentParser):
         self.root, self._options_first = "config", False
 
     def add_shared(self, *names: str, **meanings: str) -> None:
-        """Add options that mean the same in every command.
+        """Add options that have the same meaning in every command.
 
         Args:
             names: Options with one meaning, such as "config_dir".
@@ -119,7 +119,7 @@ class Parser(argparse.ArgumentParser):
 
         Args:
             allowed: Names of the formats.
-            meaning: Its help.
+            meaning: Help of the option.
             most: Highest number of formats; None for any number.
         """
         self.add_argument("--format", type=Names(allowed, most), metavar="A,B", help=meaning)
@@ -128,7 +128,7 @@ class Parser(argparse.ArgumentParser):
         """Add a list of overrides, with options anywhere among them.
 
         Args:
-            meaning: Its help.
+            meaning: Help of the option.
             root: File of conf/ that they change.
         """
         self.add_argument("overrides", nargs="*", metavar="OVERRIDE", help=meaning)
@@ -176,7 +176,7 @@ class Parser(argparse.ArgumentParser):
         return super()._parse_optional(arg_string)
 
     def reject(self, unknown: Sequence[str]) -> NoReturn:
-        """Raise that the command does not take some arguments.
+        """Raise an error for arguments that the command does not take.
 
         Raises:
             UsageError: always, with the nearest option and the usage.
@@ -186,7 +186,7 @@ class Parser(argparse.ArgumentParser):
         self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
 
     def error(self, message: str) -> NoReturn:
-        """Raise what is wrong with the arguments.
+        """Raise an error for invalid arguments.
 
         Raises:
             UsageError: always, with the usage.

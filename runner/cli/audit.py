@@ -59,7 +59,7 @@ def run(options: Namespace) -> int:
 
 
 def _report(quantity: str, differences: "list[Difference]", tolerance: float) -> int:
-    """Print the comparison of one file; return how many formulas differ."""
+    """Print the comparison of one file; return the number of formulas that differ."""
     wrong = [each for each in differences if each.largest > tolerance]
     print(f"{quantity}: {len(differences) - len(wrong)} of {len(differences)} formulas agree")
     if wrong:

@@ -47,13 +47,13 @@ def run(options: Namespace) -> int:
 
 
 def check_law(name: str, profile: str, part: "UserPlugin", workers: int) -> Iterator[str]:
-    """Yield how a law fits in a study that takes such: a line for each arm, and what all takes.
+    """Yield the check of a controller in a study that accepts plug-ins: a line for each arm, and the total time.
 
     Args:
-        name: The study.
-        profile: Its profile; empty for the one that it makes otherwise.
-        part: The law.
-        workers: Number of processes for its runs.
+        name: Name of the study.
+        profile: Profile of the study; empty for its default profile.
+        part: Plug-in of the controller.
+        workers: Number of processes for the runs of the study.
 
     Raises:
         RunnerError: with all problems, if the controller does not fit.

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from runner.store.baselines import Band, Bands, Cells, Finding, Move
 
 _MOVE_COLUMNS = ("cell", "metric", "was", "is", "moved", "beyond the seeds' spread")
-_DIGITS = 3  # of the number of repetitions that are still needed
+_DIGITS = 3  # significant digits of the number of repetitions that are still needed
 _SAYS = {"kept": "good", "broken": "broken", "untold": "too few repetitions to tell"}
 
 
@@ -86,7 +86,7 @@ def _probability(text: str) -> float:
 
 
 def _check_sweep(sweep: "Sweep", baseline: "Cells", markdown: bool) -> int:
-    """Print what changed since a sweep's baseline was saved; return 1 if it is more than the seeds' spread."""
+    """Print the changes since a sweep's baseline was saved; return 1 if one exceeds the spread of the seeds."""
     from runner.store.baselines import find_moves
 
     moves = find_moves(sweep, baseline)
@@ -130,7 +130,7 @@ def _markdown(rows: "Sequence[Sequence[str]]") -> list[str]:
 
 
 def _check_bands(runs: "Sequence[Run]", given: "Bands | None") -> int:
-    """Check the medians of all runs; print one line if all hold, else a table of those that do not."""
+    """Check the medians of all runs; print one line if all are in their bands, otherwise a table of the others."""
     from runner.store.baselines import check_run, find_shipped
 
     pairs = [(run, given or find_shipped(run)) for run in runs]
@@ -168,7 +168,7 @@ def _check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | No
         at_most: Highest allowed probability of failing; None if no repetition may fail.
 
     Raises:
-        RunnerError: for a run that lacks a metric of its spec.
+        RunnerError: if a run lacks a metric of its spec.
     """
     from runner.reporting.spec_blocks import HEADER
 
@@ -211,7 +211,7 @@ def _judged(one: "Kept", row: Sequence[str], at_most: float | None) -> list[str]
 
 
 def _more(needed: int | None, share: "Share") -> str:
-    """Return the number of repetitions that are still needed, with a sentence."""
+    """Return a sentence with the number of repetitions that are still needed."""
     if needed is None:
         return "the share is at the limit itself"
     lasting = "if none failed" if share.kept == share.of else "if the share stayed"

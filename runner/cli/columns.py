@@ -13,7 +13,7 @@ COMPARED = ("interval", "n", "effect", "p")
 
 
 def align_columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
-    """Return rows of equal length as lines with aligned columns; cells are made safe to print."""
+    """Return rows of equal length as lines with aligned columns; the cells are sanitized for a terminal."""
     rows = [[one_line(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
@@ -21,12 +21,12 @@ def align_columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
 
 
 def number(value: float | None) -> str:
-    """Return a number with five digits, "-" where there is none."""
+    """Return a number with five digits, or "-" if there is none."""
     return "-" if value is None else f"{value:.5g}"
 
 
 def answer_cells(answer: "Answer") -> list[str]:
-    """Return the difference, what COMPARED names, and the word of an answer, in SI units."""
+    """Return the difference, the columns in COMPARED, and the conclusion of a comparison, in SI units."""
     found, interval = answer.comparison, answer.interval
     return [
         number(found.difference),

@@ -35,7 +35,7 @@ _PROVENANCE = ("commit", "versions", "plant_step")
 
 
 class StoredOrRecording(Stored):
-    """The type of an argument that is the folder of something stored, or a recording."""
+    """Argument type: the folder of a stored result, or a recording."""
 
     def __call__(self, text: str) -> Path:
         """Return the folder or the file of an argument."""
@@ -112,7 +112,7 @@ def _compare(options: Namespace) -> None:
 
 
 def _json_text(rows: Sequence[Mapping[str, Any]]) -> str:
-    """Return rows as JSON, which has no number for what is beyond every number: null."""
+    """Return rows as JSON; an infinite value, which JSON cannot represent, becomes null."""
     infinite = (math.inf, -math.inf)
     finite = [{key: None if value in infinite else value for key, value in row.items()} for row in rows]
     return json.dumps(finite, indent=2, allow_nan=False)
@@ -211,7 +211,7 @@ def _run_lines(
 
 
 def _changed_keys(what: str, both: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
-    """Return a table of the dotted keys in which two mappings differ, or that they are the same."""
+    """Return a table of the dotted keys in which two mappings differ, or a message that they are equal."""
     a, b = ({dotted(place): _shown(value) for place, value in leaves(one, lists=False)} for one in both)
     rows = [[key, a.get(key, "(absent)"), b.get(key, "(absent)")] for key in {**a, **b} if a.get(key) != b.get(key)]
     return f"{what} differs:\n{align_columns([['key', *names], *rows])}" if rows else f"same {what}"
@@ -222,7 +222,7 @@ def _shown(value: Any) -> str:
 
 
 def _metric_rows(sides: "Sequence[Measurements]", metrics: Sequence[str]) -> Iterator[list[str]]:
-    """Yield the medians of two runs in each metric, their difference and their ratio."""
+    """Yield the medians of each metric in two runs, their difference and their ratio."""
     import numpy as np
 
     for name in dict.fromkeys(metrics or [name for side in sides for name in side.values]):
@@ -233,7 +233,7 @@ def _metric_rows(sides: "Sequence[Measurements]", metrics: Sequence[str]) -> Ite
 
 
 def _paired_lines(sides: "tuple[Measurements, Measurements]", metrics: Sequence[str]) -> Iterator[str]:
-    """Yield the comparison of two runs on the same seeds, repetition by repetition, or why there is none."""
+    """Yield the paired comparison of two runs on the same seeds, or the reason why there is none."""
     from runner.reporting.answers import EXPLAINED
     from runner.reporting.comparison.pairs import match
     from runner.reporting.comparison.sweeps import NOISE_ALONE, answer, noise_alone
@@ -339,7 +339,7 @@ def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], option
 
 
 def _print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: float) -> None:
-    """Print how a recording differs from a run, and write the report; its folder is the last line."""
+    """Print the differences between a recording and a run, and write the report; its folder is the last line."""
     from runner import store
     from runner.base import progress
     from runner.recordings.compare import compare_recording

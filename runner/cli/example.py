@@ -26,13 +26,13 @@ def run(options: Namespace) -> int:
 
 
 def copy_examples(folder: Path) -> list[Path]:
-    """Copy all examples that come with the package; return the copies.
+    """Copy the bundled examples; return the copies.
 
     Args:
         folder: Target folder; it is created if it does not exist.
 
     Raises:
-        RunnerError: if there is something in the folder already, or it cannot be written.
+        RunnerError: if the folder is not empty, or cannot be written to.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise RunnerError(f"{folder}: is there already, and not empty; name a new folder")

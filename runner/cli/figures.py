@@ -24,7 +24,7 @@ _NARROWEST, _WIDEST = 60.0, 400.0  # mm
 
 
 class _Drawn(Stored):
-    """The type of an argument that is the folder of something stored, or a study: its name, or its report's folder."""
+    """Argument type: the folder of a stored result, or a study by its name or its report's folder."""
 
     def __call__(self, text: str) -> Path:
         path = Path(text)
@@ -69,7 +69,7 @@ def _millimetres(text: str) -> float:
 
 
 def _study_of(path: Path) -> tuple[str, Path] | None:
-    """Return the study that a name, or the folder of a report, is of, and its outputs folder; None where it is none."""
+    """Return the study of a name or of a report's folder, and its outputs folder; None if there is no such study."""
     if path.name not in study_names():
         return None
     if not path.is_dir() and path == Path(path.name):
@@ -111,7 +111,7 @@ def _tell_failure(run: "Run") -> None:
     """Print that a run failed, and the end of its trace.
 
     Raises:
-        RunnerError: If it has no trace to draw.
+        RunnerError: if the run has no trace to draw.
     """
     if run.status == "ok":
         return

@@ -96,7 +96,7 @@ def _list_claims(_: Sequence[Path]) -> dict[str, str]:
 
 
 def _printed(claim: "PublishedClaim") -> str:
-    """Return a claim's value as printed; nothing if the source compares in words."""
+    """Return a claim's value as printed; an empty string if the source gives no number."""
     return f": {' to '.join(f'{value:g}' for value in claim.printed)} {claim.unit}" if claim.printed else ""
 
 

@@ -45,12 +45,12 @@ class TerminatedError(KeyboardInterrupt):
 
 
 def _terminate(*_: object) -> NoReturn:
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a second signal must not interrupt the ending
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a second signal must not interrupt the shutdown
     raise TerminatedError
 
 
 def _open_outputs() -> None:
-    """Open an output that the caller closed on the null device; else the next file that is opened gets its number."""
+    """Open a closed output stream on the null device; otherwise the next opened file gets its descriptor."""
     for number, name in ((1, "stdout"), (2, "stderr")):
         if getattr(sys, name) is None:
             nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -90,7 +90,7 @@ def _explain(error: Exception) -> int:
     """Print an unexpected error; return the exit code.
 
     Raises:
-        OSError: if the error is one and no plug-in caused it.
+        OSError: if the error is an OSError and no plug-in caused it.
     """
     from runner.plugins.discovery import has_users_parts
 

@@ -115,12 +115,12 @@ def _parts(study: str) -> "tuple[UserPlugin, ...]":
 
 
 def _chosen(text: str, way: _Way) -> "list[Study | None]":
-    """Return the study that is meant, or all in the order of the number of their runs; None stands for the audit.
+    """Return the named study, or all studies, those with the fewest runs first; None stands for the audit.
 
-    So there is something to read soon.
+    In this order the first report appears early.
 
     Raises:
-        RunnerError: if there is no such study; names what there is.
+        RunnerError: if there is no such study; lists the existing studies.
     """
     from runner.study.study import load_study
 
@@ -155,7 +155,7 @@ def _reproduce(study: "Study | None", way: _Way) -> "tuple[str, _Reproduced]":
 
 
 def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
-    """Print the findings that no longer hold and the caveats that are not expected; return whether there are any."""
+    """Print the findings that no longer hold and the unexpected caveats; return True if there are any."""
     from runner.study.conclusions import list_failed_findings
     from runner.study.expected_caveats import unexpected_caveats
 
@@ -180,7 +180,7 @@ def _conclusions(made: Mapping[str, _Reproduced]) -> str:
 
 
 def _reproduce_study(study: "Study", way: _Way) -> _Reproduced:
-    """Make what a study needs, and its document."""
+    """Simulate the runs of a study, and create its document."""
     from runner.reporting.markup import literal
     from runner.study.check import formulas_at
     from runner.study.claims import late_claims
@@ -200,7 +200,7 @@ def _reproduce_study(study: "Study", way: _Way) -> _Reproduced:
 
 
 def _audit(folder: Path) -> _Reproduced:
-    """Judge the equations of all studies; write their table, and return the report."""
+    """Check the equations of all studies; write their table, and return the report."""
     from runner.audit.audit import as_csv, audit_all
     from runner.reporting.audit.report import audit_document
     from runner.store.atomic import write_atomically

@@ -34,11 +34,11 @@ _SWEEP, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
 
 
 class _Line:
-    """The overrides of a command line: those typed, or those that Hydra passes to its task or to our sweeper.
+    """Overrides of a command line, as typed or as passed by Hydra to its task or to the sweeper of the runner.
 
     Attributes:
-        overrides: The overrides; None if the line makes no run.
-        many: Whether it makes a sweep.
+        overrides: Overrides; None if the line simulates nothing.
+        many: Whether the line is a sweep.
         root: Name of the primary config.
     """
 
@@ -46,11 +46,11 @@ class _Line:
         self.overrides, self.many, self.root = overrides, many, "config"
 
     def __call__(self, _: DictConfig) -> None:
-        """Take the overrides of a run; Hydra calls this."""
+        """Store the overrides of a run; called by Hydra."""
         self._take(HydraConfig.get())
 
     def sweep(self, config: DictConfig) -> None:
-        """Take the overrides of a sweep; our sweeper calls this."""
+        """Store the overrides of a sweep; called by the sweeper."""
         self.many = True
         self._take(config.hydra)
 
@@ -94,7 +94,7 @@ def main(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int
 
 
 def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
-    """Let Hydra's command read a line with flags of Hydra, after its config has composed; return its overrides."""
+    """Return the overrides of a line with flags of Hydra, read by Hydra's command after a check of the config."""
     line = _Line()
     sys.argv = ["runner", *user_overrides(), *force(words), *(_WITHOUT_OURS if "--hydra-help" in words else ())]
     given = get_args_parser().parse_args()

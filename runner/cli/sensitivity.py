@@ -87,7 +87,7 @@ def _unit(name: str) -> str:
 
 
 def _rows(found: "Sensitivity", name: str, compared: "Differences | None") -> list[list[str]]:
-    """Return a table: a row for each parameter, the one that matters most first."""
+    """Return a table with a row for each parameter, the most important first."""
     unit = _unit(name)
     head = ["parameter", "value", "unit", "derivative", "its unit", "elasticity"]
     if compared is not None:
@@ -116,7 +116,7 @@ def _relative(difference: float, derivative: float) -> float:
 
 
 def _compare(found: "Sensitivity", compared: "Mapping[str, Differences]") -> int:
-    """Print how far derivatives and differences agree; return 1 if they do not."""
+    """Print the deviation of derivatives from finite differences; return 1 if it is too large."""
     gaps = [
         _relative(by.derivatives[place] - derivative, derivative)
         for name, by in compared.items()

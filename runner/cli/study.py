@@ -55,7 +55,7 @@ def _new(options: Namespace) -> int:
 
 
 def _check(options: Namespace) -> int:
-    """Print what is wrong with a study, a line each; exit 1 where something is."""
+    """Print the problems of a study, one per line; return 1 if there are any."""
     from runner.study.names import find_study
 
     find_study(options.study)  # rejects an unknown name before anything is read
@@ -74,7 +74,7 @@ def _check(options: Namespace) -> int:
 
 
 def _diff(options: Namespace) -> int:
-    """Print the changes, a line each, those that matter most first."""
+    """Print the changes, one per line, the most important first."""
     found = changes(read_conclusions(options.old), read_conclusions(options.new))
     if options.json:
         print(json.dumps([asdict(change) for change in found], indent=1, ensure_ascii=False))

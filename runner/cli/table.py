@@ -60,10 +60,10 @@ def run(options: Namespace) -> int:
 
 
 def _format(options: Namespace) -> str:
-    """Return the format asked for, by name or by the ending of the file; nothing where none is.
+    """Return the requested format, by its name or by the suffix of the file; empty if none is requested.
 
     Raises:
-        RunnerError: If there is no such format, or Parquet would go to a terminal.
+        RunnerError: if there is no such format, or Parquet would go to a terminal.
     """
     chosen: str = (options.format or [""])[0]
     if not chosen and options.output is not None:
@@ -92,7 +92,7 @@ def _whole(folder: Path, measurements: "Measurements") -> int:
 
 
 def _of_run(options: Namespace, chosen: str) -> int:
-    """Print or write the table of a run, a row for each metric; without options, in Markdown and with its folder."""
+    """Print or write the table of a run, one row per metric; without options, as Markdown with the folder."""
     from runner import store
 
     if options.by or options.where:

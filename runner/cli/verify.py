@@ -23,10 +23,10 @@ _WORDS: Mapping[State, str] = {"good": "as written", "unfinished": "unfinished",
 
 @dataclass(frozen=True)
 class Found:
-    """State of one stored thing.
+    """State of one stored result.
 
     Attributes:
-        kind: Its folder, such as "runs".
+        kind: Folder of its kind, such as "runs".
         state: "good" if all checksums are right, "unfinished" if its writer was killed.
         problem: Damage, and the command that repairs it; empty if there is none.
     """
@@ -66,13 +66,13 @@ def run(options: Namespace) -> int:
 
 
 def verify(outputs: Path) -> Iterator[Found]:
-    """Read everything that is stored in an outputs folder, and compare it with its checksums.
+    """Read all stored results in an outputs folder, and compare them with their checksums.
 
     Args:
         outputs: The outputs folder.
 
     Raises:
-        SchemaError: at the first thing of another schema.
+        SchemaError: at the first result of another schema.
     """
     from runner.store import DamagedError
 
@@ -89,7 +89,7 @@ def verify(outputs: Path) -> Iterator[Found]:
 
 
 def _read(kind: str, path: Path) -> None:
-    """Read a stored thing with all its files, which compares them with their checksums."""
+    """Read a stored result with all its files, which compares them with their checksums."""
     from runner import store
 
     if kind == "runs":

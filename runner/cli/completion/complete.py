@@ -32,8 +32,8 @@ def complete(output: TextIO | None = None, leave: Callable[[int], object] = os._
     """Print the words that complete the line in COMP_LINE, and nothing else; then leave the process.
 
     Args:
-        output: Where the words go; None for the file descriptor that the shell function reads.
-        leave: Leaves the process with an exit code.
+        output: Stream for the words; None for the file descriptor that the shell function reads.
+        leave: Function that leaves the process with an exit code.
     """
     with contextlib.suppress(Exception):
         *_, words, _ = split_line(os.environ["COMP_LINE"], int(os.environ["COMP_POINT"]))
@@ -53,7 +53,7 @@ def shell_code(words: Sequence[str]) -> str:
     """Return the lines of a shell that turn on completion, for `-sc install=SHELL`.
 
     Raises:
-        RunnerError: for anything but `install=` and a known shell.
+        RunnerError: if the value is not `install=` and a known shell.
     """
     asked = [word.removeprefix("install=") for word in words if word.startswith("install=")]
     if len(asked) != 1 or asked[0] not in _SHELLS:
@@ -63,7 +63,7 @@ def shell_code(words: Sequence[str]) -> str:
             f"-sc: found {wrong}{near}. Allowed: install= and one of {', '.join(_SHELLS)}, as in "
             'eval "$(runner -sc install=bash)"'
         )
-    # The shell must not add a space behind a key that ends with a dot.
+    # The shell must not add a space after a key that ends with a dot.
     return shellcode(["runner"], shell=asked[0]).replace("[=/:]", "[=/:.]")
 
 
@@ -83,12 +83,12 @@ class _Finder(CompletionFinder):
         """Do not open file descriptor 9, which may belong to another part of the process."""
 
     def filter_completions(self, completions: list[str]) -> list[str]:
-        """Return the words without repetitions, sorted; at most a thousand."""
+        """Return the distinct words, sorted; at most a thousand."""
         return sorted({*completions})[:_MOST]
 
 
 class _Values(BaseCompleter):
-    """Completes the values of an argument: by its type, its metavar or its name."""
+    """Completer for the values of an argument, chosen by its type, metavar or name."""
 
     def __call__(
         self, *, prefix: str, action: argparse.Action, parser: argparse.ArgumentParser, parsed_args: argparse.Namespace
@@ -123,7 +123,7 @@ def _values(prefix: str, action: argparse.Action, parser: Parser, parsed_args: a
 
 
 def _listed(word: str, names: Iterable[str]) -> Iterator[str]:
-    """Yield names behind the names of a list with commas that are typed already."""
+    """Yield names that continue a typed comma-separated list."""
     head = word[: word.rfind(",") + 1]
     taken = {*head.split(",")}
     yield from (f"{head}{name}" for name in names if name not in taken)
@@ -141,7 +141,7 @@ def _studies(parser: Parser) -> Iterable[str]:
     return (*study_names(), *(("audit", "all") if parser.prog == "runner reproduce" else ()))
 
 
-# By the beginning of the attribute that an argument is kept in.
+# By the prefix of the attribute that stores an argument.
 _NAMED: Mapping[str, Callable[[Parser], Iterable[str]]] = {
     "topic": _topics,
     "metric": lambda _: metric_names(),
@@ -151,7 +151,7 @@ _NAMED: Mapping[str, Callable[[Parser], Iterable[str]]] = {
 
 
 def _plugin_words(word: str) -> Iterator[str]:
-    """Yield groups, and the files of modules behind them."""
+    """Yield groups, and after a group the files of modules."""
     from runner.plugins.discovery import GROUPS  # takes as long as all the rest
 
     group, given, module = word.partition("=")
@@ -162,9 +162,9 @@ def _plugin_words(word: str) -> Iterator[str]:
 
 
 def _stored_folders(word: str, kinds: Sequence[Kind]) -> Iterator[str]:
-    """Yield the folders in ./outputs with some kinds of stored things, and the word `latest`.
+    """Yield the folders in ./outputs with some kinds of stored results, and the word `latest`.
 
-    Of many, only the folder above them is yielded until it is typed.
+    If there are many, only their parent folder is yielded until it is typed.
     """
     yield WORD
     for kind in kinds:
@@ -179,12 +179,12 @@ def _stored_folders(word: str, kinds: Sequence[Kind]) -> Iterator[str]:
 
 
 def _files(word: str, suffix: str = "", folders_only: bool = False) -> Iterator[str]:
-    """Yield the paths that complete one, folders with a slash at their end.
+    """Yield the paths that complete a typed path; folders end with a slash.
 
     Args:
         word: The typed word.
-        suffix: The end that the name of a file must have.
-        folders_only: Whether files are left out.
+        suffix: Required suffix of a file name.
+        folders_only: Whether to yield only folders.
     """
     name = word.rpartition("/")[2]
     parent = word.removesuffix(name)

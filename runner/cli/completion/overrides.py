@@ -1,6 +1,6 @@
 """Completion of overrides: options of groups from file names, keys from the config that Hydra composes.
 
-Answers that take long are kept in the cache of compiled code, as long as everything that they depend on is unchanged.
+Slow answers are kept in the cache of compiled code while everything that they depend on is unchanged.
 """
 
 import hashlib
@@ -18,21 +18,21 @@ from runner.config.compose.user_settings import user_overrides
 from runner.symbolic import cache
 
 _SIGN = re.compile(r"[+~]*")
-_FILE = re.compile(r"^  - (\w+)\s*(?:#.*)?$", re.MULTILINE)  # of a root's defaults: a file whose keys lie at the top
+_FILE = re.compile(r"^  - (\w+)\s*(?:#.*)?$", re.MULTILINE)  # of a root's defaults: a file with top-level keys
 _GROUP = re.compile(r"^  - (\w+): ", re.MULTILINE)
 _KEY = re.compile(r"^(\w+):[ \t]*([^\s#]?)", re.MULTILINE)
 _SPEC = "spec.metrics."
-_MOST = 10_000  # files that an answer may depend on; with more, it is not kept
-_GLOBAL = "# @package _global_"  # begins a file whose keys lie at the top of the config
+_MOST = 10_000  # files that an answer may depend on; an answer with more is not kept
+_GLOBAL = "# @package _global_"  # first line of a file with top-level keys
 
 
 class Typed(NamedTuple):  # a dataclass would take a tenth of the time of a TAB
-    """Words of a command that are typed before the word under the cursor.
+    """Words of a command before the word under the cursor.
 
     Attributes:
-        overrides: The overrides.
-        config_dirs: The user's config folders that exist.
-        plugins: The plug-ins, as in "controller=mine/spring.py".
+        overrides: Typed overrides.
+        config_dirs: Existing config folders of the command.
+        plugins: Plug-ins, as in "controller=mine/spring.py".
     """
 
     overrides: Sequence[str]
@@ -44,7 +44,7 @@ def override_words(typed: Typed, typed_word: str, root: str) -> Iterator[str]:
     """Yield the overrides that complete a word; Hydra composes the config if the word has a key with a dot.
 
     Args:
-        typed: The words before it.
+        typed: The words before the word under the cursor.
         typed_word: The word under the cursor.
         root: File of conf/ that the overrides change: "config" of a run, "calibrate" of a calibration.
     """
@@ -63,7 +63,7 @@ def override_words(typed: Typed, typed_word: str, root: str) -> Iterator[str]:
 
 
 def _bounds(word: str) -> Iterator[str]:
-    """Yield the metrics that a spec may bound, and the keys of a bound behind a metric."""
+    """Yield the metrics that a spec may bound, and after a metric the keys of a bound."""
     metric, dot, _ = word.partition(".")
     if dot:
         yield from (f"{_SPEC}{metric}.{key}=" for key in ("min", "max", "reason"))
@@ -87,7 +87,7 @@ def _plugins(plugins: Sequence[str], group: str) -> Iterator[str]:
 
 
 def _top(root: str) -> Iterator[str]:
-    """Yield groups, and the keys at the top of a config: `key=`, or `key.` where more lie below it."""
+    """Yield groups and the top-level keys of a config: `key=`, or `key.` for a key with subkeys."""
     folder = conf_dir()
     text = (folder / f"{root}.yaml").read_text()
     files = [(folder / f"{name}.yaml").read_text() for name in _FILE.findall(text) if name != "_self_"]
@@ -101,7 +101,7 @@ def _top(root: str) -> Iterator[str]:
 
 
 def _keys(typed: Typed, word: str, root: str) -> Iterator[str]:
-    """Yield the keys that complete a word up to the next dot; behind a whole key, its value."""
+    """Yield the keys that complete a word up to the next dot; after a complete key, its value."""
     key, given, _ = word.partition("=")
     whole = [each for each in typed.overrides if "=" in each]
     values: Mapping[str, str | None] = _cached(
@@ -131,7 +131,7 @@ def metric_names() -> Iterable[str]:
 
 
 def _cached(question: Sequence[str], config_dirs: Sequence[Path], answer: Callable[[], Any]) -> Any:
-    """Return the answer to a question from the cache; it is computed and kept if the cache lacks it."""
+    """Return the answer to a question from the cache; compute and keep it if it is missing."""
     key = cache_key(question, config_dirs)
     found = None if key is None else cache.read_answer(key)
     if found is None:
@@ -159,17 +159,17 @@ def _compose(overrides: Sequence[str], config_dirs: Sequence[Path], root: str) -
 
 
 def _typed(value: Any) -> str | None:
-    """Return a value as it is typed in an override."""
+    """Return a value as written in an override."""
     if isinstance(value, bool):
         return str(value).lower()
     return str(value) if isinstance(value, int | float | str) else None
 
 
 def cache_key(question: Sequence[str], config_dirs: Sequence[Path]) -> str | None:
-    """Return a digest of a question and of everything that its answer depends on; None if these are too many files.
+    """Return a digest of a question and of everything that its answer depends on; None if that is too many files.
 
-    It covers the working folder, the user's settings, the path, time and size of every file of our configs, robots and
-    source and of the user's config folders, and the folders of the installed packages.
+    The digest covers the working folder, the user's settings and the folders of the installed packages. It also covers
+    path, time and size of every file in the built-in configs, robots and source and in the user's config folders.
     """
     packages = [(place, os.stat(place).st_mtime_ns) for place in sys.path if os.path.isdir(place)]  # noqa: PTH112, PTH116
     digest = hashlib.sha256(repr((sys.version, os.getcwd(), user_overrides(), question, packages)).encode())  # noqa: PTH109
@@ -184,7 +184,7 @@ def cache_key(question: Sequence[str], config_dirs: Sequence[Path]) -> str | Non
 
 
 def _tree(root: Path) -> Iterator[str]:
-    """Yield the paths of the files below a folder, in one order."""
+    """Yield the paths of the files in a folder and its subfolders, in a fixed order."""
     for folder, folders, files in os.walk(root, followlinks=True):
         folders[:] = sorted(name for name in folders if name != "__pycache__")
         yield from (os.path.join(folder, name) for name in sorted(files))  # noqa: PTH118
