@@ -98,7 +98,7 @@ def test_all_problems_are_told_at_once():
     assert len(told) == 6
     assert "3 is not a valid override" in told[0]
     assert "a: cannot be written as an override" in told[1]
-    assert "'b c' is no key" in told[2]
+    assert "'b c' is not a key" in told[2]
     assert "d: is swept over no value" in told[3]
     assert "e: cannot be written" in told[4]
     assert "f: cannot be written as an override: 'g h' is no name of a key" in told[5]

@@ -97,7 +97,7 @@ def test_a_damaged_shard_is_named_with_the_way_out_and_counts_as_none(tmp_path, 
         pyarrow.parquet.write_table(pyarrow.table({"run": ["a"]}), path)
     else:
         path.write_bytes(content)
-    message = rf"{name}: .*; remove it, and the sweep's command makes its"
+    message = rf"{name}: .*; remove it, and the sweep's command simulates its"
     with pytest.raises(StoreError, match=message):
         read_outcomes(path)
     finished = Finished(tmp_path)
