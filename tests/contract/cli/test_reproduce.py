@@ -203,7 +203,7 @@ def test_jobs_are_the_processes_of_the_sweep(cli, small_study, monkeypatch):
 
 def test_check_lists_the_caveats_that_a_study_does_not_expect(cli, monkeypatch):
     caveats = [{"rule": rule, "text": f"what {rule} found", "value": 1.0} for rule in ("saturation", "overload")]
-    runs = {"heavy": SimpleNamespace(caveats=caveats, hash="0a", status="ok", metrics={})}
+    runs = {"heavy": SimpleNamespace(caveats=caveats, hash="0a", status="ok", record={"metrics": {}})}
     expected = [ExpectedCaveat("overload", "heavy", "It is to be heavy.")]
     made = reproduce._Reproduced(Document("The thesis", "", "", (), "2026-01-01"), runs, {}, expected)
     monkeypatch.setattr(reproduce, "_reproduce_study", lambda *_: made)

@@ -5,7 +5,7 @@ from support import strangers
 from support.strangers import Y, Z
 
 from runner.base.errors import ConfigError
-from runner.cli.doctor import main as doctor
+from runner.cli.main import dispatch
 from runner.robots import RobotModel, read_urdf
 
 ARM = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)])
@@ -47,13 +47,9 @@ def test_it_is_refused_in_words_by_run_and_doctor(tmp_path, capsys, fault):
         RobotModel(read_urdf(path, {}), "tip")
     assert said in str(raised.value)
     assert len(str(raised.value)) < 4000
-    try:
-        code = doctor([str(path)])
-    except Exception as error:
-        code = 2
-        print(error)
-    assert code == 2
-    assert said in capsys.readouterr().out
+    assert dispatch(["doctor", str(path)]) == 2
+    printed = capsys.readouterr()
+    assert said in printed.out + printed.err
 
 
 LIMITS = {
@@ -74,7 +70,7 @@ def test_limits_that_the_doctor_mends_are_refused_by_a_run(tmp_path):
         all_of_them = all_of_them.replace(old, new, 1)  # each at the first joint that still has it
     path.write_text(all_of_them)
     assert all(new in all_of_them for new, _ in LIMITS.values())
-    assert doctor([str(path)]) == 0
+    assert dispatch(["doctor", str(path)]) == 0
 
 
 @pytest.mark.bullet
