@@ -168,5 +168,5 @@ def test_a_tuning_in_which_all_failed_has_a_report(tuning):
 
 def test_a_run_that_is_gone_is_told(tuning, monkeypatch):
     gone = replace(tuning, trials=[*tuning.trials, replace(tuning.trials[0], run="0" * 24)])
-    with pytest.raises(StoreError, match="1 of 23 cells of .* are not stored; continue with: runner tune "):
+    with pytest.raises(StoreError, match=r"1 of 23 cells of .* are not stored; continue with: runner tune "):
         document(gone)
