@@ -9,9 +9,10 @@ from hydra.core.override_parser.types import Quote, QuotedString
 
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
+from runner.store.axes import override_value
 
 _KEY = re.compile(r"[A-Za-z_][\w.@/]*")
-_PLAIN = re.compile(r"[\w./+-]+")
+_BARE = re.compile(r"[\w./+-]+")
 _ALLOWED = "a number, text, bool, None, Path, list, tuple, dict or NumPy array"
 
 
@@ -105,32 +106,33 @@ def _text(value: object) -> str:
 
 def _item(value: object) -> str:
     """Return a value as written in a list, in which a string is always one value."""
+    return override_value(_plain(value), _letters)
+
+
+def _plain(value: object) -> object:
+    """Return a value without NumPy and paths; lists and mappings in it too."""
     if isinstance(value, np.generic | np.ndarray):
         value = value.tolist()
-    if value is None:
-        return "null"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, int | float):
-        return repr(value)
-    if isinstance(value, str | PurePath):
-        return _letters(str(value))
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if isinstance(value, PurePath):
+        return str(value)
     if isinstance(value, list | tuple | range):
-        return f"[{','.join(map(_item, value))}]"
+        return [_plain(each) for each in value]
     if isinstance(value, Mapping):
-        return "{" + ",".join(f"{_name(key)}:{_item(each)}" for key, each in value.items()) + "}"
+        return {_name(key): _plain(each) for key, each in value.items()}
     raise _WrittenError(f"cannot be written as an override: found {quoted(value)}; allowed: {_ALLOWED}")
 
 
 def _name(key: object) -> str:
     if not (isinstance(key, str) and _KEY.fullmatch(key)):
-        raise _WrittenError(f"cannot be written as an override: {quoted(key)} is no name of a key")
+        raise _WrittenError(f"cannot be written as an override: {quoted(key)} is not the name of a key")
     return key
 
 
 def _letters(text: str) -> str:
     """Return a string as one Hydra value, quoted if it contains more than a name or a number."""
-    if _PLAIN.fullmatch(text):
+    if _BARE.fullmatch(text):
         return text
     return QuotedString(text.replace("${", r"\${"), Quote.single).with_quotes()
 

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -87,8 +87,17 @@ def is_simulated(override: str) -> bool:
     return key not in ("caveats", "hydra", "limits", "outputs", "spec", "sweep")
 
 
-def override_value(value: object) -> str:
-    """Return a value as written after `KEY=`, so that it is read back as the same value."""
+def _string(text: str) -> str:
+    return text if _PLAIN.fullmatch(text) and not _OTHER_KIND.fullmatch(text) else _quoted(text)
+
+
+def override_value(value: object, string: Callable[[str], str] = _string) -> str:
+    """Return a value as written after `KEY=`, so that it is read back as the same value.
+
+    Args:
+        value: A number, string, bool, None, or a list or mapping of these.
+        string: Returns a string as it is written.
+    """
     if value is None:
         return "null"
     if isinstance(value, bool):
@@ -96,11 +105,11 @@ def override_value(value: object) -> str:
     if isinstance(value, int | float):
         return repr(value)
     if isinstance(value, str):
-        return value if _PLAIN.fullmatch(value) and not _OTHER_KIND.fullmatch(value) else _quoted(value)
+        return string(value)
     if isinstance(value, Mapping):
-        return "{" + ",".join(f"{key}:{override_value(each)}" for key, each in value.items()) + "}"
+        return "{" + ",".join(f"{key}:{override_value(each, string)}" for key, each in value.items()) + "}"
     if isinstance(value, Sequence):
-        return f"[{','.join(map(override_value, value))}]"
+        return f"[{','.join(override_value(each, string) for each in value)}]"
     raise TypeError(f"no override holds a {type(value).__name__}")
 
 

@@ -101,4 +101,4 @@ def test_all_problems_are_told_at_once():
     assert "'b c' is not a key" in told[2]
     assert "d: is swept over no value" in told[3]
     assert "e: cannot be written" in told[4]
-    assert "f: cannot be written as an override: 'g h' is no name of a key" in told[5]
+    assert "f: cannot be written as an override: 'g h' is not the name of a key" in told[5]
