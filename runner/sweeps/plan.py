@@ -5,7 +5,6 @@ from abc import ABC, abstractmethod
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 from runner.base.errors import ConfigError
@@ -282,8 +281,3 @@ def _may_be_seeds(key: SweptKey) -> bool:
     if isinstance(values, range):
         return min(values[0], values[-1]) >= 0 and max(values[0], values[-1]) <= LARGEST_WHOLE
     return all(type(value) is int and 0 <= value <= LARGEST_WHOLE for value in values)
-
-
-def plan_sweep(overrides: Sequence[str], config_dirs: Sequence[Path] = ()) -> Grid:
-    """Return the plan of `runner -m OVERRIDES` from Python; see Grid."""
-    return Grid(overrides, Composer(config_dirs))

@@ -4,6 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from support.grids import plan_sweep
 
 from runner import store
 from runner.config.compose.composer import Composer
@@ -12,7 +13,7 @@ from runner.store.json_texts import JsonTexts
 from runner.sweeps import work
 from runner.sweeps.batch import _rows
 from runner.sweeps.check import check
-from runner.sweeps.plan import Item, Listed, plan_sweep
+from runner.sweeps.plan import Item, Listed
 from runner.sweeps.queue import Queue
 from runner.sweeps.run import make_rules
 from runner.sweeps.work import Chunk

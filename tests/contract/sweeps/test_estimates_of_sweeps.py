@@ -4,6 +4,7 @@ import contextlib
 from types import SimpleNamespace
 
 import pytest
+from support.grids import plan_sweep
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
@@ -13,7 +14,6 @@ from runner.sweeps import job, run
 from runner.sweeps.engine import in_process
 from runner.sweeps.estimate import START_UP, Estimate
 from runner.sweeps.job import PROBED_TICKS, seconds_per_tick
-from runner.sweeps.plan import plan_sweep
 from runner.sweeps.run import Engine, run_sweep
 
 SHORT = ("robot=macro", "duration=0.05", "noise=none")

@@ -1,12 +1,12 @@
 """The check of a plan in blocks gives what each cell by itself does."""
 
 import pytest
+from support.grids import plan_sweep
 
 from runner.base.errors import ConfigError
 from runner.config.validation import validate
 from runner.store import run_hash
 from runner.sweeps.check import check
-from runner.sweeps.plan import plan_sweep
 
 SHORT = ("robot=macro", "duration=0.05")
 

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
+from support.grids import plan_sweep
 from support.patience import PATIENCE
 
 from runner import store
@@ -21,7 +22,6 @@ from runner.simulation.compiled.closed_loop import CommandsRun
 from runner.sweeps import work
 from runner.sweeps.deadline import TimeLimitError
 from runner.sweeps.estimate import Estimate
-from runner.sweeps.plan import plan_sweep
 from runner.sweeps.run import Engine
 from runner.sweeps.writer import one_in
 from runner.symbolic.engine import evaluator

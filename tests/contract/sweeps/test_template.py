@@ -3,10 +3,10 @@
 import random
 
 import pytest
+from support.grids import plan_sweep
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.sweeps.plan import plan_sweep
 
 INDEPENDENT = [
     ("robot=macro,mini", "noise.position=1e-4,1e-3", "controller.period=0.01,0.02"),

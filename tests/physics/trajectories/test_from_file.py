@@ -4,6 +4,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet
 import pytest
+from support.grids import plan_sweep
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
@@ -12,7 +13,6 @@ from runner.robots.robot import end_points
 from runner.store import run_hash
 from runner.store.identity import simulated_part
 from runner.sweeps.job import run
-from runner.sweeps.plan import plan_sweep
 
 T = np.linspace(0.0, 2.0, 21)
 POSTURE = 0.1 * np.outer(1.0 - np.cos(np.pi * T), [1.0, -0.5, 0.7])  # a swing and back, at rest at both ends

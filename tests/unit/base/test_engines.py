@@ -3,6 +3,7 @@
 import platform
 
 import pytest
+from support.grids import plan_sweep
 from support.printed import without_results
 
 from runner.base import engines
@@ -10,7 +11,6 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation.provenance import command
-from runner.sweeps.plan import plan_sweep
 
 
 @pytest.fixture(params=[True, False], ids=["with PyBullet", "without"])

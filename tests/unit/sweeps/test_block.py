@@ -3,8 +3,9 @@
 import pickle
 
 import pytest
+from support.grids import plan_sweep
 
-from runner.sweeps.plan import Alike, plan_sweep
+from runner.sweeps.plan import Alike
 
 SHORT = ("robot=macro", "duration=0.05", "outputs=somewhere")
 

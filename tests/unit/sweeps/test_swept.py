@@ -1,9 +1,9 @@
 """Axes of a command line: values, options and empty axes."""
 
 import pytest
+from support.grids import plan_sweep
 
 from runner.base.errors import ConfigError
-from runner.sweeps.plan import plan_sweep
 
 
 def keys(*arguments):
