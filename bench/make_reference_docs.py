@@ -17,7 +17,7 @@ from bench.allowed_values import describe
 from bench.compiled_table import compiled_section
 from runner.base.paths import conf_dir
 from runner.calibration.procedures import CALIBRATIONS
-from runner.cli.commands import COMMANDS, COMMON, build_parser
+from runner.cli.main import COMMANDS, COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
 from runner.config.caveats import CaveatsConfig
 from runner.config.compose.options import group_options

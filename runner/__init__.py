@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from runner.api.tuning import Tuning
     from runner.base.errors import RunnerError
     from runner.store import Calibration
-    from runner.store.metric import Metric
+    from runner.store.record import Metric
 
 __all__ = [
     "Calibration",
@@ -44,7 +44,7 @@ __all__ = [
 ]
 _PLACES = {
     "Calibration": "runner.store",
-    "Metric": "runner.store.metric",
+    "Metric": "runner.store.record",
     "Report": "runner.api.report",
     "Run": "runner.api.run",
     "RunnerError": "runner.base.errors",

@@ -65,6 +65,11 @@ def number(
     return Shown(_text(value, digits, zeros, plain), value, digits)
 
 
+def plain_number(value: float | None) -> str:
+    """Return a number with five digits for a terminal, or "-" if there is none."""
+    return "-" if value is None else f"{value:.5g}"
+
+
 def _text(value: float, digits: int, zeros: bool, plain: float) -> str:
     if plain <= abs(value) < 1e4:
         text = f"{value:#.{digits}g}".removesuffix(".") if zeros else f"{value:.{digits}g}"

@@ -1,4 +1,4 @@
-"""Sanitized external text for display: one line, no control characters, limited length."""
+"""Sanitized external text for display: one line, no control characters, limited length; aligned columns."""
 
 import re
 import unicodedata
@@ -51,6 +51,14 @@ def few(names: Sequence[str]) -> str:
     """Return names as a list, of which the first eight stand for many."""
     more = f" and {len(names) - _NAMES} more" if len(names) > _NAMES else ""
     return ", ".join(names[:_NAMES]) + more
+
+
+def align_columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
+    """Return rows of equal length as lines with aligned columns; the cells are sanitized for a terminal."""
+    rows = [[one_line(cell) for cell in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
+    return "\n".join(f"{indent}{line}".rstrip() for line in lines)
 
 
 def table_cell(text: str) -> str:

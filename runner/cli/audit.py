@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
+from runner.base.quantities import plain_number
+from runner.base.sanitize import align_columns
 from runner.cli.arguments import Parser
-from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.audit.own_formulas import Difference
@@ -67,6 +68,8 @@ def _report(quantity: str, differences: "list[Difference]", tolerance: float) ->
         for each in wrong:
             at = " ".join(f"{angle:.3f}" for angle in each.at)
             hint = f"it is the true {each.instead}" if each.instead else ""
-            rows.append([each.element, *map(number, (each.largest, each.typical, each.found, each.true)), at, hint])
+            rows.append(
+                [each.element, *map(plain_number, (each.largest, each.typical, each.found, each.true)), at, hint]
+            )
         print(align_columns(rows))
     return len(wrong)

@@ -5,9 +5,9 @@ from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from runner.base.environment_variables import quiet_environment
-from runner.base.sanitize import one_line
+from runner.base.quantities import plain_number
+from runner.base.sanitize import align_columns, one_line
 from runner.cli.arguments import Parser
-from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.store import Calibration
@@ -37,14 +37,12 @@ def _report(done: "Calibration") -> str:
     for name, summary in done.record["errors"].items():
         deviation = done.summary("deviations", name)["median"]
         values = (summary["median"], summary["min"], summary["max"], deviation)
-        rows.append([name, summary["unit"], *map(number, values)])
+        rows.append([name, summary["unit"], *map(plain_number, values)])
     judged = done.consistency
     if judged is None:
         return align_columns(rows)
-    band = f"{number(judged['lower'])} to {number(judged['upper'])}"
+    band = f"{plain_number(judged['lower'])} to {plain_number(judged['upper'])}"
     verdict = "as large as" if judged["holds"] else "not as large as"
-    share = f"{100.0 * judged['level']:g} %"
-    text = (
-        f"errors are {verdict} predicted: mean normalised error squared {number(judged['mean'])}, {share} band {band}"
-    )
+    mean, share = plain_number(judged["mean"]), f"{100.0 * judged['level']:g} %"
+    text = f"errors are {verdict} predicted: mean normalised error squared {mean}, {share} band {band}"
     return f"{align_columns(rows)}\n{text}"

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
-from runner.base.sanitize import one_line
+from runner.base.quantities import plain_number
+from runner.base.sanitize import align_columns, one_line
 from runner.cli.arguments import Parser, Stored
-from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.statistics.proportion import Share
@@ -109,10 +109,10 @@ def _move_row(move: "Move") -> list[str]:
     was, unit = "-", ""
     if move.was is not None:
         unit = "" if move.was.unit == "1" else f" {move.was.unit}"
-        was = number(move.was.median)
+        was = plain_number(move.was.median)
         if move.was.seeds > 1:
-            was += f" ({number(move.was.min)} to {number(move.was.max)})"
-    return [move.cell, move.metric, was + unit, number(move.value) + unit, _direction(move), beyond]
+            was += f" ({plain_number(move.was.min)} to {plain_number(move.was.max)})"
+    return [move.cell, move.metric, was + unit, plain_number(move.value) + unit, _direction(move), beyond]
 
 
 def _direction(move: "Move") -> str:
@@ -148,15 +148,15 @@ def _check_bands(runs: "Sequence[Run]", given: "Bands | None") -> int:
 def _report(run: "Run", baseline: "Bands", findings: "Sequence[Finding]") -> str:
     wrong = [finding for finding in findings if not finding.good]
     head = f"{run.folder}: {len(wrong)} of {len(findings)} metrics fall short of {baseline.name}"
-    rows = [[f.metric, number(f.value), _range(f.band), f.band.reason] for f in wrong]
+    rows = [[f.metric, plain_number(f.value), _range(f.band), f.band.reason] for f in wrong]
     failure = [f"  {run.failure}"] if run.failure else []
     return "\n".join([head, *failure, align_columns([["metric", "found", "band", "reason"], *rows])])
 
 
 def _range(band: "Band") -> str:
     if band.min is None or band.max is None:
-        return f"up to {number(band.max)}" if band.min is None else f"{number(band.min)} or more"
-    return f"{number(band.min)} to {number(band.max)}"
+        return f"up to {plain_number(band.max)}" if band.min is None else f"{plain_number(band.min)} or more"
+    return f"{plain_number(band.min)} to {plain_number(band.max)}"
 
 
 def _check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | None) -> int:

@@ -16,11 +16,10 @@ from typing import TYPE_CHECKING, Any
 from runner.base.dotted_keys import dotted, leaves
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
-from runner.base.sanitize import one_line
+from runner.base.quantities import plain_number
+from runner.base.sanitize import align_columns, one_line
 from runner.cli.arguments import Names, Parser, Stored
-from runner.cli.columns import COMPARED, align_columns, answer_cells, number
-from runner.recordings import is_bag
-from runner.schema.units import read_quantity
+from runner.store.kinds import kind_of
 
 if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
@@ -119,7 +118,7 @@ def _json_text(rows: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _level_lines(side: "Measurements", axis: str, answers: "Sequence[Answer]") -> Iterator[str]:
-    from runner.reporting.answers import EXPLAINED
+    from runner.reporting.answers import EXPLAINED, HEADER
     from runner.reporting.comparison.pairs import label_text
     from runner.reporting.comparison.sweeps import NOISE_ALONE, format_count, noise_alone
 
@@ -138,10 +137,10 @@ def _level_lines(side: "Measurements", axis: str, answers: "Sequence[Answer]") -
     yield _caveat_table([row[1:] for row in _caveats(side)])
     yield ""
     yield from (one_line(answer.sentence()) for answer in answers if answer.rank < 2 and not answer.at)
-    rows = [["at", axis, "metric", "unit", "difference", *COMPARED, "the second is"]]
+    rows = [["at", axis, "metric", "unit", *HEADER, "the second is"]]
     for answer in answers:
         at = label_text(answer.at) if answer.at else "all"
-        rows.append([at, ", ".join(answer.names), answer.metric, answer.unit, *answer_cells(answer)])
+        rows.append([at, ", ".join(answer.names), answer.metric, answer.unit, *answer.plain_cells])
     yield align_columns(rows, indent="")
     yield ""
     yield EXPLAINED
@@ -150,7 +149,7 @@ def _level_lines(side: "Measurements", axis: str, answers: "Sequence[Answer]") -
 
 
 def _sweep_lines(found: "SweepComparison") -> Iterator[str]:
-    from runner.reporting.answers import EXPLAINED
+    from runner.reporting.answers import EXPLAINED, HEADER
     from runner.reporting.comparison.pairs import label_text
     from runner.reporting.comparison.sweeps import NOISE_ALONE, POOLED, counts_by_sign, size_told
 
@@ -170,14 +169,14 @@ def _sweep_lines(found: "SweepComparison") -> Iterator[str]:
     yield from (answer.sentence() for answer in found.answers if answer.rank < 2)
     yield f"every metric {'in the one cell' if len(pairs) == 1 else f'over all {len(pairs)} cells'}, on the same seeds"
     header = ["metric", "unit", a, b, f"{b} - {a}"]
-    rows = [[*header, *COMPARED, f"{b} is", "cells below, above 0"]]
+    rows = [[*header, *HEADER[1:], f"{b} is", "cells below, above 0"]]
     for answer in found.answers:
-        rows.append([*_head(answer), *answer_cells(answer), "{}, {}".format(*counts_by_sign(answer))])
+        rows.append([*_head(answer), *answer.plain_cells, "{}, {}".format(*counts_by_sign(answer))])
     yield align_columns(rows, indent="")
     if found.cells:
         yield ""
         yield f"largest differences in one cell, relative to the metric (chosen from {found.candidates}, not tested):"
-        rows = [[label_text(one.at), *_head(one), number(one.comparison.difference)] for one in found.cells]
+        rows = [[label_text(one.at), *_head(one), plain_number(one.comparison.difference)] for one in found.cells]
         yield align_columns([["cell", *header], *rows])
     yield ""
     yield f"{POOLED} {EXPLAINED}"
@@ -229,12 +228,12 @@ def _metric_rows(sides: "Sequence[Measurements]", metrics: Sequence[str]) -> Ite
         unit = next(side.units[name] for side in sides if name in side.units)
         a, b = (float(side.medians(name)[0]) if name in side.values else np.nan for side in sides)
         shown = (a, b, b - a, b / a if a and np.isfinite(a) else np.nan)
-        yield [name, unit, *(number(value if np.isfinite(value) else None) for value in shown)]
+        yield [name, unit, *(plain_number(value if np.isfinite(value) else None) for value in shown)]
 
 
 def _paired_lines(sides: "tuple[Measurements, Measurements]", metrics: Sequence[str]) -> Iterator[str]:
     """Yield the paired comparison of two runs on the same seeds, or the reason why there is none."""
-    from runner.reporting.answers import EXPLAINED
+    from runner.reporting.answers import EXPLAINED, HEADER
     from runner.reporting.comparison.pairs import match
     from runner.reporting.comparison.sweeps import NOISE_ALONE, answer, noise_alone
     from runner.statistics import SMALLEST_SAMPLE
@@ -252,8 +251,8 @@ def _paired_lines(sides: "tuple[Measurements, Measurements]", metrics: Sequence[
     else:
         answers = answer([pairs], both, metrics)
         yield from (one.sentence() for one in answers if one.rank < 2)
-        header = ["metric", "unit", f"{b.name} - {a.name}", *COMPARED, f"{b.name} is"]
-        yield align_columns([header, *([one.metric, one.unit, *answer_cells(one)] for one in answers)])
+        header = ["metric", "unit", f"{b.name} - {a.name}", *HEADER[1:], f"{b.name} is"]
+        yield align_columns([header, *([one.metric, one.unit, *one.plain_cells] for one in answers)])
         yield EXPLAINED
         if noise_alone(config for side in sides for config, _ in side.configs):
             yield NOISE_ALONE
@@ -273,7 +272,7 @@ def _value(value: "Value") -> list[str]:
 
 
 def _head(one: "Asked") -> list[str]:
-    return [one.metric, one.unit, *map(number, one.comparison.medians)]
+    return [one.metric, one.unit, *map(plain_number, one.comparison.medians)]
 
 
 def _explain_alone(thing: "Run | Sweep") -> str:
@@ -310,10 +309,16 @@ def _explain_mixture(run: "Run", sweep: "Sweep") -> str:
 
 
 def _is_recording(path: str | Path) -> bool:
+    if kind_of(Path(path)):
+        return False
+    from runner.recordings import is_bag
+
     return Path(path).suffix.lower() == ".csv" or is_bag(Path(path))
 
 
 def _seconds(text: str) -> float:
+    from runner.schema.units import read_quantity
+
     found = read_quantity(text)
     seconds = None if found is None else found.in_unit("s")
     if seconds is None or seconds <= 0.0:
@@ -322,8 +327,6 @@ def _seconds(text: str) -> float:
 
 
 def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], options: Namespace) -> None:
-    from runner.store.kinds import kind_of
-
     folders = [path for path in given if path not in recordings]
     if len(recordings) != 1 or len(folders) != 1:
         raise RunnerError("a recording is compared with one run: `runner compare RUN recording.csv --columns map.yaml`")
@@ -364,13 +367,13 @@ def _recording_text(found: "RecordingComparison") -> str:
         f"recording  {found.recording.path}",
         one_line(words.aligned_text(found)),
         "",
-        align_columns([words.RESIDUAL_HEADER, *words.residual_rows(found, number)], indent=""),
+        align_columns([words.RESIDUAL_HEADER, *words.residual_rows(found, plain_number)], indent=""),
         "",
         one_line(words.FIT),
         "",
-        align_columns([["metric", "unit", "run", "recording"], *words.metric_rows(found, number)], indent=""),
+        align_columns([["metric", "unit", "run", "recording"], *words.metric_rows(found, plain_number)], indent=""),
         "",
         *words.friction_lines(found),
     ]
-    rows = words.friction_rows(found, number)
+    rows = words.friction_rows(found, plain_number)
     return "\n".join([*parts, *([align_columns([words.FRICTION_HEADER, *rows], indent="")] if rows else [])])

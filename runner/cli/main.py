@@ -1,22 +1,67 @@
-"""Command-line entry point: dispatch to a command, and exit codes.
+"""Command-line entry point: the commands, their parsers and help, the choice of the command, and exit codes.
 
 Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 3 internal error, 130 interrupted, 143
 terminated. This module imports little, so that help and completion start fast.
 """
 
 import contextlib
+import importlib
 import io
 import os
+import shlex
 import signal
 import sys
-from collections.abc import Callable, Sequence
+import textwrap
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, user_place
+from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, nearest, user_place
+from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import show_progress
 from runner.base.sanitize import one_line
-from runner.cli.commands import COMMON, run_line
+from runner.cli.arguments import Parser
+from runner.config.compose.options import groups
+
+GROUPS = {
+    "Run experiments": ("run", "sweep", "status", "tune", "calibrate"),
+    "Look at results": ("report", "table", "figures", "sensitivity"),
+    "Compare and check": ("compare", "check", "verify"),
+    "Reproduce papers": ("reproduce", "study", "audit", "benchmark"),
+    "Robots and controllers": ("list", "doctor", "example"),
+}
+"""Names of the commands, by what a person wants to do."""
+COMMANDS = tuple(name for names in GROUPS.values() for name in names)
+OVERRIDES = ("run", "sweep")
+"""Commands whose line is overrides and flags of Hydra; `run` is the command of a line that names none."""
+
+COMMON = Parser(prog="runner", add_help=False)
+"""Options that every command has."""
+COMMON.add_shared("plugin", "quiet")
+
+GUIDE = """\
+runner: simulate and compare robot-arm controllers from the command line
+
+  runner robot=macro trajectory=quintic          one run: key metrics and the run's folder
+  runner report latest                           a report on it, HTML and PDF
+  runner sweep robot=macro controller.period=5ms,10ms
+                                                 a sweep over every combination
+  runner list                                    available robots, controllers, trajectories, metrics and studies
+  runner doctor FILE                             check if your own URDF or MJCF fits
+
+All commands: runner --help. All keys of a run: runner --cfg job. The pages are in docs/ of the source, docs/tutorial.md
+first.
+"""
+_NOTES = """\
+`runner COMMAND --help` describes one command. A line of overrides without a command is a run; with -m it is a sweep.
+`latest` means the newest result, instead of a DIR. `runner --cfg job` shows all keys of a run.
+eval "$(runner -sc install=bash)" turns on completion in bash; zsh and fish also work.
+"""
+_EXITS = """\
+Exit codes: 0 success, 1 a run failed or a check failed, 2 invalid input, 3 internal error, 130 interrupted, 143
+terminated.
+"""
+_COLUMN, _WIDTH = 13, 120
 
 
 def main() -> None:
@@ -118,3 +163,97 @@ def _print_path(run: Callable[[], int]) -> int:
         if Path(line).exists():
             print(line)
     return code
+
+
+def build_parser(names: Iterable[str] = COMMANDS) -> Parser:
+    """Return the parser of the command line; only the modules of the commands named are imported."""
+    root = Parser(prog="runner", parents=[COMMON], usage="runner [COMMAND] ...")
+    actions = root.add_subparsers(dest="command", metavar="COMMAND", prog="runner")
+    for name in names:
+        module = importlib.import_module(f"runner.cli.{_module(name)}")
+        root.commands[name] = parser = actions.add_parser(name, description=module.__doc__, parents=[COMMON])
+        module.add_arguments(parser)
+        parser.set_defaults(run=module.run, parser=parser)
+    return root
+
+
+def help_text() -> str:
+    """Return the help on all commands."""
+    lines = [GUIDE.splitlines()[0]]
+    for group, names in GROUPS.items():
+        lines += ["", group]
+        modules: dict[str, list[str]] = {}
+        for name in names:
+            modules.setdefault(_summary(name), []).append(name)
+        for summary, same in modules.items():
+            first = f"  {', '.join(same):<{_COLUMN}}"
+            lines.append(textwrap.fill(summary, _WIDTH, initial_indent=first, subsequent_indent=" " * len(first)))
+    shared = COMMON.format_help().partition("options:\n")[2]
+    groups_text = textwrap.fill(f"Groups of config: {', '.join(groups())}.", _WIDTH)
+    return "\n".join([*lines, "", "Options of every command", shared, _NOTES, groups_text, _EXITS])
+
+
+def run_line(words: Sequence[str]) -> int:
+    """Run the command of a line, without the common options; return its exit code."""
+    first, *rest = words or [""]
+    if not words:
+        print(GUIDE, end="")
+    elif first in ("-h", "--help", "help"):
+        print(help_text(), end="")
+    elif first == "--version":
+        from importlib.metadata import version
+
+        print(version("arm-control-runner"))
+    elif any(word in ("-sc", "--shell-completion") for word in words):
+        from runner.cli.completion.complete import shell_code
+
+        print(shell_code(words))
+    elif first in COMMANDS and first not in OVERRIDES:
+        return _run_command(first, rest)
+    else:
+        return _run_overrides(words)
+    return 0
+
+
+def _run_command(name: str, words: Sequence[str]) -> int:
+    arguments, unknown = build_parser([name]).parse_known_args([name, *words])
+    if unknown:
+        arguments.parser.reject(unknown)
+    arguments.words = words
+    code: int = arguments.run(arguments)
+    return code
+
+
+def _run_overrides(words: Sequence[str]) -> int:
+    """Simulate the run or the sweep of a line.
+
+    Raises:
+        RunnerError: if the line begins with a word that is neither a command nor an override.
+    """
+    first = words[0]
+    if first in FORMER_COMMANDS:
+        raise RunnerError(f"{first} is now called {FORMER_COMMANDS[first]}.")
+    if len(words) > 1 and words[1].startswith("=") and "=" not in first:
+        given = "".join(words[1:3]) if words[1] == "=" else words[1]
+        raise RunnerError(f"an override has no spaces around its '=': `runner {shlex.join([first + given])}`")
+    if first not in OVERRIDES and first and first[0].isalpha() and "=" not in first:
+        raise RunnerError(
+            f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a run starts with "
+            "overrides such as robot=macro"
+        )
+    if {"-h", "--help"} & {*words}:
+        build_parser(["run"]).parse_args(["run", "--help"])
+    from runner.cli.run import simulate
+
+    many = ["-m"] if first == "sweep" else []
+    return simulate([*many, *words[first in OVERRIDES :]])
+
+
+def _module(name: str) -> str:
+    return "run" if name in OVERRIDES else name
+
+
+def _summary(name: str) -> str:
+    """Return the first sentence of a command's description without its usage; reading it is faster than an import."""
+    description = Path(__file__).with_name(f"{_module(name)}.py").read_text().split('"""')[1]
+    return " ".join(description.partition("\n\n")[0].partition("`: ")[2].split())

@@ -1,36 +1,68 @@
-"""`runner OVERRIDES` and `runner -m OVERRIDES`: compose the config, check it, run and store.
+"""`runner [run] OVERRIDES`, `runner sweep OVERRIDES`: simulate one run, or every combination of the listed values.
 
-Hydra's own command reads lines with flags of Hydra. It returns the overrides of a run or a sweep, which is then
-simulated as from a line without such flags.
+An override sets a key or chooses from a group, as controller.period=5ms or robot=macro. `runner sweep` is the same as
+`runner -m`. All other flags are Hydra's.
 """
 
+# Lines with flags of Hydra are read by Hydra's own command. It returns the overrides of a run or a sweep, which is then
+# simulated as from a line without such flags.
+
+import shlex
 import sys
+from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
-
-import hydra
-from hydra._internal.utils import get_args_parser
-from hydra.core.hydra_config import HydraConfig
-from hydra.types import RunMode
-from omegaconf import DictConfig, OmegaConf
+from typing import TYPE_CHECKING, Any
 
 from runner.base.environment_variables import quiet_environment
+from runner.base.errors import RunnerError
 from runner.base.paths import conf_dir
-from runner.cli.summary import print_run, print_sweep
-from runner.config.compose.compose import compose
-from runner.config.compose.composer import Composer
-from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.compose.overrides import force
-from runner.config.compose.sources import checked_sources
+from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import user_overrides
+
+if TYPE_CHECKING:
+    from omegaconf import DictConfig
 
 # The part of conf/config.yaml about Hydra itself, which does not read that file for its own help.
 _WITHOUT_OURS = (
     "hydra/sweeper=runner", "hydra/job_logging=none", "hydra/hydra_logging=none", "hydra.run.dir=.",
     "hydra.output_subdir=null",
 )  # fmt: skip
-_SWEEP, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
+_MANY, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments, for help and completion; `simulate` takes the words as they are typed."""
+    parser.add_overrides("such as robot=macro; a sweep takes lists, as seed=0,1")
+    parser.add_argument(*_MANY, action="store_true", help="simulate a sweep over every combination")
+    _add_own(parser)
+    parser.add_argument("-c", "--cfg", choices=("job", "hydra", "all"), help="show the config without a simulation")
+    parser.add_argument("--hydra-help", action="store_true", help="show all flags of Hydra")
+    parser.add_argument("--version", action="store_true", help="show the version")
+
+
+def _add_own(parser: Parser) -> None:
+    parser.add_shared("config_dir", output="outputs folder, as outputs=PATH", jobs="number of processes of a sweep")
+
+
+def run(arguments: Namespace) -> int:
+    """Simulate the run or the sweep of a parsed line."""
+    return simulate(arguments.words)
+
+
+def simulate(words: Sequence[str]) -> int:
+    """Simulate the run or the sweep of a line; print the folder as the last line."""
+    own = Parser(prog="runner run", add_help=False)
+    _add_own(own)
+    given, others = own.parse_known_args(words)
+    typed = shlex.join(["runner", *words])
+    if given.output is not None:
+        others.append(f"outputs={given.output}")
+    if given.jobs is not None:
+        if not any(word in _MANY for word in others):
+            raise RunnerError("--jobs: one run uses one process. Add -m for a sweep.")
+        others.append(f"hydra.sweeper.workers={given.jobs}")
+    return _simulate(others, given.config_dir, typed)
 
 
 class _Line:
@@ -45,23 +77,27 @@ class _Line:
     def __init__(self, overrides: Sequence[str] | None = None, many: bool = False) -> None:
         self.overrides, self.many, self.root = overrides, many, "config"
 
-    def __call__(self, _: DictConfig) -> None:
+    def __call__(self, _: "DictConfig") -> None:
         """Store the overrides of a run; called by Hydra."""
+        from hydra.core.hydra_config import HydraConfig
+
         self._take(HydraConfig.get())
 
-    def sweep(self, config: DictConfig) -> None:
+    def sweep(self, config: "DictConfig") -> None:
         """Store the overrides of a sweep; called by the sweeper."""
         self.many = True
         self._take(config.hydra)
 
     def _take(self, node: Any) -> None:
+        from omegaconf import OmegaConf
+
         # Unresolved, because an override may contain an interpolation.
         found: Any = OmegaConf.to_container(node.overrides, resolve=False)
         of_sweeper = [each for each in found["hydra"] if each.startswith(_OF_SWEEPER)]
         self.overrides, self.root = [*found["task"], *of_sweeper], node.job.config_name
 
 
-def main(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
+def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
     """Simulate the run or the sweep of a command line; print its folder as the last line.
 
     Args:
@@ -70,10 +106,14 @@ def main(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int
         command: The command line; it is stored with a sweep.
     """
     quiet_environment()
-    if any(word.startswith("-") and word not in _SWEEP for word in words):
+    from runner.cli.summary import print_run, print_sweep
+    from runner.config.compose.compose import compose
+    from runner.config.compose.composer import Composer
+
+    if any(word.startswith("-") and word not in _MANY for word in words):
         line = _read_by_hydra(words, config_dirs)
     else:
-        line = _Line([word for word in words if word not in _SWEEP], any(word in _SWEEP for word in words))
+        line = _Line([word for word in words if word not in _MANY], any(word in _MANY for word in words))
     if line.overrides is None:
         return 0  # --cfg, --hydra-help and the like
     overrides = [each.removeprefix("++") for each in line.overrides]
@@ -95,6 +135,15 @@ def main(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int
 
 def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
     """Return the overrides of a line with flags of Hydra, read by Hydra's command after a check of the config."""
+    import hydra
+    from hydra._internal.utils import get_args_parser
+    from hydra.types import RunMode
+
+    from runner.config.compose.composer import Composer
+    from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+    from runner.config.compose.overrides import force
+    from runner.config.compose.sources import checked_sources
+
     line = _Line()
     sys.argv = ["runner", *user_overrides(), *force(words), *(_WITHOUT_OURS if "--hydra-help" in words else ())]
     given = get_args_parser().parse_args()

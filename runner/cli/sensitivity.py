@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 
 from runner.base import progress
 from runner.base.environment_variables import quiet_environment
+from runner.base.quantities import plain_number
+from runner.base.sanitize import align_columns
 from runner.cli.arguments import Names, Parser, Stored
-from runner.cli.columns import align_columns, number
 
 if TYPE_CHECKING:
     from runner.analysis.sensitivity import Sensitivity
@@ -55,7 +56,7 @@ def run(options: Namespace) -> int:
     compared = differences(found, names) if options.finite_differences else {}
     print(_about(stored, found))
     for name in names:
-        print(f"\n{name}: {number(found.metrics[name])} {_unit(name)}")
+        print(f"\n{name}: {plain_number(found.metrics[name])} {_unit(name)}")
         print(align_columns(_rows(found, name, compared.get(name))))
     print(*_notes(found), sep="\n")
     return _compare(found, compared) if options.finite_differences else 0
@@ -100,14 +101,14 @@ def _rows(found: "Sensitivity", name: str, compared: "Differences | None") -> li
         by = unit if below == "1" else f"{unit} / {below}"
         rows.append(
             [
-                *(parameter.name, number(parameter.value), parameter.unit, number(derivative), by),
-                "-" if isnan(elasticity) else number(elasticity),
+                *(parameter.name, plain_number(parameter.value), parameter.unit, plain_number(derivative), by),
+                "-" if isnan(elasticity) else plain_number(elasticity),
             ]
         )
         if compared is not None:
             doubt = _relative(compared.doubts[place], derivative)
             gap = _relative(compared.derivatives[place] - derivative, derivative)
-            rows[-1] += [number(compared.derivatives[place]), f"{doubt:.1g}", f"{gap:.1g}"]
+            rows[-1] += [plain_number(compared.derivatives[place]), f"{doubt:.1g}", f"{gap:.1g}"]
     return rows
 
 

@@ -4,7 +4,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from runner.base.sanitize import one_line
+from runner.base.sanitize import align_columns, one_line
 from runner.config.compose.user_settings import outputs_dir
 from runner.store.kinds import WORD
 
@@ -41,7 +41,6 @@ def print_run(run: "Run", made: bool, thresholds: Any) -> int:
 
 def _print_metrics(run: "Run", made: bool) -> None:
     """Print the names of a run's parts, its folder, and its main metrics."""
-    from runner.cli.columns import align_columns
     from runner.reporting.key_metrics import key_metrics
 
     config, count = run.config, run.record["repetitions"]
@@ -58,7 +57,6 @@ def _print_spec(run: "Run") -> None:
     """Print the fraction of repetitions that pass each bound of a run's spec, if it has one."""
     if run.spec is None:
         return
-    from runner.cli.columns import align_columns
     from runner.reporting.spec_blocks import HEADER, lacking_text, spec_rows
 
     print(align_columns([HEADER, *spec_rows(run.spec)]), file=sys.stderr)
@@ -85,8 +83,6 @@ def print_sweep(ended: "Ended") -> int:
     from runner.sweeps.measurements import axes_of
 
     if ended.failures:
-        from runner.cli.columns import align_columns
-
         rows = [[" ".join(overrides), why, str(where)] for overrides, why, where in ended.failures[:_FAILURES_SHOWN]]
         count = len(ended.failures)
         print(f"runner: {count} run{'s' if count > 1 else ''} failed", file=sys.stderr)

@@ -111,7 +111,7 @@ def _read(kind: str, path: Path) -> None:
         read_pace(path)
         store.open_sweep(path)
     elif kind == "finer":
-        from runner.store.finer import read_finer
+        from runner.store.finished import read_finer
 
         read_finer(path.parents[1], path.stem)
     else:

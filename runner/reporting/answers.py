@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.base.quantities import ROUNDING, number, quantity, with_ends
+from runner.base.quantities import ROUNDING, number, plain_number, quantity, with_ends
 from runner.reporting.comparison.pairs import Pairs, compare
 from runner.reporting.metric_titles import capital, title
 from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
@@ -136,6 +136,19 @@ class Answer(Asked):
             str(found.n),
             f"{found.effect:.2f}",
             "–" if self.p_value is None else _chance(self.p_value),
+            self.word,
+        ]
+
+    @property
+    def plain_cells(self) -> list[str]:
+        """The cells of a table as plain numbers in SI units: HEADER, then the word."""
+        found = self.comparison
+        return [
+            plain_number(found.difference),
+            "-" if self.interval is None else " to ".join(map(plain_number, self.interval)),
+            str(found.n),
+            f"{found.effect:.2f}",
+            "-" if self.p_value is None else f"{self.p_value:.2g}",
             self.word,
         ]
 

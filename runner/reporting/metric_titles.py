@@ -1,10 +1,11 @@
-"""Titles of metrics, such as "largest tracking error, x" for max_tracking_error_x."""
+"""Titles of metrics, such as "largest tracking error, x" for max_tracking_error_x, and their order in reports."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
+from types import ModuleType
 
 from runner.base.quantities import label_with_unit
-from runner.plugins.metric_units import families, units
+from runner.plugins.metric_units import added_families
 
 TITLES = {
     "settling_time": "settling time",
@@ -35,15 +36,30 @@ TITLES = {
     "steady_force": "contact force at rest",
     "force_error": "error of the felt contact force",
 }
-"""Titles of the runner's metrics. A family of metrics from outside may have TITLES of its own."""
+"""Titles of the built-in metrics. A family of metrics from a plug-in may have TITLES of its own."""
+
+_PREFERRED = (
+    "max_tracking_error",
+    "settling_time",
+    "steady_state_error",
+    "peak_torque",
+    "cross_track_error",
+    "saturation_fraction",
+    "control_effort",
+)
+COSTS = ("peak_torque", "rms_torque", "control_effort", "energy")
+"""Metrics of what a motion costs."""
 
 _JOINT = re.compile(r"q(\d+)")
+_PART = re.compile(r".*_([xyz]|q\d+)$")
 
 
 def title(name: str) -> str:
     """Return the title of a metric: its stage, what it is, its axis or joint; underscores become spaces without one."""
-    base = max((base for base in units() if f"_{base}_" in f"_{name}_"), key=len, default=name)
-    titles = {**_added_titles(), **TITLES}
+    added = added_families()
+    names = [*TITLES, *(metric for family in added for metric in family.UNITS)]
+    base = max((base for base in names if f"_{base}_" in f"_{name}_"), key=len, default=name)
+    titles = {**_titles_of(added), **TITLES}
     stage, _, part = f"_{name}_".partition(f"_{base}_")
     texts = [titles.get(base, _spaced(base)), _part(part.strip("_"))]
     told = ", ".join(text for text in texts if text)
@@ -60,10 +76,26 @@ def metric_label(name: str, unit: str) -> str:
     return label_with_unit(title(name), unit)
 
 
-def _added_titles() -> dict[str, str]:
-    """Return the titles that families from outside give; what is no mapping is none."""
-    given = [getattr(family, "TITLES", None) for family in families()]
+def _titles_of(families: Sequence[ModuleType]) -> dict[str, str]:
+    """Return the titles that families give; a value that is not a mapping is ignored."""
+    given = [getattr(family, "TITLES", None) for family in families]
     return {str(name): str(text) for titles in given if isinstance(titles, Mapping) for name, text in titles.items()}
+
+
+def is_part(name: str) -> bool:
+    """Return True for a metric of one direction or joint, such as peak_torque_q1."""
+    return _PART.match(name) is not None
+
+
+def whole_metrics(known: Collection[str]) -> list[str]:
+    """Return metrics without those of one direction or joint, errors first, as they are compared."""
+    return [name for name in dict.fromkeys([*_PREFERRED, *known]) if name in known and not is_part(name)]
+
+
+def first_screen(metrics: Sequence[str]) -> list[str]:
+    """Return the metrics of a first screen, of some in order: the first, and what it costs or else the second."""
+    costs = [name for name in COSTS if name in metrics[1:]] or metrics[1:]
+    return [*metrics[:1], *costs[:1]]
 
 
 def _part(part: str) -> str:

@@ -1,18 +1,97 @@
-"""Paired comparison of two configs on the same seeds."""
+"""Paired comparison of two configs on the same seeds: signed-rank test, its interval, and Holm correction."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from statistics import NormalDist
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.statistics.interval import SMALLEST_SAMPLE
-from runner.statistics.signed_rank import SignedRanks
+
+EXACT_UP_TO = 200
+"""Differences up to which the distribution is summed up; beyond, the normal law stands in for it."""
 
 _POWER = 0.8  # probability of showing a difference, for which pairs are counted
 _EFFICIENCY = 3.0 / math.pi  # of signed ranks, for normal differences, beside the mean
+
+
+class SignedRanks:
+    """Paired differences by their Walsh averages: the means of any two of them, and each difference itself.
+
+    The sum of the ranks of the positive differences is the number of Walsh averages above zero (Hollander, Wolfe and
+    Chicken, Nonparametric Statistical Methods, 2014, sections 3.1 to 3.3). The test counts averages at zero on both
+    sides, and the interval holds its ends: so it keeps its level with ties and differences of zero, too (Noether,
+    "Wilcoxon confidence intervals for location parameters in the discrete case", JASA 62, 1967), and an interval of a
+    level excludes zero exactly if the p-value is below that level.
+
+    Args:
+        differences: The differences, shape (n,), n one or more; infinite ones are larger than all others and equal to
+            each other.
+    """
+
+    def __init__(self, differences: FloatArray) -> None:
+        one, other = np.triu_indices(len(differences))
+        with np.errstate(invalid="ignore"):
+            averages = (differences[one] + differences[other]) / 2
+        averages[np.isnan(averages)] = 0.0  # of both infinities
+        self._averages = np.sort(averages)
+        self._tail = _lower_tail(len(differences))
+
+    @cached_property
+    def estimate(self) -> float:
+        """The Hodges-Lehmann estimate of the difference: the median of the Walsh averages."""
+        middle = self._averages[(len(self._averages) - 1) // 2], self._averages[len(self._averages) // 2]
+        return float(middle[0] if middle[0] == middle[1] else sum(middle) / 2)
+
+    @cached_property
+    def effect(self) -> float:
+        """The matched-pairs rank-biserial correlation: -1 with all differences below zero, 1 with all above."""
+        return (self._at_least - self._at_most) / len(self._averages)
+
+    @cached_property
+    def p_value(self) -> float:
+        """The two-sided p-value: exact up to EXACT_UP_TO differences, of the normal law beyond."""
+        fewer = min(self._at_most, self._at_least)
+        return min(1.0, 2.0 * float(self._tail[fewer])) if fewer < len(self._tail) else 1.0
+
+    def interval(self, level: float) -> tuple[float, float] | None:
+        """Return the interval that misses the difference with at most a given probability; None with too few pairs."""
+        k = int(np.searchsorted(2.0 * self._tail, level))
+        return (float(self._averages[k - 1]), float(self._averages[-k])) if k else None
+
+    @cached_property
+    def _at_most(self) -> int:
+        """Number of averages that are not above zero."""
+        return int(np.searchsorted(self._averages, 0.0, side="right"))
+
+    @cached_property
+    def _at_least(self) -> int:
+        """Number of averages that are not below zero."""
+        return len(self._averages) - int(np.searchsorted(self._averages, 0.0, side="left"))
+
+
+@lru_cache(maxsize=64)
+def _lower_tail(n: int) -> FloatArray:
+    """Return the probability of a rank sum of at most 0, 1, 2, ... up to its mean, if each sign is as likely.
+
+    Up to EXACT_UP_TO differences the choices of signs are counted by adding up one rank after another (Pratt and
+    Gibbons, Concepts of Nonparametric Theory, 1981, chapter 3).
+    """
+    total = n * (n + 1) // 2
+    if n > EXACT_UP_TO:
+        deviation = math.sqrt(n * (n + 1) * (2 * n + 1) / 24)
+        from scipy.special import ndtr
+
+        normal: FloatArray = ndtr((np.arange(total // 2 + 1) - total / 2) / deviation)
+        return normal
+    ways = np.zeros(total // 2 + 1)
+    ways[0] = 1.0
+    for rank in range(1, n + 1):
+        ways[rank:] += ways[:-rank].copy()
+    return np.ldexp(np.cumsum(ways), -n)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,3 +210,42 @@ def subtract(b: FloatArray, a: FloatArray) -> FloatArray:
     unequal = a != b
     difference[unequal] = b[unequal] - a[unequal]
     return difference
+
+
+def holm(p_values: Sequence[float]) -> FloatArray:
+    """Return p-values of a family of tests, corrected so that one or more false rejections have the stated probability.
+
+    The k-th smallest of m, k from 1, is multiplied by m + 1 - k, and is no smaller than those before it, no larger than
+    1 (Holm, "A simple sequentially rejective multiple test procedure", Scandinavian J. Statistics 6, 1979). It
+    demands nothing of how the tests depend on each other.
+
+    Args:
+        p_values: Those of the tests, shape (m,).
+
+    Returns:
+        The corrected ones, shape (m,), in the same order.
+    """
+    given = np.asarray(p_values, dtype=float)
+    order = np.argsort(given, kind="stable")
+    corrected = np.empty(len(given))
+    corrected[order] = np.minimum(1.0, np.maximum.accumulate(given[order] * np.arange(len(given), 0, -1)))
+    return corrected
+
+
+def holm_levels(p_values: Sequence[float], alpha: float) -> FloatArray:
+    """Return the level at which Holm's procedure decides each test of a family: it rejects what is below its level.
+
+    The k-th smallest p-value of m is compared with alpha / (m + 1 - k); after the first that is not below, all that
+    follow are decided at that same level.
+
+    Args:
+        p_values: Those of the tests, shape (m,).
+        alpha: Probability of one or more false rejections.
+    """
+    given = np.asarray(p_values, dtype=float)
+    order = np.argsort(given, kind="stable")
+    steps = alpha / np.arange(len(given), 0, -1)
+    kept = np.flatnonzero(given[order] >= steps)
+    levels = np.empty(len(given))
+    levels[order] = np.minimum(steps, steps[kept[0]]) if kept.size else steps
+    return levels

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from runner.store.calibration import Calibration, find_calibration, open_calibration, write_calibration
     from runner.store.finished import Finished, find_outcome, find_run
-    from runner.store.identity import run_hash, run_hashes, simulated_part
+    from runner.store.identity import run_hash, run_hashes
     from runner.store.kinds import open_stored
     from runner.store.run import Run, judge_run, open_run
     from runner.store.seal import DamagedError, SchemaError
     from runner.store.shards import Outcome
+    from runner.store.stored import simulated_part
     from runner.store.sweep import Sweep, open_runs, open_sweep, write_grid, write_sweep
     from runner.store.writing import prepare, write_run
 
@@ -44,10 +45,11 @@ _MODULES = {
     "calibration": "Calibration find_calibration open_calibration write_calibration",
     "finished": "Finished find_outcome find_run",
     "kinds": "open_stored",
-    "identity": "run_hash run_hashes simulated_part",
+    "identity": "run_hash run_hashes",
     "run": "Run judge_run open_run",
     "seal": "DamagedError SchemaError",
     "shards": "Outcome",
+    "stored": "simulated_part",
     "sweep": "Sweep open_runs open_sweep write_grid write_sweep",
     "writing": "prepare write_run",
 }

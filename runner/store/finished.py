@@ -1,18 +1,26 @@
-"""Finished runs of an outputs folder, in run folders and in shards."""
+"""Finished runs of an outputs folder, in run folders and in shards.
+
+`outputs/finer/<hash>.json` has the metrics of a finished run with a finer plant step.
+"""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
+from runner.store.atomic import write_atomically
 from runner.store.names import Names, best_of_each, look_up
 from runner.store.run import Run, open_run
-from runner.store.seal import DamagedError
+from runner.store.seal import DamagedError, read_json, sealed_json
 from runner.store.shards import Outcome, Outcomes, open_row, outcome, read_outcomes, shard_files
 from runner.store.stored import check_job
+
+FINER = "finer"
+_REMEDY = "delete it: `runner compare` computes it again"
 
 
 def find_run(outputs: Path, name: str) -> Run | None:
@@ -146,3 +154,34 @@ class Finished:
         if end is not None and end.rank <= self.rank[place]:
             return open_run(self._outputs / "runs" / name)
         return open_row(self.shard_of(place), int(self.row[place]))
+
+
+def write_finer(outputs: Path, name: str, reason: str, metrics: Mapping[str, FloatArray]) -> None:
+    """Store the metrics of a run with a finer step.
+
+    Args:
+        outputs: The outputs folder.
+        name: Hash of the run.
+        reason: Reason why the plant cannot use a finer step; empty if it can.
+        metrics: Each metric in the first repetitions; a value that is not finite is read back as infinity.
+
+    Raises:
+        StoreError: if it cannot be written.
+    """
+    values = {key: [float(one) if np.isfinite(one) else None for one in row] for key, row in metrics.items()}
+    write_atomically(outputs / FINER / f"{name}.json", sealed_json({"reason": reason, "metrics": values}))
+
+
+def finer_names(outputs: Path) -> set[str]:
+    """Return the hashes of the runs that have a stored result for a finer step, or a reason why they have none."""
+    return {path.stem for path in (outputs / FINER).glob("[!.]*.json")}
+
+
+def read_finer(outputs: Path, name: str) -> Mapping[str, Sequence[float]]:
+    """Return each metric of a run with a finer step, in its first repetitions; empty if the run cannot have one.
+
+    Raises:
+        DamagedError: if the file differs from what was written.
+    """
+    record = read_json(outputs / FINER / f"{name}.json", _REMEDY)
+    return {key: [np.inf if one is None else one for one in row] for key, row in record["metrics"].items()}

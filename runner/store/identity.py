@@ -8,14 +8,12 @@ from typing import Any
 
 from runner.base.cache import Memory
 from runner.base.engines import installed_versions
-from runner.config.compose.data_files import has_data_file, without_file_name
 from runner.plugins.discovery import GROUPS, added_parts, source_files
 from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest
+from runner.store.stored import simulated_part
 from runner.symbolic.engine import evaluator
 
-# Keys for the location, name and report of a run. They do not affect the simulation.
-_LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")
 _OWN = ("kinematic", "none", "rk4", "rk4_flexible_links")  # built-in plants without an external engine
 _ENGINES = {"bullet": ("pybullet",), "mujoco": ("mujoco",), **dict.fromkeys(_OWN, ())}
 
@@ -70,12 +68,6 @@ def json_text(value: object) -> str:
 
 _sorted_text = json.JSONEncoder(sort_keys=True).encode
 _key_text = lru_cache(maxsize=256)(_sorted_text)
-
-
-def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys of a config that determine the result; a data file is given by its content, not its name."""
-    kept = {key: value for key, value in resolved.items() if key not in _LEFT_OUT}
-    return kept | {"trajectory": _MEMORY.recall(without_file_name, kept["trajectory"])} if has_data_file(kept) else kept
 
 
 def _parts(resolved: Mapping[str, Any]) -> set[tuple[str, str]]:

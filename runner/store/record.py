@@ -1,11 +1,18 @@
-"""Schema of a run's record.
+"""Record of a run: its schema, and its metrics by name.
 
 Digests detect only accidental damage. `find_faults` also detects an invalid record with a valid digest.
 """
 
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Strict, ValidationError
+
+from runner.base.arrays import FloatArray
+from runner.base.errors import RunnerError, nearest
+from runner.base.quantities import spread
 
 _Number = float | None
 _Ends = Annotated[tuple[_Number, _Number], Strict(False)]
@@ -85,3 +92,89 @@ def find_faults(record: Any) -> str:
     except ValidationError as error:
         return "; ".join(f"{'.'.join(map(str, item['loc']))}: {item['msg']}" for item in error.errors()[:3])
     return "failure: missing" if found.status == "failed" and found.failure is None else ""
+
+
+@dataclass(frozen=True)
+class Metric:
+    """One metric over the repetitions of a run.
+
+    Attributes:
+        unit: Unit, "1" for none.
+        median: Median; a missing value counts as beyond every number. None if the median is missing.
+        min: Smallest value; None if there is none.
+        max: Largest value; None if a value is missing.
+        quantiles: Quantiles by level, from "0.01" to "0.99"; empty up to 2,000 repetitions.
+        repetitions: Number of repetitions.
+        read: Reads the values, shape (repetitions,), NaN for none.
+    """
+
+    unit: str
+    median: float | None
+    min: float | None
+    max: float | None
+    quantiles: Mapping[str, float | None] = field(repr=False)
+    repetitions: int = field(repr=False)
+    read: Callable[[], FloatArray] = field(repr=False, compare=False)
+
+    @cached_property
+    def values(self) -> tuple[float | None, ...]:
+        """Value in each repetition; None if the motion never settled or the repetition failed."""
+        return tuple(None if value != value else value for value in self.read().tolist())
+
+    @property
+    def text(self) -> str:
+        """The median with the range, as in "0.688 mm (0.62 to 0.73)"."""
+        return self.beside(None)
+
+    def beside(self, printed: float | None) -> str:
+        """Return the median with the range, in the unit of a printed value next to it."""
+        return spread(self.unit, self.median, self.min, self.max, self.repetitions, printed)
+
+    def __str__(self) -> str:
+        """Return the median with the range."""
+        return self.text
+
+
+class Metrics(Mapping[str, Metric]):
+    """The metrics of a run by name. An unknown name raises an error with the nearest name.
+
+    Args:
+        record: The record of the run.
+        values: Reads the values of a metric.
+    """
+
+    def __init__(self, record: Mapping[str, Any], values: Callable[[str], FloatArray]) -> None:
+        self._stored, self._count, self._values = record["metrics"], record["repetitions"], values
+
+    def __getitem__(self, name: str) -> Metric:
+        if name not in self._stored:
+            known = ", ".join(self._stored) or "none, as the run failed"
+            raise UnknownMetricError(
+                f"the run has no metric '{name}'{nearest(str(name), self._stored)}; it has: {known}"
+            )
+        found = self._stored[name]
+        ends = found["unit"], found["median"], found["min"], found["max"]
+        return Metric(*ends, found.get("quantiles", {}), self._count, partial(self._values, name))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Metrics) and self._stored == other._stored
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._stored
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._stored)
+
+    def __len__(self) -> int:
+        return len(self._stored)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} metrics: {', '.join(self)}>"
+
+
+class UnknownMetricError(RunnerError, KeyError):
+    """A metric that a run does not have; a KeyError, so that `in` and `get` of a mapping work."""
+
+    __str__ = RunnerError.__str__  # a KeyError would quote the message

@@ -13,11 +13,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
-from runner.config.spec import Bound
-from runner.statistics.spec.history import settings, today
 from runner.store.kinds import kind_of
-from runner.store.metric import Metrics
-from runner.store.record import find_faults
+from runner.store.record import Metrics, find_faults
 from runner.store.seal import DamagedError
 from runner.store.stored import MEND, Stored, read_job, write_job
 from runner.store.values import VALUES_FILE, open_parquet, read_column, read_table
@@ -25,6 +22,7 @@ from runner.store.values import VALUES_FILE, open_parquet, read_column, read_tab
 if TYPE_CHECKING:
     import pandas as pd
 
+    from runner.config.spec import Bound
     from runner.statistics.spec import Spec
     from runner.statistics.spec.history import Histories
 
@@ -227,7 +225,7 @@ def open_run(folder: Path) -> Run:
     return Run(folder, config, record)
 
 
-def judge_run(run: Run, bounds: Mapping[str, Bound], date: str = "") -> Run:
+def judge_run(run: Run, bounds: "Mapping[str, Bound]", date: str = "") -> Run:
     """Evaluate a run against bounds, and return it; store and report changed counts.
 
     Nothing is simulated: the counts follow from the stored values. Without bounds the run is unchanged. The date on
@@ -241,6 +239,8 @@ def judge_run(run: Run, bounds: Mapping[str, Bound], date: str = "") -> Run:
     Raises:
         StoreError: if they cannot be written.
     """
+    from runner.statistics.spec.history import settings, today
+
     before = run.spec
     if not bounds or (before is not None and before.config == bounds):
         return run

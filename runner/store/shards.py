@@ -21,7 +21,6 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.limits import ExcessError, open_parquet
-from runner.metrics.summary import MOST_LISTED, over_repetitions
 from runner.store.arrow_columns import list_column, text_column, truth_column, whole_column
 from runner.store.atomic import write_atomically
 from runner.store.json_texts import encode_finite
@@ -113,6 +112,8 @@ def find_shards(outputs: Path, name: str) -> list[Path]:
 def _row_of(run: Run) -> ShardRow:
     metrics = tuple((name, metric.unit) for name, metric in run.metrics.items())
     values = np.array([run.values(name) for name in run.metrics]).T if metrics else np.zeros((0, 0))
+    from runner.metrics.summary import MOST_LISTED  # all metrics, which only a writer needs
+
     listed = len(values) <= MOST_LISTED
     record = {key: value for key, value in run.record.items() if key != "metrics" or not listed}
     return ShardRow(outcome(run), json.dumps(run.config), run.urdf, encode_finite(record), metrics, values)
@@ -226,6 +227,8 @@ def open_row(path: Path, row: int) -> Run:
 
 def _summarize(table: Any, row: int, names: Sequence[str]) -> dict[str, dict[str, object]]:
     """Return the metrics of a row in the format of the record in a run's folder."""
+    from runner.metrics.summary import over_repetitions
+
     if not names:
         return {}
     values = np.array([_list_at(table[METRIC + name], row) for name in names])

@@ -10,11 +10,15 @@ from typing import Any
 import yaml
 
 from runner.base.bounded_yaml import STORED, YamlError, read_yaml
+from runner.base.cache import Memory
 from runner.store.atomic import write_atomically
 from runner.store.seal import SCHEMA, DamagedError, digest, read_file, read_json, sealed_json
 
 MEND = "run it again to repair it"
 _NAMED = ("runs", "calibrations")  # parents of folders that have the name of their job; a copy may have any name
+# Keys for the location, name and report of a run. They do not affect the simulation.
+_LEFT_OUT = ("caveats", "limits", "outputs", "preset", "spec", "sweep")
+_TRAJECTORIES = Memory(256)
 _UNUSUAL = re.compile(r"[&?]|\[(?!\])|\{(?!\})|^ {60}|(- ){4}", re.M)
 
 
@@ -64,6 +68,19 @@ class Stored:
             DamagedError: if the file is missing or damaged.
         """
         return read_file(self.folder / name, self.record["files"], MEND)
+
+
+def simulated_part(resolved: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a config that determine the result; a data file is given by its content, not its name."""
+    kept = {key: value for key, value in resolved.items() if key not in _LEFT_OUT}
+    trajectory = kept.get("trajectory")
+    if isinstance(trajectory, Mapping) and trajectory.get("kind") == "from_file":
+        kept["trajectory"] = _TRAJECTORIES.recall(_without_file_name, trajectory)
+    return kept
+
+
+def _without_file_name(trajectory: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in trajectory.items() if key != "file"}
 
 
 def write_job(

@@ -6,14 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.errors import StoreError
-from runner.config.spec import Bound
-from runner.statistics.spec.history import Histories, merge_histories, settings, today
 from runner.store.atomic import write_atomically
 from runner.store.axes import Axes, read_axes
 from runner.store.finished import Finished
@@ -22,11 +20,15 @@ from runner.store.names import Names
 from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError, digest, head, read_file, read_json, seal_text
 
+if TYPE_CHECKING:
+    from runner.config.spec import Bound
+    from runner.statistics.spec.history import Histories
+
 _FILE = "sweep.json"
 _RUNS = "runs.bin"  # hashes of the runs of a grid, 12 bytes for each cell
 _AT_ONCE = 10_000  # rows
 _REMEDY = "the sweep's command writes it again"
-_NO_SPEC: Mapping[str, Bound] = {}
+_NO_SPEC: "Mapping[str, Bound]" = {}
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,8 +48,8 @@ class Sweep:
     overrides: Sequence[Sequence[str]]
     hashes: Sequence[str]
     command: str
-    spec: Mapping[str, Bound] = field(default_factory=dict)
-    history: Histories = field(default_factory=dict)
+    spec: "Mapping[str, Bound]" = field(default_factory=dict)
+    history: "Histories" = field(default_factory=dict)
 
     @property
     def outputs(self) -> Path:
@@ -109,7 +111,7 @@ def write_sweep(
     outputs: Path,
     jobs: Sequence[tuple[Sequence[str], str]],
     command: str,
-    spec: Mapping[str, Bound] = _NO_SPEC,
+    spec: "Mapping[str, Bound]" = _NO_SPEC,
     date: str = "",
 ) -> Path:
     """Store the overrides and the run of each job, and return the folder of the sweep.
@@ -130,7 +132,7 @@ def write_sweep(
     return folder
 
 
-def write_grid(outputs: Path, axes: Axes, names: Names, command: str, spec: Mapping[str, Bound] = _NO_SPEC) -> Path:
+def write_grid(outputs: Path, axes: Axes, names: Names, command: str, spec: "Mapping[str, Bound]" = _NO_SPEC) -> Path:
     """Store a sweep over a grid as its axes and a file with the names of the runs; return the folder of the sweep.
 
     Args:
@@ -156,8 +158,10 @@ def write_jobs(folder: Path, jobs: Sequence[tuple[Sequence[str], str]], command:
     write_atomically(folder / _FILE, _sealed_sweep(list(_rows(jobs)), _head(folder, command, _NO_SPEC)))
 
 
-def _head(folder: Path, command: str, spec: Mapping[str, Bound], date: str = "") -> dict[str, Any]:
+def _head(folder: Path, command: str, spec: "Mapping[str, Bound]", date: str = "") -> dict[str, Any]:
     """Return the first entries of the file of a sweep; the history includes the bounds of the file that it replaces."""
+    from runner.statistics.spec.history import merge_histories, settings, today
+
     try:
         known = read_json(folder / _FILE, _REMEDY).get("history", {})
     except DamagedError:
@@ -211,7 +215,12 @@ def open_sweep(folder: Path) -> Sweep:
     return Sweep(folder, overrides, hashes, command, *_read_spec(path, content))
 
 
-def _read_spec(path: Path, content: Mapping[str, Any]) -> tuple[dict[str, Bound], Histories]:
+def _read_spec(path: Path, content: Mapping[str, Any]) -> "tuple[dict[str, Bound], Histories]":
+    if not content.keys() & {"spec", "history"}:
+        return {}, {}
+    from runner.config.spec import Bound
+    from runner.statistics.spec.history import merge_histories
+
     try:
         bounds = {metric: Bound.model_validate(bound) for metric, bound in content.get("spec", {}).items()}
         return bounds, merge_histories(dict.fromkeys(bounds, ()), content.get("history", {}))

@@ -12,7 +12,7 @@ from runner.reporting.document import Block, Notice
 from runner.reporting.figures import columns
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.store.metric import Metric
+from runner.store.record import Metric
 from runner.study.measured import Measured
 
 

@@ -8,7 +8,8 @@ import itertools
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,7 +40,7 @@ def resolve(config: Mapping[str, Any], step: float, home: Sequence[float] | None
     trajectory = config.get("trajectory", {})
     start = trajectory["start"] if _is_point(trajectory.get("start")) else home
     if start is not None and _is_point(trajectory.get("goal")):
-        resolved[DISTANCE] = float(f"{math.dist(start, trajectory['goal']):.4g}")
+        resolved[DISTANCE] = _rounded(math.dist(start, trajectory["goal"]))
     return resolved
 
 
@@ -49,25 +50,60 @@ def is_one_arm(config: Mapping[str, Any]) -> bool:
     return "tip" in robot and "home" in robot
 
 
+@dataclass(frozen=True, eq=False)
+class Distance:
+    """Distance from an arm's tip in its home position to a goal, in m; it is computed when it matters.
+
+    Attributes:
+        urdf: URDF of the arm.
+        tip: Frame of the tip.
+        home: Joint positions at the start.
+        goal: The goal, in m.
+    """
+
+    urdf: str
+    tip: str
+    home: tuple[float, ...]
+    goal: tuple[float, ...]
+
+    def __float__(self) -> float:
+        return _rounded(math.dist(_tip_position(self.urdf, self.tip, self.home), self.goal))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Distance) and (astuple(self) == astuple(other) or float(self) == float(other))
+
+    __hash__ = None  # type: ignore[assignment]
+
+
 class Resolver:
-    """Resolves the configs of stored runs; runs with the same robot share its tip position."""
+    """Resolves the configs of stored runs; runs with the same robot share the text of its URDF."""
 
     def __init__(self) -> None:
-        self._tips: dict[str, Sequence[float]] = {}
+        self._urdfs: dict[str, str] = {}
 
     def resolve(self, run: Run) -> Mapping[str, Any]:
         """Return the resolved config of a stored run; see the function `resolve`. A chain of arms has no distance."""
-        home = None
-        if run.config.get("trajectory", {}).get("start", ...) is None and is_one_arm(run.config):
+        resolved = resolve(run.config, run.provenance["plant_step"], None)
+        trajectory = run.config.get("trajectory", {})
+        if trajectory.get("start", ...) is None and _is_point(trajectory.get("goal")) and is_one_arm(run.config):
             robot = run.config["robot"]
             key = json.dumps(robot, sort_keys=True)
-            if key not in self._tips:
-                from runner.robots.model import RobotModel
+            if key not in self._urdfs:
+                self._urdfs[key] = run.urdf
+            distance = Distance(self._urdfs[key], robot["tip"], tuple(robot["home"]), tuple(trajectory["goal"]))
+            return {**resolved, DISTANCE: distance}
+        return resolved
 
-                tip = RobotModel(run.urdf, robot["tip"]).tip_position(np.array(robot["home"], dtype=float))
-                self._tips[key] = tip.tolist()
-            home = self._tips[key]
-        return resolve(run.config, run.provenance["plant_step"], home)
+
+@lru_cache(maxsize=64)
+def _tip_position(urdf: str, tip: str, joints: tuple[float, ...]) -> tuple[float, ...]:
+    from runner.robots.model import RobotModel
+
+    return tuple(RobotModel(urdf, tip).tip_position(np.array(joints, dtype=float)).tolist())
+
+
+def _rounded(distance: float) -> float:
+    return float(f"{distance:.4g}")
 
 
 def _is_point(value: object) -> bool:
@@ -245,6 +281,8 @@ def value_text(value: Any) -> str:
         return str(value).lower()
     if isinstance(value, int | float):
         return f"{value:.12g}"
+    if isinstance(value, Distance):
+        return value_text(float(value))
     if isinstance(value, Sequence) and not isinstance(value, str):
         return f"[{', '.join(map(value_text, value))}]"
     return str(value)

@@ -17,7 +17,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.statistics.interval import SMALLEST_SAMPLE
 from runner.store import Run, Sweep
-from runner.store.finer import finer_names, write_finer
+from runner.store.finished import finer_names, write_finer
 from runner.sweeps.measurements import axes_of
 
 if TYPE_CHECKING:

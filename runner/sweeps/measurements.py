@@ -17,7 +17,7 @@ from runner.base.errors import RunnerError, StoreError, nearest
 from runner.base.sanitize import few, quoted
 from runner.store import DamagedError, Finished, Run, Sweep
 from runner.store.axes import Axes, is_simulated, override_value
-from runner.store.finer import finer_names, read_finer
+from runner.store.finished import finer_names, read_finer
 from runner.store.sweep import InShard
 from runner.sweeps.differing import Difference, Resolved
 from runner.sweeps.gathering import Gathered
@@ -98,10 +98,22 @@ def group_cells(axes: Sequence[Axis], cells: NDArray[np.intp]) -> list[tuple[lis
         axes: The axes; without axes, all cells are one group.
         cells: The cells, shape (n,).
     """
-    levels = np.column_stack([axis.level[cells] for axis in axes] or [np.zeros(len(cells), dtype=np.intp)])
-    combinations, group = np.unique(levels, axis=0, return_inverse=True)
-    some = combinations[:, : len(axes)].tolist()
-    return [(levels, cells[group.ravel() == place]) for place, levels in enumerate(some)]
+    combination = number_rows([axis.level[cells] for axis in axes], len(cells))
+    order = np.argsort(combination, kind="stable")
+    groups = np.split(cells[order], np.flatnonzero(np.diff(combination[order])) + 1) if len(cells) else []
+    return [([int(axis.level[some[0]]) for axis in axes], some) for some in groups]
+
+
+def number_rows(columns: Sequence[NDArray[np.intp]], count: int) -> NDArray[np.intp]:
+    """Return the number of each row among the distinct rows in ascending order, shape (count,).
+
+    Args:
+        columns: Columns of the rows, each of shape (count,); without columns, all rows are equal.
+        count: Number of rows.
+    """
+    if not columns:
+        return np.zeros(count, dtype=np.intp)
+    return np.asarray(np.unique(np.column_stack(columns), axis=0, return_inverse=True)[1]).ravel()
 
 
 @dataclass(frozen=True)

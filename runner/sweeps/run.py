@@ -22,7 +22,7 @@ from runner.config.compose.composer import Composer
 from runner.config.limits import SweepConfig, check_cpu_time, check_memory_together
 from runner.plugins.discovery import has_users_parts, in_use
 from runner.store.atomic import remove_leftovers
-from runner.store.finer import FOLDER as FINER
+from runner.store.finished import FINER
 from runner.store.kinds import note
 from runner.store.names import Names
 from runner.sweeps.check import Checked, check

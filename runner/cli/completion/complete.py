@@ -18,8 +18,8 @@ from argcomplete.shell_integration import shellcode
 
 from runner.base.errors import RunnerError, nearest
 from runner.cli.arguments import Names, Parser, Stored
-from runner.cli.commands import COMMANDS, build_parser
 from runner.cli.completion.overrides import Typed, metric_names, override_words
+from runner.cli.main import COMMANDS, build_parser
 from runner.store.kinds import KINDS, WORD, Kind
 
 _MOST = 1000  # words

@@ -11,12 +11,6 @@ from runner.base.errors import ConfigError
 from runner.base.paths import check_inside
 
 
-def has_data_file(resolved: Mapping[str, Any]) -> bool:
-    """Return True if a config names a data file of its trajectory."""
-    group = resolved.get("trajectory")
-    return isinstance(group, Mapping) and group.get("kind") == "from_file" and isinstance(group.get("file"), str)
-
-
 def take_data_file(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> None:
     """Put the content of a trajectory's data file into a composed config, in place.
 
@@ -27,19 +21,14 @@ def take_data_file(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> 
     Raises:
         ConfigError: if the file does not exist, or contains no motion.
     """
-    if not has_data_file(resolved):
+    group = resolved.get("trajectory")
+    if not (isinstance(group, dict) and group.get("kind") == "from_file" and isinstance(group.get("file"), str)):
         return
     from runner.trajectories.table import read_table  # for few configs
 
-    group = resolved["trajectory"]
     group["columns"] = read_table(_find(group["file"], config_dirs))
     if group.get("duration") is None:
         group["duration"] = group["columns"]["t"][-1]
-
-
-def without_file_name(trajectory: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the group of a trajectory without the name of its file."""
-    return {key: value for key, value in trajectory.items() if key != "file"}
 
 
 def _find(name: str, config_dirs: Sequence[Path]) -> Path:

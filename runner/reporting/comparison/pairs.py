@@ -13,7 +13,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.statistics import Comparison, subtract
 from runner.sweeps.differing import value_text
-from runner.sweeps.measurements import Axis, Measurements, find_axis
+from runner.sweeps.measurements import Measurements, find_axis, group_cells, number_rows
 
 SEED = "seed"
 """The axis whose levels are draws of one thing, as repetitions are."""
@@ -162,19 +162,14 @@ def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | N
     shown = [find_axis(measurements.axes, name) for name in inner]
     if chosen in shown:
         raise RunnerError(f"{axis}: is compared, so it cannot be compared within, too")
-    pooled = _rows([other for other in others if other not in shown], measurements)
-    cells: dict[tuple[int, ...], dict[int, dict[tuple[int, ...], int]]] = {}
-    for cell, (at, level, rest) in enumerate(
-        zip(_rows(shown, measurements), chosen.level.tolist(), pooled, strict=True)
-    ):
-        cells.setdefault(at, {}).setdefault(level, {})[rest] = cell
+    pooled = [other.level for other in others if other not in shown]
+    place = number_rows(pooled, len(measurements.hashes))  # equal for cells with equal levels of the pooled axes
     found = []
-    for at, levels in sorted(cells.items()):
+    for at, cells in group_cells(shown, np.arange(len(place))):
         names = {other.name: other.text(level) for other, level in zip(shown, at, strict=True)}
-        first, *rests = sorted(levels)
-        for level in rests:
-            both = [(levels[first][rest], cell) for rest, cell in levels[level].items() if rest in levels[first]]
-            a, b = np.array(both, dtype=np.intp).reshape(-1, 2).T
+        (first, of_first), *rest = ((level, some) for (level,), some in group_cells([chosen], cells))
+        for level, some in rest:
+            a, b = _partners(of_first, some, place[of_first], place[some])
             pairs = Pairs(measurements, measurements, a, b, chosen.text(first), chosen.text(level), names)
             kept = pairs.share_seeds
             if kept.any():
@@ -182,10 +177,11 @@ def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | N
     return found
 
 
-def _rows(axes: Sequence[Axis], measurements: Measurements) -> list[tuple[int, ...]]:
-    """Return the levels of each cell on some axes."""
-    levels = np.stack([axis.level for axis in axes] or [np.zeros(len(measurements.hashes), dtype=np.intp)], axis=1)
-    return list(map(tuple, levels[:, : len(axes)].tolist()))
+def _partners(of_a: Cells, of_b: Cells, places_a: Cells, places_b: Cells) -> tuple[Cells, Cells]:
+    """Return the cells whose places are in both, pair by pair, in the order of the second cells."""
+    _, a, b = np.intersect1d(places_a, places_b, return_indices=True)
+    order = np.argsort(b)
+    return of_a[a[order]], of_b[b[order]]
 
 
 def match(a: Measurements, b: Measurements) -> Pairs:
@@ -200,17 +196,33 @@ def match(a: Measurements, b: Measurements) -> Pairs:
     """
     keys = list(dict.fromkeys(axis.name for side in (a, b) for axis in side.axes))
     texts = {key: _values(key, a, b) for key in keys}
-    places = [_places([texts[key][side] for key in keys], len(one.hashes)) for side, one in enumerate((a, b))]
-    both = [place for place in places[0] if place in places[1]]
-    if not both:
+    sizes = len(a.hashes), len(b.hashes)
+    rows = number_rows([_codes([*of_a, *of_b]) for of_a, of_b in texts.values()], sum(sizes))
+    places = [some * max(sizes) + _again(some) for some in np.split(rows, [sizes[0]])]
+    of_b, of_a = _partners(np.arange(sizes[1]), np.arange(sizes[0]), places[1], places[0])
+    if not len(of_a):
         raise RunnerError(_explain_no_match(a, b, texts))
 
-    def label(place: Sequence[object]) -> Label:
-        return dict(zip(keys, map(str, place), strict=False))  # the last entry counts equal cells
+    def labels(side: int, cells: Cells) -> list[Label]:
+        return [{key: texts[key][side][cell] for key in keys} for cell in cells.tolist()]
 
-    alone = [[label(place) for place in some if place not in other] for some, other in (places, places[::-1])]
-    of_a, of_b = (np.array([some[place] for place in both]) for some in places)
-    return Pairs(a, b, of_a, of_b, a.name, b.name, {}, keys, list(map(label, both)), 0, (alone[0], alone[1]))
+    alone = [labels(side, np.setdiff1d(np.arange(sizes[side]), of)) for side, of in ((0, of_a), (1, of_b))]
+    return Pairs(a, b, of_a, of_b, a.name, b.name, {}, keys, labels(0, of_a), 0, (alone[0], alone[1]))
+
+
+def _codes(texts: Sequence[str]) -> Cells:
+    """Return a number for each text, equal for equal texts, shape (n,)."""
+    known: dict[str, int] = {}
+    return np.array([known.setdefault(text, len(known)) for text in texts], dtype=np.intp)
+
+
+def _again(rows: Cells) -> Cells:
+    """Return the number of earlier equal entries of each entry, shape (n,)."""
+    order = np.argsort(rows, kind="stable")
+    new = np.flatnonzero(np.diff(rows[order], prepend=-1))
+    again = np.empty(len(rows), dtype=np.intp)
+    again[order] = np.arange(len(rows)) - np.repeat(new, np.diff([*new, len(rows)]))
+    return again
 
 
 def keep_common_seeds(pairs: Pairs) -> Pairs:
@@ -230,29 +242,18 @@ def keep_common_seeds(pairs: Pairs) -> Pairs:
     return replace(pairs, of_a=pairs.of_a[shared], of_b=pairs.of_b[shared], labels=labels, other_seeds=others)
 
 
-def _places(columns: Sequence[Sequence[str]], cells: int) -> dict[tuple[object, ...], int]:
-    """Return the cell at each combination of values; a count behind the values tells equal cells apart."""
-    found: dict[tuple[object, ...], int] = {}
-    again: dict[tuple[object, ...], int] = {}
-    for cell, row in enumerate(zip(*columns, strict=True) if columns else [()] * cells):
-        again[row] = again.get(row, -1) + 1
-        found[(*row, again[row])] = cell
-    return found
-
-
 def _values(key: str, a: Measurements, b: Measurements) -> tuple[Sequence[str], Sequence[str]]:
     """Return the values of a key in the cells of two sweeps, written alike."""
     if key == SEED:
-        return [str(seed) for seed in np.asarray(a.seeds).tolist()], [
-            str(seed) for seed in np.asarray(b.seeds).tolist()
-        ]
+        of_a, of_b = (list(map(str, np.asarray(side.seeds).tolist())) for side in (a, b))
+        return of_a, of_b
     resolved = [side.resolved(key) for side in (a, b)]
     first, second = _typed(key, a), _typed(key, b)
     known = all(value is not None and not isinstance(value, dict) for some in resolved for value in some)
     if first is not None and second is not None and not known:
         return first, second
-    of_a, of_b = ([_written(value) for value in some] for some in resolved)
-    return [of_a[place] for place in a.config_of_cells], [of_b[place] for place in b.config_of_cells]
+    texts_a, texts_b = ([_written(value) for value in some] for some in resolved)
+    return [texts_a[place] for place in a.config_of_cells], [texts_b[place] for place in b.config_of_cells]
 
 
 def _typed(key: str, side: Measurements) -> Sequence[str] | None:

@@ -32,8 +32,8 @@ from runner.reporting.document import (
     Text,
 )
 from runner.reporting.markup import literal, literals
-from runner.reporting.metric_titles import capital, title
-from runner.reporting.sweep.subject import MOST_METRICS, key_label, shorten, spans_decades, whole_metrics
+from runner.reporting.metric_titles import capital, title, whole_metrics
+from runner.reporting.sweep.subject import MOST_METRICS, key_label, shorten, spans_decades
 from runner.sweeps.measurements import Measurements
 
 _MOST_CHARACTERS = 36  # of the names of all cells below a panel

@@ -11,8 +11,8 @@ from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.comparison.pairs import SEED, Pairs, label_text, level_pairs
 from runner.reporting.document import Block, Section, Table, Text
 from runner.reporting.markup import literal, literals
-from runner.reporting.metric_titles import capital, title
-from runner.reporting.sweep.subject import Subject, first_screen
+from runner.reporting.metric_titles import capital, first_screen, title
+from runner.reporting.sweep.subject import Subject
 from runner.statistics import SMALLEST_SAMPLE
 from runner.sweeps.measurements import Axis
 

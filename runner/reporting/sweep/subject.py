@@ -1,7 +1,6 @@
 """Subject of a sweep report: cells, compared metrics and their order."""
 
-import re
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.quantities import label_with_unit, quantity
 from runner.config.compose.units import key_unit
-from runner.reporting.metric_titles import metric_label, title
+from runner.reporting.metric_titles import COSTS, metric_label, title, whole_metrics
 from runner.sweeps.differing import UNITS
 from runner.sweeps.measurements import Axis, Measurements
 from runner.sweeps.table import median_ends
@@ -32,20 +31,7 @@ QUANTILE_RULE = (
 )
 """What reports say of their quantiles."""
 
-_PREFERRED = (
-    "max_tracking_error",
-    "settling_time",
-    "steady_state_error",
-    "peak_torque",
-    "cross_track_error",
-    "saturation_fraction",
-    "control_effort",
-)
-COSTS = ("peak_torque", "rms_torque", "control_effort", "energy")
-"""Metrics of what a motion costs."""
-
 _DECADE = 10.0
-_PART = re.compile(r".*_([xyz]|q\d+)$")
 _LONGEST = 60  # characters of a value in a table
 
 
@@ -158,22 +144,6 @@ def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:
     if cost is not None and cost not in chosen:
         chosen[-1] = cost  # what the others are traded off against
     return Subject(measurements, tuple(chosen))
-
-
-def is_part(name: str) -> bool:
-    """Return True for a metric of one direction or joint, such as peak_torque_q1."""
-    return _PART.match(name) is not None
-
-
-def whole_metrics(known: Collection[str]) -> list[str]:
-    """Return metrics without those of one direction or joint, errors first, as they are compared."""
-    return [name for name in dict.fromkeys([*_PREFERRED, *known]) if name in known and not is_part(name)]
-
-
-def first_screen(metrics: Sequence[str]) -> list[str]:
-    """Return the metrics of a first screen, of some in order: the first, and what it costs or else the second."""
-    costs = [name for name in COSTS if name in metrics[1:]] or metrics[1:]
-    return [*metrics[:1], *costs[:1]]
 
 
 def spans_decades(values: FloatArray) -> bool:

@@ -9,8 +9,8 @@ from runner.base.quantities import quantity
 from runner.reporting.charts.thinning import POINTS, spaced_indices
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
-from runner.reporting.metric_titles import title
-from runner.reporting.sweep.subject import COSTS, Subject, spans_decades
+from runner.reporting.metric_titles import COSTS, title
+from runner.reporting.sweep.subject import Subject, spans_decades
 
 _MOST_ROWS = 12
 

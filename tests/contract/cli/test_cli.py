@@ -13,7 +13,7 @@ import yaml
 from support.engines import ASKED
 from support.printed import without_caveats
 
-from runner.cli.commands import COMMANDS, GROUPS, GUIDE, build_parser
+from runner.cli.main import COMMANDS, GROUPS, GUIDE, build_parser
 from runner.config.compose.options import groups
 from runner.store import open_sweep
 from runner.sweeps import job

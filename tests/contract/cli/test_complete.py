@@ -2,8 +2,8 @@
 
 import pytest
 
-from runner.cli.commands import COMMANDS
 from runner.cli.list import TOPICS
+from runner.cli.main import COMMANDS
 from runner.config.compose.options import group_options
 from runner.plugins.metric_units import units
 

@@ -5,8 +5,8 @@ import pytest
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.former_names import FILES, OPTIONS
 from runner.base.former_names import TOPICS as FORMER_TOPICS
-from runner.cli.commands import COMMANDS, OVERRIDES, build_parser
 from runner.cli.list import TOPICS
+from runner.cli.main import COMMANDS, OVERRIDES, build_parser
 
 
 @pytest.mark.parametrize(("former", "new"), FORMER_COMMANDS.items())

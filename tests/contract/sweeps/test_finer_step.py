@@ -6,7 +6,7 @@ from support.engines import ASKED
 
 from runner.base.errors import StoreError
 from runner.reporting.comparison.pairs import compare, match
-from runner.store.finer import finer_names, read_finer
+from runner.store.finished import finer_names, read_finer
 from runner.sweeps.finer_step import DRAWS, work_out
 from runner.sweeps.job import run
 from runner.sweeps.measurements import measure_run

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from runner.cli.columns import COMPARED, align_columns, answer_cells
-from runner.reporting.answers import Asked, judge
+from runner.base.sanitize import align_columns
+from runner.reporting.answers import HEADER, Asked, judge
 from runner.reporting.comparison.sweeps import letter
 from runner.statistics import compare_paired
 
@@ -21,11 +21,9 @@ def test_no_cell_speaks_to_the_terminal():
 
 def test_an_answer_fills_its_columns():
     samples = (np.arange(6.0), np.arange(6.0) + 2.0), (np.zeros(2), np.ones(2))
-    shifted, few = (
-        answer_cells(judge([Asked("energy", "J", compare_paired(*each))], ["energy"])[0]) for each in samples
-    )
+    shifted, few = (judge([Asked("energy", "J", compare_paired(*each))], ["energy"])[0].plain_cells for each in samples)
     assert shifted == ["2", "2 to 2", "6", "1.00", "0.031", "larger"]
-    assert len(shifted) == 1 + len(COMPARED) + 1
+    assert len(shifted) == len(HEADER) + 1
     assert few == ["1", "-", "2", "1.00", "-", "too few pairs to say (2 of 6)"]
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from runner.statistics.signed_rank import EXACT_UP_TO, SignedRanks
+from runner.statistics.paired import EXACT_UP_TO, SignedRanks
 
 LEVELS = (0.2, 0.05, 0.0125, 0.003)
 
