@@ -1,8 +1,11 @@
-"""Rigid-body model from a robot's config: URDF and MJCF files, and arms mounted on each other."""
+"""Outline and rigid-body model from a robot's config: URDF and MJCF files, and arms mounted on each other."""
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 
@@ -11,7 +14,7 @@ from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
 from runner.robots.armature import armature_file
-from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf
+from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf, with_payloads
 from runner.robots.inertials import Payload, set_file
 from runner.robots.joint_dynamics import dynamics_of
 from runner.robots.mjcf_files import is_mjcf
@@ -19,92 +22,176 @@ from runner.robots.model import RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
 from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool
+from runner.robots.tree import check_tip, tree_of
+from runner.robots.urdf_values import limit_of
 from runner.schema.per_joint import expand
 from runner.sensing.force_torque import ForceTorqueConfig
 
 _KEPT = 8
 _AT_LIMIT = 1e-9  # rad or m
 _TURN = 2.0 * np.pi
+_outlines: dict[tuple[object, ...], "RobotOutline"] = {}
 _built: dict[tuple[object, ...], Robot] = {}
+T = TypeVar("T")
 
 
-def build_robot(
-    config: RobotConfig, gravity: float, config_dirs: Sequence[Path] = (), sensor: ForceTorqueConfig | None = None
-) -> Robot:
-    """Return the robot that a config describes; runs with equal files and values share it.
+@dataclass(frozen=True)
+class ArmOutline:
+    """An arm as its config and its file describe it, without a rigid-body model.
+
+    Attributes:
+        name: Name of the stage.
+        config: Its config.
+        path: Its file.
+        urdf: Text of its URDF, without payload and tool.
+        prefix: Prefix of its names in the URDF of the whole robot.
+        place: Its mount on the arm below; None for the first arm.
+        joint_names: Names of its joints, from the base outwards.
+        joint_units: Unit of each joint's position: rad, or m for a prismatic joint.
+        effort_limits: Effort limit of each joint, in N m; infinite where there is none.
+        home: Position of each joint at home, in rad.
+    """
+
+    name: str
+    config: ArmConfig
+    path: Path
+    urdf: str
+    prefix: str
+    place: Mount | None
+    joint_names: tuple[str, ...]
+    joint_units: tuple[str, ...]
+    effort_limits: tuple[float, ...]
+    home: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class RobotOutline:
+    """A robot as its config and its files describe it.
+
+    Attributes:
+        config: The robot's config.
+        stages: The arms, from the base outwards.
+        files: The files read, each with its time of change and size.
+    """
+
+    config: RobotConfig
+    stages: tuple[ArmOutline, ...]
+    files: tuple[object, ...]
+
+    @property
+    def stage_names(self) -> tuple[str, ...]:
+        """Names of the stages."""
+        return tuple(stage.name for stage in self.stages)
+
+    @property
+    def effort_limits(self) -> FloatArray:
+        """Effort limit of each joint, shape (nq,), in N m; infinite where there is none."""
+        return np.concatenate([stage.effort_limits for stage in self.stages])
+
+
+def read_outline(config: RobotConfig, config_dirs: Sequence[Path] = ()) -> RobotOutline:
+    """Return the outline of a robot; runs with equal files and values share it.
 
     Args:
         config: The robot's config.
-        gravity: Magnitude of gravity along -z of the base, in m/s^2.
         config_dirs: Config folders of the user, searched for URDFs and MJCFs.
-        sensor: Config of the force/torque sensor, whose mass loads the last arm's tip frame; None for no sensor.
 
     Raises:
-        ConfigError: for a file that cannot be found or built, a frame or link that does not exist, a configuration or
-            friction of the wrong length, a configuration beyond the joint limits, or names that clash between stages.
+        ConfigError: for a file that cannot be found or read, a frame or link that does not exist, a configuration or
+            friction of the wrong length, a configuration beyond the joint limits, a wrong mount, or
+            names that clash between stages.
     """
     paths = [find_arm(key, arm, config_dirs) for key, arm in keyed_arms(config)]
-    files = [
-        file
+    files = tuple(
+        (file, file.stat().st_mtime_ns, file.stat().st_size)
         for path, arm in zip(paths, config.arms.values(), strict=True)
         for file in (*(mjcf_of(path).files if arm.mjcf else [path]), set_file(path), armature_file(path))
         if file.exists()
-    ]
-    key = (
-        config.model_dump_json(),
-        gravity,
-        None if sensor is None else (sensor.mass, sensor.height),
-        *((file, file.stat().st_mtime_ns, file.stat().st_size) for file in files),
     )
-    if key not in _built:
-        if len(_built) == _KEPT:
-            _built.clear()
-        _built[key] = _build(config, gravity, paths, sensor)
-    return _built[key]
+    return _kept(_outlines, (config.model_dump_json(), files), lambda: _read(config, paths, files))
+
+
+def build_robot(outline: RobotOutline, gravity: float, sensor: ForceTorqueConfig | None = None) -> Robot:
+    """Return the robot of an outline; runs with equal files and values share it.
+
+    Args:
+        outline: The outline.
+        gravity: Magnitude of gravity along -z of the base, in m/s^2.
+        sensor: Config of the force/torque sensor, whose mass loads the last arm's tip frame; None for no sensor.
+
+    Raises:
+        ConfigError: for an arm that cannot be built, or a tool or payload on a frame that is not a link.
+    """
+    load = None if sensor is None else (sensor.mass, sensor.height)
+    key = (outline.config.model_dump_json(), outline.files, gravity, load)
+    return _kept(_built, key, lambda: _build(outline, gravity, sensor))
 
 
 def build_loaded(
-    config: RobotConfig, gravity: float, config_dirs: Sequence[Path] = (), sensor: ForceTorqueConfig | None = None
+    outline: RobotOutline, gravity: float, sensor: ForceTorqueConfig | None = None
 ) -> tuple[tuple[float, Robot], ...]:
     """Return the time of each change of payload, in s, and the robot from then on; see build_robot."""
-    changes = config.payload.schedule
-    loads = [config.payload.model_copy(update={"mass": change.mass, "schedule": []}) for change in changes]
-    robots = [build_robot(config.model_copy(update={"payload": load}), gravity, config_dirs, sensor) for load in loads]
-    return tuple((change.at, robot) for change, robot in zip(changes, robots, strict=True))
+    config = outline.config
+    found = []
+    for change in config.payload.schedule:
+        payload = config.payload.model_copy(update={"mass": change.mass, "schedule": []})
+        loaded = replace(outline, config=config.model_copy(update={"payload": payload}))
+        found.append((change.at, build_robot(loaded, gravity, sensor)))
+    return tuple(found)
 
 
-def _build(config: RobotConfig, gravity: float, paths: Sequence[Path], sensor: ForceTorqueConfig | None) -> Robot:
-    several = len(config.arms) > 1
-    stages: list[Stage] = []
-    whole, prefix, tip, first = "", "", "", 0
+def _kept(known: dict[tuple[object, ...], T], key: tuple[object, ...], make: Callable[[], T]) -> T:
+    if key not in known:
+        if len(known) == _KEPT:
+            known.clear()
+        known[key] = make()
+    return known[key]
+
+
+def _read(config: RobotConfig, paths: Sequence[Path], files: tuple[object, ...]) -> RobotOutline:
+    stages: list[ArmOutline] = []
+    joints: list[str] = []
+    whole = below = ""
     for path, name, (key, arm) in zip(paths, config.arms, keyed_arms(config), strict=True):
-        outermost = len(stages) + 1 == len(config.arms)
-        payloads = _payloads(config, arm.tip, sensor) if outermost else []
+        prefix, place = f"{name}_" if stages else "", _find_mount(key, arm, below, first=not stages)
         with _told_of(arm):
-            urdf = read_urdf(path, arm.masses, arm.armature, arm.inertials, arm.velocity_limits, payloads)
-            own_tip = arm.tip
-            if outermost and config.tool is not None:
-                urdf, own_tip = mount_tool(urdf, arm.tip, ToolBody(**config.tool.model_dump())), TOOL_TIP
-            model = RobotModel(urdf, own_tip, gravity)
-        base_frame = None
-        if not stages:
-            _refuse_mount(key, arm)
-            whole, tip = urdf, own_tip
-        else:
-            below, prefix = prefix, f"{name}_"
-            whole, base_frame = _mount(key, whole, urdf, below, prefix, arm)
-            tip = prefix + own_tip
-        joints = slice(first, first + model.nq)
-        home = np.array(expand(f"{key}.home", arm.home, model.joint_names))
-        _check_home(f"{key}.home", model, home)
-        file = dynamics_of(read_arm(path), path.name, gravity)
-        stages.append(Stage(name, model, urdf, joints, home, base_frame, file))
-        first = joints.stop
-    flange = prefix + list(config.arms.values())[-1].tip
-    whole_model = RobotModel(whole, tip, gravity) if several else stages[0].model
+            urdf = read_urdf(path, arm.masses, arm.armature, arm.inertials, arm.velocity_limits)
+            tree = tree_of(urdf, path)
+            check_tip(arm.tip, [*tree.links, *tree.joints])
+        whole = urdf if place is None else mount(whole, urdf, prefix, place)[0]
+        chain = [tree.joints[joint] for joint in tree.chain]
+        units = tuple("m" if joint.get("type") == "prismatic" else "rad" for joint in chain)
+        home = expand(f"{key}.home", arm.home, tree.chain)
+        limits = [(limit_of(joint, "lower"), limit_of(joint, "upper")) for joint in chain]
+        _check_home(f"{key}.home", tree.chain, units, limits, home)
+        efforts = tuple(limit_of(joint, "effort") for joint in chain)
+        joints += [prefix + joint for joint in tree.chain]
+        stages.append(ArmOutline(name, arm, path, urdf, prefix, place, tuple(tree.chain), units, efforts, tuple(home)))
+        below = prefix
     for kind, value in (("viscous", config.friction.viscous), ("coulomb", config.friction.coulomb)):
-        expand(f"robot.friction.{kind}", value, whole_model.joint_names)
-    return Robot(whole, whole_model, tuple(stages), flange)
+        expand(f"robot.friction.{kind}", value, joints)
+    return RobotOutline(config, tuple(stages), files)
+
+
+def _build(outline: RobotOutline, gravity: float, sensor: ForceTorqueConfig | None) -> Robot:
+    config, last = outline.config, outline.stages[-1]
+    stages: list[Stage] = []
+    whole, tip, first = "", "", 0
+    for arm in outline.stages:
+        urdf, own_tip = arm.urdf, arm.config.tip
+        with _told_of(arm.config):
+            if arm is last:
+                urdf = with_payloads(urdf, _payloads(config, own_tip, sensor))
+                if config.tool is not None:
+                    urdf, own_tip = mount_tool(urdf, own_tip, ToolBody(**config.tool.model_dump())), TOOL_TIP
+            model = RobotModel(urdf, own_tip, gravity)
+        whole, base_frame = (urdf, None) if arm.place is None else mount(whole, urdf, arm.prefix, arm.place)
+        tip, joints = arm.prefix + own_tip, slice(first, first + model.nq)
+        file = dynamics_of(read_arm(arm.path), arm.path.name, gravity)
+        stages.append(Stage(arm.name, model, urdf, joints, np.array(arm.home), base_frame, file))
+        first = joints.stop
+    model = RobotModel(whole, tip, gravity) if len(stages) > 1 else stages[0].model
+    return Robot(whole, model, tuple(stages), last.prefix + last.config.tip)
 
 
 def keyed_arms(config: RobotConfig) -> list[tuple[str, ArmConfig]]:
@@ -172,15 +259,19 @@ def _told_of(arm: ArmConfig) -> Iterator[None]:
         raise ConfigError(told, error.hint) from None
 
 
-def _check_home(key: str, model: RobotModel, home: FloatArray) -> None:
+def _check_home(
+    key: str,
+    names: Sequence[str],
+    units: Sequence[str],
+    limits: Sequence[tuple[float, float]],
+    home: Sequence[float],
+) -> None:
     problems = []
-    for name, unit, value, lower, upper in zip(
-        model.joint_names, model.joint_units, home, *model.position_limits, strict=True
-    ):
+    for name, unit, (lower, upper), value in zip(names, units, limits, home, strict=True):
         if unit == "rad" and abs(value) > _TURN and lower <= value <= upper:
             problems.append(f"{key}: {name} at {value:g} rad is more than a whole turn; degrees? write {value:g}deg")
         if not lower - _AT_LIMIT <= value <= upper + _AT_LIMIT:
-            turned = np.radians(value)
+            turned = math.radians(value)
             degrees = unit == "rad" and abs(value) > _TURN and lower <= turned <= upper
             hint = f"; degrees? write {value:g}deg, which is {turned:.4g} rad" if degrees else ""
             problems.append(
@@ -199,13 +290,11 @@ def _payloads(config: RobotConfig, flange: str, sensor: ForceTorqueConfig | None
     return payloads
 
 
-def _mount(key: str, whole: str, urdf: str, below: str, prefix: str, arm: ArmConfig) -> tuple[str, str]:
+def _find_mount(key: str, arm: ArmConfig, below: str, first: bool) -> Mount | None:
+    """Return the mount of an arm on the arm below, whose names have a prefix; None for the first arm."""
     place = arm.mount if isinstance(arm, StageConfig) else None
-    if place is None:
-        raise ConfigError([f"{key}.mount: missing; a stage above the first needs frame, translation and rotation"])
-    return mount(whole, urdf, prefix, Mount(below + place.frame, place.translation, place.rotation))
-
-
-def _refuse_mount(key: str, arm: ArmConfig) -> None:
-    if isinstance(arm, StageConfig) and arm.mount is not None:
+    if first and place is not None:
         raise ConfigError([f"{key}.mount: the first stage is fixed to the ground; allowed: null"])
+    if not first and place is None:
+        raise ConfigError([f"{key}.mount: missing; a stage above the first needs frame, translation and rotation"])
+    return None if place is None else Mount(below + place.frame, place.translation, place.rotation)

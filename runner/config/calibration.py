@@ -11,7 +11,7 @@ from runner.base.errors import ConfigError, nearest
 from runner.base.sanitize import quoted
 from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
-from runner.config.arms import build_robot
+from runner.config.arms import build_robot, read_outline
 from runner.config.compose.compose import Composed
 from runner.config.compose.problems import Problems, require
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
@@ -78,9 +78,8 @@ def validate_calibration(composed: Composed) -> CalibrationConfig:
     sensor = problems.attempt(_parse_sensor, keys)
     keys = problems.attempt(group_of, CALIBRATIONS.group, resolved)
     calibration = cast("KindConfig | None", problems.attempt(parse_kind, CALIBRATIONS, keys))
-    arm = problems.attempt(
-        lambda robot, settings: build_robot(robot, settings.gravity, composed.config_dirs, sensor), robot, settings
-    )
+    outline = problems.attempt(read_outline, robot, composed.config_dirs)
+    arm = problems.attempt(lambda outline, settings: build_robot(outline, settings.gravity, sensor), outline, settings)
     bench = None if calibration is None else problems.attempt(_make_bench, robot, arm, sensor)
     procedure = problems.attempt(CALIBRATIONS.build, calibration, bench)
     problems.report()

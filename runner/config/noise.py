@@ -8,8 +8,8 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.errors import ConfigError
+from runner.config.arms import RobotOutline
 from runner.config.compose.problems import Problems
-from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, by_stage
 from runner.schema.units import JointPosition, RadiansPerSecond
@@ -40,13 +40,13 @@ class NoiseConfig(StrictModel):
     velocity: Velocity
     velocity_bandwidth: RadiansPerSecond[PositiveFloat] = DEFAULT_BANDWIDTH
 
-    def by_joint(self, arm: Robot) -> EncoderNoise:
+    def by_joint(self, arm: RobotOutline) -> EncoderNoise:
         """Return the noise, bias and resolution of each joint of a robot.
 
         Raises:
             ConfigError: for values that do not fit the robot's stages.
         """
-        names, joints = arm.stage_names, [stage.model.nq for stage in arm.stages]
+        names, joints = arm.stage_names, [len(stage.joint_names) for stage in arm.stages]
         # An omitted key is zero, also for a robot of several stages.
         zero: float | dict[str, float] = dict.fromkeys(names, 0.0) if len(names) > 1 else 0.0
         biases = self.bias if "bias" in self.model_fields_set else zero
@@ -70,14 +70,14 @@ class NoiseConfig(StrictModel):
         )
 
 
-def _no_angles(key: str, values: Sequence[float], arm: Robot) -> list[str]:
+def _no_angles(key: str, values: Sequence[float], arm: RobotOutline) -> list[str]:
     """Return a problem for each stage whose revolute joints have an error of more than half a turn."""
     several = len(arm.stages) > 1
     return [
         f"{key}{f'.{stage.name}' if several else ''}: {value:g} rad is more than half a turn, and no measurement of an "
         f"angle; degrees? write {value:g}deg"
         for stage, value in zip(arm.stages, values, strict=True)
-        if abs(value) > math.pi and "rad" in stage.model.joint_units
+        if abs(value) > math.pi and "rad" in stage.joint_units
     ]
 
 

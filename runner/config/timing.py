@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from runner.base.errors import ConfigError
+from runner.config.arms import RobotOutline
 from runner.config.settings import RunSettings
 from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo
-from runner.robots.robot import Robot
 from runner.schema.per_stage import by_stage
 from runner.trajectories import Trajectory
 
@@ -57,7 +57,7 @@ class Timing:
         return self.late[0] if self.even and len(set(self.late)) == 1 else None
 
 
-def count_steps(arm: Robot, plant: PlantConfig, controller: ControllerConfig) -> Steps:
+def count_steps(arm: RobotOutline, plant: PlantConfig, controller: ControllerConfig) -> Steps:
     """Return the time steps for a plant and its controller.
 
     Raises:
@@ -111,7 +111,7 @@ def count_ticks(settings: RunSettings, steps: Steps, path: Trajectory) -> int:
     return math.ceil(duration / tick - 1e-9)
 
 
-def _periods(arm: Robot, period: float | Mapping[str, float]) -> dict[str, float]:
+def _periods(arm: RobotOutline, period: float | Mapping[str, float]) -> dict[str, float]:
     """Return the period of each loop by its key; a controller with one period has one loop for all stages."""
     if isinstance(period, Mapping):
         by_name: list[float] = by_stage("controller.period", period, arm.stage_names)

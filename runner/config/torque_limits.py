@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.robots.robot import Robot
+from runner.config.arms import RobotOutline
 from runner.schema.model import StrictModel
 from runner.schema.per_joint import expand
 from runner.schema.per_stage import TorquePerStage, by_stage
@@ -20,18 +20,18 @@ class TorqueLimitsConfig(StrictModel):
 
     max: JointTorque[TorquePerStage | None]
 
-    def by_joint(self, arm: Robot) -> FloatArray:
+    def by_joint(self, arm: RobotOutline) -> FloatArray:
         """Return the limit of each joint of a robot, shape (nq,), in N m: the effort in the URDF if it is smaller.
 
         Raises:
             ConfigError: for values that do not fit the robot's stages and joints.
         """
-        efforts = arm.model.effort_limits
+        efforts = arm.effort_limits
         if self.max is None:
             return efforts
         limits: list[float] = []
         values: list[float | list[float]] = by_stage("torque_limits.max", self.max, arm.stage_names)
         for stage, value in zip(arm.stages, values, strict=True):
             key = f"torque_limits.max.{stage.name}" if len(arm.stages) > 1 else "torque_limits.max"
-            limits += expand(key, value, stage.model.joint_names)
+            limits += expand(key, value, stage.joint_names)
         return np.minimum(limits, efforts)

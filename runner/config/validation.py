@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.cache import Memory
 from runner.base.errors import ConfigError
 from runner.base.sanitize import few
-from runner.config.arms import build_loaded, build_robot
+from runner.config.arms import build_loaded, build_robot, read_outline
 from runner.config.compose.problems import Problems, require
 from runner.config.cross_checks import (
     check_computation,
@@ -36,7 +36,6 @@ from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo, RotatesMountedBase
 from runner.plugins.registry import KindConfig
-from runner.robots.model import STANDARD_GRAVITY
 from runner.robots.robot import Robot, end_points
 from runner.trajectories import TRAJECTORIES, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
@@ -63,15 +62,16 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
     settings, robot, sensor = (groups.get(name) for name in ("settings", "robot", "wrist_sensor"))
     plant, controller = groups.get("plant"), groups.get("controller")
     problems.recall(check_payload, robot, groups.get("mismatch"))
-    gravity = STANDARD_GRAVITY if settings is None else settings.gravity
-    made_of = (robot, gravity, config_dirs, *([] if sensor is None else [sensor]))
-    arm = problems.recall(build_robot, *made_of)
-    noise = problems.recall(NoiseConfig.by_joint, groups.get("noise"), arm)
-    torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), arm)
-    problems.recall(check_points, arm, groups.get("trajectory"))
+    outline = problems.recall(read_outline, robot, config_dirs)
+    noise = problems.recall(NoiseConfig.by_joint, groups.get("noise"), outline)
+    torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), outline)
     problems.recall(_check_commands, plant, controller)
+    steps = problems.recall(count_steps, outline, plant, controller)
+    problems.report()
+    made_of = (outline, require(settings).gravity, *([] if sensor is None else [sensor]))
+    arm = problems.recall(build_robot, *made_of)
+    problems.recall(check_points, arm, groups.get("trajectory"))
     problems.recall(_check_mass, arm, plant)
-    steps = problems.recall(count_steps, arm, plant, controller)
     problems.report()
     loaded = problems.recall(build_loaded, *made_of)
     built = _build(groups, require(arm), require(steps), problems)

@@ -20,7 +20,7 @@ from runner.robots.inertials import (
     scale_inertial,
 )
 from runner.robots.mjcf_files import is_mjcf
-from runner.robots.tree import UrdfTree, make_tree, moves, read_tree
+from runner.robots.tree import UrdfTree, moves, read_tree, tree_of
 from runner.robots.urdf_values import TENSOR, absurd_inertial, number, wrong_limits, wrong_places
 
 if TYPE_CHECKING:
@@ -67,8 +67,7 @@ def read_arm(path: Path) -> UrdfTree:
     """
     if is_mjcf(path):
         mjcf = mjcf_of(path)
-        tree = make_tree(ET.fromstring(mjcf.urdf), path)  # noqa: S314 - our own text
-        return replace(tree, ties=mjcf.ties, home=mjcf.home)
+        return replace(tree_of(mjcf.urdf, path), ties=mjcf.ties, home=mjcf.home)
     return read_tree(path)
 
 
@@ -85,7 +84,6 @@ def read_urdf(
     armature: float | Sequence[float] | str = 0.0,
     inertials: str | None = None,
     velocity_limits: Mapping[str, float] | None = None,
-    payloads: Sequence[Payload] = (),
 ) -> str:
     """Return an arm as the text of a URDF with the given changes, and without meshes, which no part of a run reads.
 
@@ -97,7 +95,6 @@ def read_urdf(
             One for all joints, a list with one for each, or the name of a set; see armature_by_joint.
         inertials: Set of inertials that comes in place of the file's own, before `masses`; see replace_inertials.
         velocity_limits: Largest speed of joints by name, in rad/s; joints not named keep theirs.
-        payloads: Point masses that links carry.
 
     Raises:
         ConfigError: if the file is none of one serial arm, a set, link or joint named does not exist, a link named
@@ -126,11 +123,24 @@ def read_urdf(
     for name, mass in masses.items():
         scale_inertial(links[name], mass)
     write_armature(tree, armature_by_joint(tree, path, armature))
+    drop_shapes(links)
+    return ET.tostring(tree.robot, encoding="unicode")
+
+
+def with_payloads(urdf: str, payloads: Sequence[Payload]) -> str:
+    """Return the text of a URDF with point masses that links carry.
+
+    Raises:
+        ConfigError: if a payload is on a frame that is not a link.
+    """
+    if not any(payload.mass for payload in payloads):
+        return urdf
+    robot = ET.fromstring(urdf)  # noqa: S314 - our own text
+    links = {link.get("name", ""): link for link in robot.findall("link")}
     for payload in payloads:
         if payload.mass:
             add_payload(links, payload)
-    drop_shapes(links)
-    return ET.tostring(tree.robot, encoding="unicode")
+    return ET.tostring(robot, encoding="unicode")
 
 
 def drop_shapes(links: Mapping[str, ET.Element]) -> None:

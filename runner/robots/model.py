@@ -9,8 +9,10 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.engine_output import caught_output
-from runner.base.errors import ConfigError, nearest
+from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
+from runner.robots.tree import check_tip
+from runner.robots.urdf_values import NO_LIMIT
 
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
@@ -18,7 +20,6 @@ _MOST_JOINTS = 64
 _SAID = (
     r"\s*(Error|Warning|Info|Debug):|\s+at line \d+ in "  # how the reader of URDFs that Pinocchio uses begins a line
 )
-_NO_LIMIT = 1e6  # SI units; URDF demands limits, and a file without them writes a large number
 
 
 class RobotModel:
@@ -46,13 +47,7 @@ class RobotModel:
         joints = list(self.pin_model.joints)[1:]
         self.joint_names: tuple[str, ...] = tuple(list(self.pin_model.names)[1:])
         _check_joints(self.pin_model, self.joint_names)
-        frames = [frame.name for frame in self.pin_model.frames]
-        if tip not in frames:
-            raise ConfigError([f"robot.tip: no frame '{tip}'{nearest(tip, frames)}; frames: {', '.join(frames)}"])
-        if frames.count(tip) > 1:
-            raise ConfigError(
-                [f"robot.tip: '{tip}' is the name of {frames.count(tip)} links and joints; rename all but one"]
-            )
+        check_tip(tip, [frame.name for frame in self.pin_model.frames])
         self.tip_name = tip
         self.tip_frame: int = self.pin_model.getFrameId(tip)
         self.nq: int = self.pin_model.nq
@@ -308,5 +303,5 @@ def _check_joints(model: "pin.Model", names: Sequence[str]) -> None:
 
 def _limits(values: FloatArray) -> FloatArray:
     """Return limits with inf where they only say that there is none."""
-    limits: FloatArray = np.where(values < _NO_LIMIT, values, np.inf)
+    limits: FloatArray = np.where(values < NO_LIMIT, values, np.inf)
     return limits

@@ -68,6 +68,20 @@ class UrdfTree:
         return f"{said}; joints: {', '.join(self.chain)}"
 
 
+def check_tip(tip: str, frames: Sequence[str]) -> None:
+    """Check that a tip is the name of one of an arm's frames: its links and joints.
+
+    Raises:
+        ConfigError: if it is the name of none, or of several.
+    """
+    if tip not in frames:
+        raise ConfigError([f"robot.tip: no frame '{tip}'{nearest(tip, frames)}; frames: {', '.join(frames)}"])
+    if frames.count(tip) > 1:
+        raise ConfigError(
+            [f"robot.tip: '{tip}' is the name of {frames.count(tip)} links and joints; rename all but one"]
+        )
+
+
 def end_of(joint: ET.Element, role: str) -> str:
     """Return the link at an end of a joint; role is "parent" or "child"."""
     element = joint.find(role)
@@ -87,6 +101,11 @@ def read_tree(path: Path) -> UrdfTree:
             do not form one tree.
     """
     return make_tree(parse_xml(path), path)
+
+
+def tree_of(urdf: str, path: Path) -> UrdfTree:
+    """Return the tree of a URDF's text that was made from a checked file; see make_tree."""
+    return make_tree(ET.fromstring(urdf), path)  # noqa: S314 - our own text
 
 
 def make_tree(robot: ET.Element, path: Path) -> UrdfTree:

@@ -8,6 +8,8 @@ from runner.base.sanitize import quoted
 from runner.robots.tree import moves
 from runner.schema.plausibility import LARGEST, SMALLEST
 
+NO_LIMIT = 1e6
+"""Size, in SI units, from which a limit says that there is none: URDF demands limits of joints."""
 TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -17,6 +19,12 @@ def number(element: ET.Element | None, key: str) -> float:
         return math.nan if element is None else float(element.get(key, "nan"))
     except ValueError:
         return math.nan
+
+
+def limit_of(joint: ET.Element, key: str) -> float:
+    """Return a limit of a joint that moves, in SI units: infinite if the file sets none, 0 if it omits the value."""
+    value = number(joint.find("limit"), key)
+    return 0.0 if math.isnan(value) else value if abs(value) < NO_LIMIT else math.copysign(math.inf, value)
 
 
 def wrong_places(element: ET.Element) -> Iterator[tuple[str, str]]:

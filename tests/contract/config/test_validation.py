@@ -130,14 +130,19 @@ def test_all_problems_are_said_at_once(cli, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_limits_and_reach_are_checked_although_a_setting_is_wrong(cli):
-    ending = cli("seed=abc", "torque_limits.max=[1,2]", "trajectory.goal=[3,3,3]", "plant.step=0.003")
+def test_limits_and_times_are_checked_although_a_setting_is_wrong(cli):
+    wrong = ("torque_limits.max=[1,2]", "plant.step=0.003")
+    ending = cli("seed=abc", *wrong)
     assert [line.split()[1] for line in ending.err.splitlines()[1:]] == [
         "seed:",
         "torque_limits.max:",
-        "trajectory.goal:",
         "controller.period:",
     ]
+
+
+def test_start_and_goal_are_checked_together(cli):
+    ending = cli("robot=macro", "trajectory=quintic", "trajectory.goal=[3,3,3]", "trajectory.start=[0,0,2.5]")
+    assert [line.split()[1] for line in ending.err.splitlines()[1:]] == ["trajectory.start:", "trajectory.goal:"]
 
 
 def test_the_error_holds_its_problems():

@@ -6,6 +6,7 @@ import yaml
 
 from runner.base.errors import ConfigError
 from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import with_payloads
 from runner.robots.inertials import Payload, set_file
 
 TENSOR = {"ixx": 0.2, "ixy": 0.0, "ixz": 0.0, "iyy": 0.3, "iyz": 0.0, "izz": 0.4}
@@ -106,7 +107,8 @@ def test_a_set_file_that_is_none(arm, text):
 def test_a_payload_merges_with_the_inertial_that_is_there(arm):
     path, place = arm(), np.array([-0.3, 0.1, 0.7])
     plain, loaded = (
-        RobotModel(read_urdf(path, {}, payloads=payloads), "hand") for payloads in ([], [Payload("hand", 1.5, place)])
+        RobotModel(with_payloads(read_urdf(path, {}), payloads), "hand")
+        for payloads in ([], [Payload("hand", 1.5, place)])
     )
     before, after = plain.pin_model.inertias[1], loaded.pin_model.inertias[1]
     assert after.mass == pytest.approx(3.5, rel=1e-15)
@@ -118,9 +120,9 @@ def test_a_payload_merges_with_the_inertial_that_is_there(arm):
 
 def test_no_payload_changes_nothing(arm):
     path = arm()
-    assert read_urdf(path, {}, payloads=[Payload("hand", 0.0, (0.1, 0.2, 0.3))]) == read_urdf(path, {})
+    assert with_payloads(read_urdf(path, {}), [Payload("hand", 0.0, (0.1, 0.2, 0.3))]) == read_urdf(path, {})
 
 
 def test_a_payload_needs_a_link(arm):
     with pytest.raises(ConfigError, match=r"robot\.payload: the tip frame 'turn' is no link; .* Links: base, hand"):
-        read_urdf(arm(), {}, payloads=[Payload("turn", 1.0, (0.0, 0.0, 0.0))])
+        with_payloads(read_urdf(arm(), {}), [Payload("turn", 1.0, (0.0, 0.0, 0.0))])

@@ -13,6 +13,7 @@ from runner.robots.denavit_hartenberg import (
     modified_frames,
     modified_transform,
 )
+from runner.robots.description import with_payloads
 from runner.robots.inertials import Payload
 from runner.studies.meca500.equations.truths import meca500 as report
 
@@ -21,7 +22,7 @@ TABLE = [replace(row, a=row.a / 1000.0, d=row.d / 1000.0) for row in report.TABL
 
 def model_of(inertials=None, payload=None):
     payloads = [] if payload is None else [payload]
-    return RobotModel(read_urdf(find_urdf("meca500.urdf"), {}, inertials=inertials, payloads=payloads), "flange")
+    return RobotModel(with_payloads(read_urdf(find_urdf("meca500.urdf"), {}, inertials=inertials), payloads), "flange")
 
 
 @pytest.fixture(scope="module")

@@ -9,6 +9,7 @@ from scipy.optimize import minimize
 from support.arms import urdf_of
 
 from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import with_payloads
 from runner.robots.inertials import Payload
 
 EXACT = (math.hypot(0.0775, 0.3425), math.atan2(0.0775, 0.3425), math.hypot(0.076, 0.097), math.atan2(0.076, 0.097))
@@ -155,7 +156,7 @@ def test_the_other_joints_carry_the_arm(xarm7, joint, expected):
 
 @pytest.mark.parametrize(("joint", "expected"), [(1, 59.4), (2, 33.8), (3, 28.9)])
 def test_the_rated_payload_is_more_than_the_efforts_hold_when_stretched(joint, expected):
-    loaded = read_urdf(find_urdf("xarm7.urdf"), {}, payloads=[Payload("flange", 3.5, (0.0, 0.0, 0.0))])
+    loaded = with_payloads(read_urdf(find_urdf("xarm7.urdf"), {}), [Payload("flange", 3.5, (0.0, 0.0, 0.0))])
     model = RobotModel(loaded, "flange")
     torque = largest_gravity_torque(model, joint)
     assert torque == pytest.approx(expected, abs=0.05)

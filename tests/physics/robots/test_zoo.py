@@ -7,7 +7,7 @@ import pytest
 import yaml
 
 from runner.base.paths import robots_dir
-from runner.config.arms import build_robot
+from runner.config.arms import build_robot, read_outline
 from runner.config.compose.compose import compose
 from runner.config.compose.options import group_options
 from runner.config.robot import OneArmConfig, StagedRobotConfig
@@ -24,7 +24,7 @@ def config_of(name, *overrides):
 
 
 def robot(name, *overrides):
-    return build_robot(config_of(name, *overrides), 9.81)
+    return build_robot(read_outline(config_of(name, *overrides)), 9.81)
 
 
 @pytest.fixture(scope="module", params=ZOO)
@@ -140,8 +140,8 @@ def test_a_payload_beyond_the_rating_is_warned_of_and_built(name, rated):
     config = config_of(name, "robot.tool=null", f"robot.payload.mass={rated + 0.1}")
     (warning,) = config.warnings
     assert warning.startswith(f"robot.payload.mass: {rated + 0.1:g} kg is more than the {rated:g} kg that {name} is")
-    bare = build_robot(config_of(name, "robot.tool=null"), 9.81).model.mass
-    assert build_robot(config, 9.81).model.mass > bare + rated
+    bare = build_robot(read_outline(config_of(name, "robot.tool=null")), 9.81).model.mass
+    assert build_robot(read_outline(config), 9.81).model.mass > bare + rated
 
 
 def test_the_r4_is_the_r3_with_faster_joints():

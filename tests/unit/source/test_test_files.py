@@ -34,7 +34,6 @@ SHARED = {
     "calibration/procedures/bench": "physics/calibration/test_procedures.py",
     "calibration/procedures/procedure": "physics/calibration/test_procedures.py",
     "calibration/procedures/touching": "physics/calibration/test_procedures.py",
-    "config/arms": "contract/config/test_mjcf_robots.py",
     "config/calibration": "contract/calibration/test_calibration_job.py",
     "config/caveats": "physics/metrics/test_monitor.py",
     "config/compose/composition_errors": "contract/config/test_compose.py",
