@@ -9,7 +9,6 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.quantities import above_rounding, with_powers
 from runner.reporting.document import Block, Notice
-from runner.reporting.figures import columns
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.store.record import Metric
@@ -67,13 +66,6 @@ def delay_of(run: Run) -> int:
     """Return how late the commands of a run's last control loop act, without jitter, in ticks of the fastest loop."""
     delay = run.config["plant"].get("computation", {"delay": 0})["delay"]
     return int(list(delay.values())[-1] if isinstance(delay, Mapping) else delay)
-
-
-def distance(first: Run, second: Run, signal: str) -> FloatArray:
-    """Return the distance between a tip signal of two runs at their common ticks, shape (T,), in m."""
-    rows = min(len(first.trace()), len(second.trace()))
-    difference = columns(first.trace()[:rows], signal) - columns(second.trace()[:rows], signal)
-    return np.asarray(np.linalg.norm(difference, axis=1))
 
 
 def failures(runs: Mapping[str, Run]) -> list[Block]:

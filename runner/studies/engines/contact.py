@@ -65,41 +65,11 @@ def driven_by_step(runs: Mapping[str, Run]) -> Callable[[float], float]:
     return lambda h: 1.0 + 0.25 * math.pi * _frequency(runs["impact/PyBullet/0.001"]) * h
 
 
-def pushed_back(run: Run) -> FloatArray:
-    """Return the wall's force against the way into it, shape (T,), in N."""
-    return _wall_force(run)
-
-
-def peak(run: Run) -> float:
-    """Return the largest force of the wall, in N."""
-    return float(_wall_force(run).max())
-
-
-def at_rest(run: Run) -> float:
-    """Return the force of the wall at the end, in N."""
-    return float(_wall_force(run)[-1])
-
-
 def spring_force(run: Run) -> float:
     """Return the wall's stiffness times the depth of the tip at the end, in N."""
     wall = run.config["environment"]
     begin = float(run.config["trajectory"]["start"][0]) + float(wall["distance"])
     return float(wall["stiffness"]) * max(float(columns(run.trace(), "tip")[-1, 0]) - begin, 0.0)
-
-
-def off_depth(run: Run) -> float:
-    """Return by which share, without sign, the force at the end is off the wall's stiffness times the depth."""
-    return abs(at_rest(run) / spring_force(run) - 1.0)
-
-
-def apart_at_rest(run: Run, other: Run) -> float:
-    """Return by which share, without sign, the forces of two runs at the end differ."""
-    return abs(at_rest(run) / at_rest(other) - 1.0)
-
-
-def apart_at_peak(run: Run, other: Run) -> float:
-    """Return by which share, without sign, the largest forces of two runs differ."""
-    return abs(peak(run) / peak(other) - 1.0)
 
 
 def unrest(run: Run) -> float:

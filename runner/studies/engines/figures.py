@@ -10,8 +10,10 @@ from runner.reporting.figures import model_of
 from runner.store import Run
 from runner.studies.engines.side_by_side import difference, mujoco_of
 from runner.study.measured import Measured
+from runner.study.prose.blocks import of_run
 from runner.study.prose.patterns import found
-from runner.study.run_values import distance, median
+from runner.study.prose.signals import distance
+from runner.study.run_values import median
 
 Told = Callable[..., float | None]
 
@@ -37,30 +39,14 @@ def exact(what: Told, digits: int = 2) -> Callable[..., str]:
     return lambda *runs: number(what(*runs), digits, zeros=True)
 
 
-def tracking_error(run: Run) -> float | None:
-    """Return the largest axis error of a run, in m."""
-    return median(run, "max_axis_error")
-
-
 def tip_distance(run: Run, reference: Run) -> float:
     """Return the largest distance of the tips of two runs at their common times, in m."""
-    return float(distance(run, reference, "tip").max())
-
-
-def measured(words: str, what: Told, unit: str, *runs: Run) -> Measured:
-    """Return what a function gives for some runs as a measured value; none where one of them failed."""
-    failed = any(run.status == "failed" for run in runs)
-    return Measured(words, None if failed else what(*runs), unit)
+    return float(distance("tip")(run, reference).max())
 
 
 def share_of(run: Run, other: Run, reference: Run) -> float:
     """Return how far a run is from another one, as a share of how far it is from a reference."""
     return tip_distance(run, other) / tip_distance(run, reference)
-
-
-def cost(run: Run) -> float:
-    """Return the median time that a tick took, over the time that it simulates."""
-    return float(run.record["timing"]["tick_time_median"]) / float(run.config["controller"]["period"])
 
 
 def acceleration_off(run: Run) -> float:
@@ -75,41 +61,26 @@ def order(coarse: Run, fine: Run, reference: Run) -> float:
 
 def orders(runs: Mapping[str, Run], coarse: str, fine: str, *plants: str) -> list[Measured]:
     """Return the order of some plants on each arm, from one step to half of it."""
-    found_orders = []
-    for plant in plants:
-        for arm, reference in _arms(runs):
-            first, second = (runs[f"open/{arm}/{plant}/{step}"] for step in (coarse, fine))
-            found_orders.append(measured(f"order of {plant}, {arm}", order, "1", first, second, reference))
-    return found_orders
+    return [
+        of_run(runs, f"order of {plant}, {arm}", order, "1", f"{own}/{coarse}", f"{own}/{fine}", reference)
+        for plant in plants
+        for arm, reference in _arms(runs)
+        for own in [f"open/{arm}/{plant}"]
+    ]
 
 
 def apart_as_share(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
     """Return how far a plant is from another one at 1 ms on each arm, as a share of its error."""
-    shares = []
-    for arm, reference in _arms(runs):
-        first, second = (runs[f"open/{arm}/{each}/0.001"] for each in (plant, other))
-        shares.append(measured(f"{plant} from {other}, {arm}", share_of, "1", first, second, reference))
-    return shares
+    return [
+        of_run(runs, f"{plant} from {other}, {arm}", share_of, "1", *names, reference)
+        for arm, reference in _arms(runs)
+        for names in [(f"open/{arm}/{plant}/0.001", f"open/{arm}/{other}/0.001")]
+    ]
 
 
-def _arms(runs: Mapping[str, Run]) -> list[tuple[str, Run]]:
-    """Return the name of each arm in the runs, and its reference."""
-    return [(one.levels["arm"], one.run) for one in found(runs, "reference/{arm}/rk4/5e-05")]
-
-
-def first_order(value: Measured, at: float) -> Callable[[float], float | None]:
-    """Return the law that goes with the step and has a value at one."""
-    return lambda step: None if value.value is None else value.value * step / at
-
-
-def fourth_order(value: Measured, at: float) -> Callable[[float], float | None]:
-    """Return the law that goes with the fourth power of the step and has a value at one."""
-    return lambda step: None if value.value is None else value.value * (step / at) ** 4
-
-
-def plant_step(run: Run) -> float:
-    """Return the step by which a run's plant was simulated, in ms."""
-    return 1000.0 * float(run.provenance["plant_step"])
+def _arms(runs: Mapping[str, Run]) -> list[tuple[str, str]]:
+    """Return the name of each arm in the runs, and that of its reference."""
+    return [(one.levels["arm"], one.name) for one in found(runs, "reference/{arm}/rk4/5e-05")]
 
 
 def tracking_error_apart(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
@@ -124,7 +95,7 @@ def tracking_error_apart(runs: Mapping[str, Run], plant: str, other: str) -> lis
 def distances(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
     """Return the largest distance of the tips on two plants on each arm, in m."""
     return [
-        measured(f"{plant} from {other}, {arm}", tip_distance, "m", one.run, runs[f"closed/{arm}/{other}"])
+        of_run(runs, f"{plant} from {other}, {arm}", tip_distance, "m", one.name, f"closed/{arm}/{other}")
         for one in found(runs, f"closed/{{arm}}/{plant}")
         for arm in (one.levels["arm"],)
     ]
@@ -137,6 +108,6 @@ def common_digits(run: Run, other: Run) -> str:
 
 
 def _apart(run: Run, other: Run) -> float:
-    values = [tracking_error(each) for each in (run, other)]
+    values = [median(each, "max_axis_error") for each in (run, other)]
     first, second = (np.nan if value is None else value for value in values)
     return abs(first / second - 1.0)

@@ -59,11 +59,6 @@ def turns(run: Run) -> FloatArray:
     return np.array([pin.log3(model.tip_pose(q)[:3, :3] @ first.T) for q in rows])
 
 
-def turned(run: Run) -> float:
-    """Return the largest rotation of the tool in a run, in rad."""
-    return float(np.linalg.norm(turns(run), axis=1).max())
-
-
 def displacement(run: Run) -> FloatArray:
     """Return how far the tip has gone and turned since the first row, shape (T, 6), in m and rad."""
     tip = columns(run.trace(), "tip")
@@ -87,11 +82,6 @@ def added_inertia(run: Run, shorter: float = 1.0) -> FloatArray:
     K, period = float(servo["stiffness"]), shorter * float(servo["period"])
     inertia = np.diagonal(model_of(run).mass_matrix(np.array(run.config["robot"]["home"])))
     return np.asarray(2.0 * period * float(servo["damping_ratio"]) * np.sqrt(K * inertia) + period**2 * K)
-
-
-def plant_step(run: Run) -> float:
-    """Return the step of a run's plant, in s."""
-    return float(run.provenance["plant_step"])
 
 
 def servo_compliance(run: Run) -> FloatArray:
@@ -206,11 +196,6 @@ def refusal(attempt: Callable[[], object]) -> str:
     except ConfigError as problem:
         return with_powers(problem.problems[0].partition(": ")[2])
     return "not refused"
-
-
-def felt_moment(run: Run) -> float:
-    """Return the largest moment felt along an axis, in N m."""
-    return float(np.abs(wrenches(run, "felt")[:, 3:]).max())
 
 
 def filtered_turn(run: Run) -> float:

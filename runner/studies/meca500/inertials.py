@@ -68,11 +68,6 @@ def difference(first: Run, second: Run) -> dict[str, Any]:
     return {"link": link, "mass": 100.0 * excess[link], "gravity": 100.0 * float(share.max())}
 
 
-def most_different(runs: Runs) -> str:
-    """Return the link whose masses differ most."""
-    return str(difference(*(runs[f"inertials/{name}"] for name in _SETS))["link"])
-
-
 def _moving(first: Run, second: Run) -> dict[str, tuple[float, float]]:
     """Return both masses of each link that moves, by its name, in kg."""
     one, other = _masses(first), _masses(second)

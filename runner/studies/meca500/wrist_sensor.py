@@ -54,11 +54,6 @@ def parting(runs: Runs, pattern: str) -> list[Series]:
     return series
 
 
-def square(speed: float) -> float:
-    """Return a hundredth of the square of a speed."""
-    return 1e-2 * speed**2
-
-
 def noise(runs: Runs, pattern: str) -> Table:
     """Return what is left of readings at rest less bias and true load, against noise and quantisation."""
     at_rest = [each.run for each in found(runs, pattern)]

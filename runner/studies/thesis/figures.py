@@ -121,16 +121,6 @@ def printed(claim: int, end: int, words: str) -> Measured:
     return Measured(words, published.printed[end], published.unit)
 
 
-def rest_of_way(run: Run) -> FloatArray:
-    """Return |x_d - x_E|, from the Macro's end point to the target, shape (T,), in m."""
-    return np.asarray(np.linalg.norm(columns(run.trace(), "desired") - columns(run.trace(), "macro_tip"), axis=1))
-
-
-def extension(run: Run) -> FloatArray:
-    """Return |p|, from the Macro's end point to the tip, shape (T,), in m."""
-    return np.asarray(np.linalg.norm(columns(run.trace(), "tip") - columns(run.trace(), "macro_tip"), axis=1))
-
-
 def moved_by_bias(run: Run) -> float | None:
     """Return by how much the bias of the Macro's encoders puts the tip elsewhere at the last posture, in m.
 
@@ -145,24 +135,12 @@ def moved_by_bias(run: Run) -> float | None:
     return float(np.abs(moved).max())
 
 
-def diverges_at(runs: Mapping[str, Run], run: str, words: str) -> Measured:
-    """Return when a run diverges; no value where it does not."""
-    return Measured(words, (runs[run].failure_record or {}).get("time"), "s")
-
-
 def at_rest(run: Run) -> list[float]:
     """Return the steady-state errors of the repetitions of a run that do not diverge, in m."""
     if "steady_state_error" not in run.metrics:
         return []
     values = run.values("steady_state_error")
     return [float(value) for value in values[~np.isnan(values)]]
-
-
-def of_repetitions(
-    runs: Mapping[str, Run], words: str, what: Callable[..., float | None], unit: str, *names: str
-) -> Measured:
-    """Return what a function gives for a run, or for two, of which repetitions may have diverged, by words."""
-    return Measured(words, what(*(runs[name] for name in names)), unit)
 
 
 def count_diverging(run: Run) -> int:
@@ -220,23 +198,6 @@ def sag(run: Run) -> float:
     return float(np.linalg.norm(fall / run.config["controller"]["natural_frequency"] ** 2))
 
 
-def growth(runs: Mapping[str, Run], name: str, words: str) -> Measured:
-    """Return the tip error at the end of a run, which may have diverged, over that at its start."""
-    error = np.linalg.norm(columns(runs[name].trace(), "error"), axis=1)
-    return Measured(words, float(error[-1] / error[0]))
-
-
-def most_apart(stem: str, times: float) -> Callable[[Run, Run], float]:
-    """Return the largest difference of a signal of the Macro's joints and so many times the Mini's, at equal ticks."""
-
-    def largest(macro: Run, mini: Run) -> float:
-        rows = min(len(macro.trace()), len(mini.trace()))
-        a, b = (joint_columns(run.trace()[:rows], stem) for run in (macro, mini))
-        return float(np.abs(a - times * b).max())
-
-    return largest
-
-
 def ten_times(column: str) -> Callable[[Run, Run], FloatArray]:
     """Return a signal of the Mini ten times as large, at the ticks of the Macro."""
     return lambda macro, mini: 10.0 * mini.trace()[column].to_numpy()[: len(macro.trace())]
@@ -260,11 +221,6 @@ def mass_ratio(run: Run) -> float:
     """Return the mass of a run's Mini over that of its Macro."""
     mini, macro = (sum(run.config["robot"]["stages"][stage]["masses"].values()) for stage in ("mini", "macro"))
     return float(mini / macro)
-
-
-def ratio_of(runs: Mapping[str, Run], name: str) -> float:
-    """Return the same by a run's name."""
-    return mass_ratio(runs[name])
 
 
 def heavier_than(runs: Mapping[str, Run], name: str, payload: str) -> list[Measured]:
@@ -292,11 +248,6 @@ def to_step_before(runs: Mapping[str, Run]) -> Callable[[Run], str]:
         return f"{final_difference(run, reference) / final_difference(before, reference):.3f}"
 
     return ratio
-
-
-def proportional(value: Measured, at: float) -> Callable[[float], float | None]:
-    """Return the law that goes with its argument and has a value at one place."""
-    return lambda x: None if value.value is None else value.value * x / at
 
 
 _REST = 0.5  # s, at the end of a run

@@ -13,7 +13,8 @@ from runner.robots.cantilever import frequency_errors
 from runner.robots.modes import Mode
 from runner.store import Run
 from runner.studies.thesis.flexible_map import stable_and_not
-from runner.study.prose.patterns import found
+from runner.study.prose.plots import points
+from runner.study.prose.signals import moved, norm, vector
 from runner.study.run_values import clock
 from runner.trajectories.impulses import zero_vibration
 
@@ -27,6 +28,7 @@ _HEARD = 0.02  # of the largest peak, below which peaks tell nothing of one mode
 _SETTLED = 2e-3  # m
 _STILL = 1e-9  # m/s, of a desired motion that has ended
 _REST = 0.3  # s at the end of a run, over which the place is taken where the tip rests
+_DISPLACED = norm(moved(vector("macro_tip")))  # m, of the Macro's end point from where it began
 _PARTS = (1, 2, 3, 4, 8, 16)
 
 
@@ -95,29 +97,6 @@ def map_of_links(runs: Mapping[str, Run], run: str) -> list[Series]:
     )
 
 
-def tried(runs: Mapping[str, Run], pattern: str, name: str, unstable: bool, color: int) -> list[Series]:
-    """Return natural frequencies tried, in rad/s, against the other level of their pattern, where they grow or not."""
-    chosen = [one for one in found(runs, pattern) if grows(one.run) == unstable]
-    place = np.array([float(next(iter(one.levels.values()))) for one in chosen])
-    omega = np.array([float(one.run.config["controller"]["natural_frequency"]) for one in chosen])
-    return [Series(name, place, omega, "points", color=color)]
-
-
-def count_runs(run: Run) -> bool:
-    """Tell that a run is there."""
-    return True
-
-
-def macro_off(run: Run) -> FloatArray:
-    """Return how far the Macro's end point is from where it is to be, at each row, in m."""
-    return np.asarray(np.linalg.norm(columns(run.trace(), "macro_error"), axis=1))
-
-
-def tip_off(run: Run) -> FloatArray:
-    """Return how far the tip is from where it is to be, at each row, in m."""
-    return np.asarray(np.linalg.norm(columns(run.trace(), "error"), axis=1))
-
-
 def most(of: Callable[[Run], FloatArray], after: bool) -> Callable[[Run], float]:
     """Return the largest distance while the desired motion lasts, or after it, in m; NaN of a run that ends before."""
 
@@ -128,42 +107,9 @@ def most(of: Callable[[Run], FloatArray], after: bool) -> Callable[[Run], float]
     return worst
 
 
-def largest_tip(run: Run) -> float:
-    """Return the largest distance of the tip from where it is to be, in m."""
-    return float(tip_off(run).max())
-
-
-def macro_at_rest(run: Run) -> float:
-    """Return how far the Macro's end point is from where it is to be at the end, in m."""
-    return float(macro_off(run)[-1])
-
-
-def at_rest(run: Run) -> float:
-    """Return how far the tip is from where it is to be at the end, in m."""
-    return float(tip_off(run)[-1])
-
-
-def acceleration_over_square(run: Run) -> float:
-    """Return the largest desired acceleration over the square of the last stage's natural frequency, in m."""
-    asked = float(np.linalg.norm(columns(run.trace(), "desired_acceleration"), axis=1).max())
-    return asked / float(run.config["controller"]["natural_frequency"]["mini"]) ** 2
-
-
-def displaced(run: Run) -> FloatArray:
-    """Return how far the Macro's end point is from where it began, at each row, in m."""
-    point = columns(run.trace(), "macro_tip")
-    return np.asarray(np.linalg.norm(point - point[0], axis=1))
-
-
-def stroke(run: Run) -> float:
-    """Return how far the tip went from its place at the Macro's end point, at most, in m."""
-    apart = columns(run.trace(), "tip") - columns(run.trace(), "macro_tip")
-    return float(np.linalg.norm(apart - apart[0], axis=1).max())
-
-
 def rings_until(run: Run) -> float:
     """Return when the Macro's end point is last 2 mm away from where it began, in s; NaN where it rings on."""
-    t, away = clock(run), displaced(run) > _SETTLED
+    t, away = clock(run), _DISPLACED(run) > _SETTLED
     last = np.flatnonzero(away)
     return float("nan") if away[t > 0.9 * t[-1]].any() or not len(last) else float(t[last[-1]])
 
@@ -197,13 +143,6 @@ def damping_line(runs: Mapping[str, Run], run: str, bare: str) -> Callable[[floa
     return damping_by_gain(runs[run], runs[bare])
 
 
-def damping_points(runs: Mapping[str, Run], pattern: str, bare: str, name: str, color: int) -> list[Series]:
-    """Return the damping ratios of runs against their gains in 1/s, as points."""
-    rung = [one.run for one in found(runs, pattern)]
-    gains = np.array([float(run.config["controller"]["damping_gain"]) for run in rung])
-    return [Series(name, gains, np.array([damping_ratio(run, runs[bare]) for run in rung]), "points", color=color)]
-
-
 def damping_by_gain(run: Run, bare: Run) -> Callable[[float], float]:
     """Return the damping ratio of the first mode that inertial damping adds, against its gain in 1/s."""
     omega, share = _first_mode(run, bare)
@@ -216,14 +155,6 @@ def left_of_vibration(run: Run, unshaped: Run) -> float:
     return _rings(run) / _rings(unshaped)
 
 
-def shaped_points(runs: Mapping[str, Run], pattern: str, unshaped: str, name: str, color: int) -> list[Series]:
-    """Return what runs leave of the vibration, as points against the share of the frequency that their shapers have."""
-    rung = found(runs, pattern)
-    shares = np.array([float(one.levels["share"]) for one in rung])
-    left = np.array([left_of_vibration(one.run, runs[unshaped]) for one in rung])
-    return [Series(name, shares, left, "points", color=color)]
-
-
 def shaped_line(kind: Literal["zv", "zvd"]) -> Callable[[float], float]:
     """Return the closed form of it, without damping, against that share."""
     return lambda share: zero_vibration(kind, share, 0.0).residual(1.0)
@@ -231,9 +162,9 @@ def shaped_line(kind: Literal["zv", "zvd"]) -> Callable[[float], float]:
 
 def off_the_line(runs: Mapping[str, Run], pattern: str, unshaped: str, kind: Literal["zv", "zvd"]) -> float:
     """Return by how much what runs leave of the vibration differs from the closed form, at most."""
-    (points,) = shaped_points(runs, pattern, unshaped, "", 0)
-    exact = np.array([shaped_line(kind)(float(share)) for share in points.x])
-    return float(np.abs(points.y - exact).max())
+    (left,) = points(runs, pattern, "share", left_of_vibration, "", unshaped)
+    exact = np.array([shaped_line(kind)(float(share)) for share in left.x])
+    return float(np.abs(left.y - exact).max())
 
 
 def rings_after(run: Run) -> float:

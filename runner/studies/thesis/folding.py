@@ -30,11 +30,6 @@ def volume(run: Run) -> FloatArray:
     return np.asarray(_singular_values(run).prod(axis=1))
 
 
-def first(signal: Callable[[Run], FloatArray]) -> Callable[[Run], float]:
-    """Return the first value of a signal."""
-    return lambda run: float(signal(run)[0])
-
-
 def closest(signal: Callable[[Run], FloatArray]) -> Callable[[Run], float]:
     """Return the value of a signal where the Mini is closest to a singular posture."""
     return lambda run: float(signal(run)[_row(run)])
@@ -81,11 +76,6 @@ def parting(first: Run, second: Run) -> FloatArray:
     a, b = (joint_columns(run.trace(), "q") for run in (first, second))
     rows = min(len(a), len(b))
     return np.asarray(np.linalg.norm(a[:rows] - b[:rows], axis=1))
-
-
-def largest_parting(first: Run, second: Run) -> float:
-    """Return the largest distance, in rad."""
-    return float(np.nanmax(parting(first, second)))
 
 
 def parted_at(first: Run, second: Run) -> float | None:

@@ -40,11 +40,6 @@ def closed_rise_time(run: Run) -> float:
     return _RISE / float(np.sqrt(stiffness * (1.0 + law["force_gain"]) / mass_at_start(run)))
 
 
-def force_at_rest(run: Run) -> float:
-    """Return the force at the end of a run, in N."""
-    return float(push(run)[-1])
-
-
 def bounces(run: Run) -> bool:
     """Tell whether the force does not come to rest at what is asked."""
     asked = float(run.config["controller"]["force"])
@@ -79,20 +74,10 @@ def speed_at_touch(run: Run) -> float:
     return float((tip[row - 1] - tip[row]) / (t[row] - t[row - 1]))
 
 
-def peak(run: Run) -> float:
-    """Return the largest force on the wall, in N."""
-    return float(push(run).max())
-
-
 def closed_peak(run: Run) -> float:
     """Return the same of a mass on the wall's spring, v sqrt(k m), in N; NaN where nothing is touched."""
     row, stiffness = _touch(run), float(run.config["environment"]["stiffness"])
     return float("nan") if row is None else speed_at_touch(run) * float(np.sqrt(stiffness * _mass(run, row)))
-
-
-def peak_over_closed(run: Run) -> float:
-    """Return the largest force over what a mass on a spring gives."""
-    return peak(run) / closed_peak(run)
 
 
 def worst_while_sliding(run: Run) -> float | None:
@@ -112,11 +97,6 @@ def along_the_push(run: Run) -> FloatArray:
     """Return how far the tip has gone along a push at each row, in m."""
     tip, way = columns(run.trace(), "tip"), _way(run)
     return np.asarray((tip - tip[0]) @ way)
-
-
-def given_way(run: Run) -> float:
-    """Return how far a push has moved the tip in the end, in m."""
-    return float(along_the_push(run)[-1])
 
 
 def beside_the_push(run: Run) -> float:
@@ -174,11 +154,6 @@ def _first_that_pushes(run: Run) -> int:
 def _last(value: object) -> float:
     """Return a value by stage of the last stage."""
     return float(list(value.values())[-1] if isinstance(value, dict) else value)  # type: ignore[arg-type]
-
-
-def count_all(run: Run) -> bool:
-    """Tell that a run is there."""
-    return True
 
 
 def walls_tried(runs: Mapping[str, Run], name: str, bounce: bool, color: int) -> list[Series]:

@@ -69,11 +69,6 @@ def seeds(given: Sequence[Judged], words: str) -> Measured:
     return Measured(words, max(each.values.size for each in given))
 
 
-def judgements(given: Sequence[Judged]) -> int:
-    """Return how many judgements there are: claims times presets."""
-    return len(given)
-
-
 def drawn(words: str) -> Measured:
     """Return how many groups of seeds are drawn."""
     return Measured(words, DRAWN)

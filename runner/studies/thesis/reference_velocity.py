@@ -7,7 +7,7 @@ from runner.base.arrays import FloatArray
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study.prose.signals import largest_of
-from runner.study.run_values import clock, median
+from runner.study.run_values import clock
 
 
 def speed_seen(run: Run) -> FloatArray:
@@ -25,12 +25,6 @@ def lag(run: Run) -> float | None:
     controller, speed = run.config["controller"], largest_of(speed_seen)(run)
     factor = 2.0 * float(controller["damping_ratio"]["mini"]) / float(controller["natural_frequency"]["mini"])
     return None if speed is None else factor * speed
-
-
-def times_worse(zero: Run, full: Run) -> float | None:
-    """Return the tracking error of one run over that of another; None where one is missing or zero."""
-    large, small = (median(run, "max_axis_error") for run in (zero, full))
-    return large / small if large is not None and small else None
 
 
 def _speeds(run: Run, frames: FloatArray) -> FloatArray:

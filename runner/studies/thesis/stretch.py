@@ -4,17 +4,18 @@ import numpy as np
 
 from runner.reporting.figures import columns
 from runner.store import Run
-from runner.studies.thesis.figures import rest_of_way
 from runner.studies.thesis.folding import missing_acceleration
+from runner.study.prose.signals import norm, vector
 from runner.study.run_values import clock
 
 _SETTLED = 1e-3  # m, of the tip error, from where on the drift is measured
+_WAY_LEFT = norm(vector("desired") - vector("macro_tip"))  # m, from the Macro's end point to the target
 _LONGEST = 0.5  # s, over which it is measured, before the reach is lost
 
 
 def lost_from(run: Run) -> float | None:
     """Return the time from which on the target is out of reach, in s; None where it is not at the end."""
-    beyond = rest_of_way(run) > _reach(run)
+    beyond = _WAY_LEFT(run) > _reach(run)
     if not beyond[-1]:
         return None
     inside = np.flatnonzero(~beyond)
@@ -29,7 +30,7 @@ def lost_from_text(run: Run) -> str:
 
 def share_beyond(run: Run) -> float:
     """Return for which share of a run the target is out of reach, in %."""
-    return 100.0 * float(np.mean(rest_of_way(run) > _reach(run)))
+    return 100.0 * float(np.mean(_WAY_LEFT(run) > _reach(run)))
 
 
 def left_out(run: Run) -> float | None:

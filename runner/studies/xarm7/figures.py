@@ -1,42 +1,25 @@
 """Quantities of a run that are not metrics: joint margins, lag, saturation, sag and drift."""
 
-from collections.abc import Callable, Mapping, Sized
+from collections.abc import Callable, Mapping
 from functools import partial
-from typing import TypeVar
 
 import numpy as np
 import pinocchio as pin
 
 from runner.base.quantities import number
-from runner.reporting.figures import columns, joint_columns, model_of
+from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.study.prose.signals import limit_margin
-from runner.study.run_values import clock, median, values
+from runner.study.run_values import clock, values
 
-Told = TypeVar("Told")
 ROWS = {"position": 3, "pose": 6}  # of the Jacobian, by the tip's task
 SHOULDER = 1  # counted from 0: the joint that lifts the arm
-
-
-def how_many(values: Sized) -> int:
-    """Return how many values there are."""
-    return len(values)
-
-
-def told(runs: Mapping[str, Run], run: str, what: Callable[[Run], Told]) -> Told:
-    """Return what a function tells of a run, failed or not."""
-    return what(runs[run])
-
-
-def margin(run: Run) -> float:
-    """Return how close any joint comes to a limit of its, in rad; below zero is beyond it."""
-    return float(limit_margin(run).min())
 
 
 def smallest_margin(run: Run) -> str:
     """Return the same with the joint that it is, as a cell of a table."""
     joint = int(np.argmin(model_of(run).limit_margins(joint_columns(run.trace(), "q")).min(axis=0)))
-    return f"{number(margin(run))} (q{joint + 1})"
+    return f"{number(float(limit_margin(run).min()))} (q{joint + 1})"
 
 
 def lag(run: Run, rate: float | None = None) -> float:
@@ -53,12 +36,6 @@ def lag(run: Run, rate: float | None = None) -> float:
 def lag_at(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
     """Return the closed form of a run's lag as a function of the rate of the commands, in Hz."""
     return partial(lag, runs[run])
-
-
-def late_by(run: Run) -> float | None:
-    """Return the largest axis error of a run over the closed form of its lag."""
-    error = median(run, "max_axis_error")
-    return None if error is None else error / lag(run)
 
 
 def power_of_the_rate(slow: Run, fast: Run) -> float | None:
@@ -79,22 +56,6 @@ def peak_speed(run: Run) -> float:
     return float(np.pi * line_length(run) / float(run.config["trajectory"]["duration"]))
 
 
-def plant_step(run: Run) -> float:
-    """Return the step by which a run's plant was simulated, in s."""
-    return float(run.provenance["plant_step"])
-
-
-def largest_error_at(run: Run) -> float:
-    """Return when the largest axis error of the tip is the largest of the run, in s."""
-    error = np.abs(columns(run.trace(), "error")).max(axis=1)
-    return float(run.trace()["t"].to_numpy()[int(np.argmax(error))])
-
-
-def error_at_end(run: Run) -> float:
-    """Return the largest axis error of the tip at the end of a run, in m."""
-    return float(np.abs(columns(run.trace(), "error")[-1]).max())
-
-
 def first_saturation(run: Run) -> tuple[int, float] | None:
     """Return which joint is the first at its effort limit, counted from 0, and when, in s; None where none is."""
     at_limit = _at_limits(run)
@@ -112,12 +73,7 @@ def first_at_limit(run: Run) -> str:
 
 def ticks_at_a_limit(run: Run) -> str:
     """Return the share of the ticks at which a joint is at its effort limit, as a cell of a table."""
-    return f"{clipped_share(run):.3g} %"
-
-
-def clipped_share(run: Run) -> float:
-    """Return the share of the ticks at which a joint is at its effort limit, in per cent."""
-    return 100.0 * float(run.metrics["saturation_fraction"].median or 0.0)
+    return f"{100.0 * float(run.metrics['saturation_fraction'].median or 0.0):.3g} %"
 
 
 def clipped_ticks(run: Run) -> float:

@@ -35,16 +35,6 @@ def every(seconds: float, signal: str) -> Callable[[Run], FloatArray]:
     return lambda run: trace_of(signal, run)[:: round(seconds / float(run.config["controller"]["period"]))]
 
 
-def away_from(signal: str, value: float) -> Callable[[Run], FloatArray]:
-    """Return how far a signal is from a value."""
-    return lambda run: trace_of(signal, run) - value
-
-
-def travelled(signal: str) -> Callable[[Run], float]:
-    """Return how far apart the smallest and the largest value of a signal are."""
-    return lambda run: float(np.ptp(trace_of(signal, run)))
-
-
 def apart_in(*signals: str) -> Callable[[Run, Run], float]:
     """Return the largest difference of two runs in any of some signals."""
     return lambda run, other: max(float(np.abs(trace_of(each, run) - trace_of(each, other)).max()) for each in signals)

@@ -256,8 +256,3 @@ def with_the_inverse(runs: Mapping[str, Run]) -> dict[str, int]:
     errors = [(median(run, "max_axis_error"), line_length(run)) for run in ours]
     following = sum(error is not None and error < 0.1 * length for error, length in errors)
     return {"many": len(ours), "following": following, "ended": sum(run.failure is not None for run in ours)}
-
-
-def unequal_speeds(run: Run) -> float:
-    """Return the largest difference of the first two joints' speeds, in rad/s."""
-    return float((run.trace()["dq1"] - run.trace()["dq2"]).abs().max())

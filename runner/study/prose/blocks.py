@@ -4,7 +4,7 @@ If the first argument of a function is `runs`, the chapter reader inserts the ru
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Sized
 from dataclasses import replace
 from typing import Any
 
@@ -92,11 +92,31 @@ def smallest(name: str, *values: Measured) -> Measured:
     return _extreme(min, name, values)
 
 
-def of_run(runs: Mapping[str, Run], words: str, what: Callable[..., float | None], unit: str, *names: str) -> Measured:
-    """Return what a function gives for a run, or for some runs, as a measured value that conditions call by words."""
+def of_run(
+    runs: Mapping[str, Run],
+    words: str,
+    what: Callable[..., float | None],
+    unit: str,
+    *names: str,
+    though_failed: bool = False,
+) -> Measured:
+    """Return what a function gives for a run, or for some runs, as a measured value that conditions call by words.
+
+    A failed run has no value, unless what a function reads of it until it failed is asked for.
+    """
     chosen = [runs[name] for name in names]
-    failed = any(run.status == "failed" for run in chosen)
-    return Measured(words, None if failed else what(*chosen), unit)
+    left_out = not though_failed and any(run.status == "failed" for run in chosen)
+    return Measured(words, None if left_out else what(*chosen), unit)
+
+
+def told(runs: Mapping[str, Run], what: Callable[..., Any], *names: str) -> Any:
+    """Return the value of a function for a run, or for some runs, failed or not."""
+    return what(*(runs[name] for name in names))
+
+
+def how_many(values: Sized) -> int:
+    """Return the number of values."""
+    return len(values)
 
 
 def named(words: str, value: float | None, unit: str = "1") -> Measured:

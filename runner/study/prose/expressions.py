@@ -20,6 +20,7 @@ from runner.base.expressions.insertions import insertions
 from runner.reporting.document import Block, Claim, Panel, Section, Series
 from runner.study.job import MissingError
 from runner.study.measured import Condition, Measured
+from runner.study.prose.signals import Quantity
 from runner.study.prose.tables import Column
 
 OPEN, CLOSE = "\uf000", "\uf001"
@@ -30,7 +31,7 @@ PRIVATE = re.compile("[\ue000-\uf8ff]")
 _STATEMENT = re.compile(r"\{%|%\}|\{#")
 _SET = re.compile(r"^\{% set (\w+) = (.*?) %\}$", re.MULTILINE | re.DOTALL)
 _BRANCHES = (ast.IfExp, ast.BoolOp, ast.Not)
-_MEMBERS = {Measured: ("value", "shown", "near"), Condition: ("holds",)}
+_MEMBERS = {Measured: ("value", "shown", "near"), Condition: ("holds",), Quantity: ()}
 _HANDED = (*get_args(Block), Section, Column, Panel, Series, Claim, np.ndarray)
 
 

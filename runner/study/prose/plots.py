@@ -128,6 +128,37 @@ def over(
     return series
 
 
+def points(
+    runs: Mapping[str, Run],
+    pattern: str,
+    x: Signal,
+    y: Callable[..., float],
+    name: str = "",
+    *others: str,
+    only: Callable[[Run], bool] | None = None,
+    where: bool = True,
+    color: int | None = None,
+) -> list[Series]:
+    """Return two numbers of each run that a pattern stands for as points.
+
+    Args:
+        runs: The runs of the study by name.
+        pattern: Names of the runs, with axes in braces.
+        x: The abscissa: an axis, whose levels are numbers, or a function of a run.
+        y: The ordinate: a function of a run, or of a run and others.
+        name: What the legend calls them.
+        others: Names of the other runs, with the pattern's axes in braces.
+        only: A function that is as `where` says of the runs that are shown; all are shown where it is left out.
+        where: What that function is of these runs.
+        color: Index of their color; None takes the next one.
+    """
+    shown = [each for each in found(runs, pattern) if only is None or only(each.run) is where]
+    places = [(x(each.run) if callable(x) else float(each.levels[x]),
+               y(each.run, *(other(runs, twin, each.levels) for twin in others))) for each in shown]  # fmt: skip
+    across, up = np.array(places, float).reshape(-1, 2).T
+    return [Series(name, across, up, "points", color=color)]
+
+
 def closed_form(
     function: Callable[[float], float | None],
     low: float,

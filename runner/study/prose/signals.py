@@ -1,71 +1,206 @@
-"""Signals over time, and numbers of one or two runs, for chapters."""
+"""Quantities of one run or of several, for chapters: signals over time, numbers of them, and arithmetic on both."""
 
+import operator
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.base.dotted_keys import get
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
-from runner.study import run_values
-from runner.study.run_values import Signal, check_signal, config_value, trace_of
+from runner.study.run_values import Signal, check_signal, config_value, median, trace_of
 
 
-def norm(name: str) -> Callable[[Run], FloatArray]:
-    """Return the signal |name| of a vector with columns name_x, name_y and name_z."""
+def _operation(work: Callable[[Any, Any], Any], swapped: bool = False) -> Callable[["Quantity", Any], "Quantity"]:
+    """Return an operator of Quantity; a side without a value gives none."""
 
-    def signal(run: Run) -> FloatArray:
+    def operate(first: "Quantity", second: Any) -> "Quantity":
+        def value(*runs: Run) -> Any:
+            sides = first(*runs), second(*runs) if callable(second) else second
+            left, right = sides[::-1] if swapped else sides
+            return None if left is None or right is None else work(left, right)
+
+        return Quantity(value)
+
+    return operate
+
+
+class Quantity:
+    """A number or signal of one run or of several. It is computed when it is called, and it has arithmetic.
+
+    Args:
+        of: Gives the value.
+    """
+
+    def __init__(self, of: Callable[..., Any]) -> None:
+        self._of = of
+
+    def __call__(self, *runs: Run) -> Any:
+        """Return the value of some runs, numbers as Python's own."""
+        value = self._of(*runs)
+        return value.item() if isinstance(value, np.generic) else value
+
+    __add__, __radd__ = _operation(operator.add), _operation(operator.add, swapped=True)
+    __sub__, __rsub__ = _operation(operator.sub), _operation(operator.sub, swapped=True)
+    __mul__, __rmul__ = _operation(operator.mul), _operation(operator.mul, swapped=True)
+    __truediv__, __rtruediv__ = _operation(operator.truediv), _operation(operator.truediv, swapped=True)
+    __pow__ = _operation(operator.pow)
+
+    def __str__(self) -> str:
+        """Refuse: it has a value for a run only."""
+        raise TypeError("a quantity has a value for a run; write of_run(WORDS, QUANTITY, UNIT, RUN)")
+
+    def __neg__(self) -> "Quantity":
+        """Return it with the other sign."""
+        return -1.0 * self
+
+
+def signal(name: Signal) -> Quantity:
+    """Return a column of the trace, or what a function gives, for arithmetic."""
+    return Quantity(lambda *runs: trace_of(name, *runs))
+
+
+def vector(name: str) -> Quantity:
+    """Return a vector with columns name_x, name_y and name_z at each row, shape (T, 3)."""
+
+    def rows(run: Run, *_: Run) -> FloatArray:
         check_signal(run, f"{name}_x")
-        return np.asarray(np.linalg.norm(columns(run.trace(), name), axis=1))
+        return columns(run.trace(), name)
 
-    return signal
+    return Quantity(rows)
 
 
-def distance(name: str = "tip") -> Callable[[Run, Run], FloatArray]:
+def of_joints(name: str = "q", first: int = 0, last: int | None = None) -> Quantity:
+    """Return a signal of each joint at each row: of all, or from one to before another, counted from 0."""
+    return Quantity(lambda run, *_: joint_columns(run.trace(), name)[:, first:last])
+
+
+def norm(what: Signal) -> Quantity:
+    """Return the length at each row of a vector with columns name_x, name_y and name_z, or of any by a function."""
+    rows = vector(what) if isinstance(what, str) else what
+    return Quantity(lambda *runs: np.linalg.norm(values := rows(*runs), axis=None if np.ndim(values) == 1 else 1))
+
+
+def of_next(what: Signal) -> Quantity:
+    """Return a quantity of the second of two runs."""
+    return Quantity(lambda _, *runs: what(*runs) if callable(what) else trace_of(what, *runs))
+
+
+def difference(what: Signal, times: float = 1.0) -> Quantity:
+    """Return a signal less so many times that of another run, at their common rows."""
+
+    def value(*runs: Run) -> FloatArray:
+        first, second = (what(run) if callable(what) else trace_of(what, run) for run in runs)
+        rows = min(len(first), len(second))
+        return np.asarray(first[:rows] - times * second[:rows])
+
+    return Quantity(value)
+
+
+def distance(name: str = "tip") -> Quantity:
     """Return the distance between such a vector of two runs at their common times."""
-    return lambda run, twin: run_values.distance(run, twin, name)
+    return norm(difference(vector(name)))
 
 
-def moved(name: str) -> Callable[[Run], FloatArray]:
-    """Return how far a column is from its first value."""
-    return lambda run: trace_of(name, run) - trace_of(name, run)[0]
+def moved(what: Signal) -> Quantity:
+    """Return a signal less its first value."""
+    return signal(what) - at_the_start(what)
 
 
-def at_the_end(signal: Signal) -> Callable[..., float]:
-    """Return the last value of a signal."""
-    return lambda *runs: float(trace_of(signal, *runs)[-1])
+def at_the_start(what: Signal) -> Quantity:
+    """Return the first value of a signal; None where it has none."""
+    return Quantity(lambda *runs: next(iter(trace_of(what, *runs)), None))
 
 
-def largest_of(signal: Signal) -> Callable[..., float | None]:
+def at_the_end(what: Signal) -> Quantity:
+    """Return the last value of a signal; None where it has none."""
+    return Quantity(lambda *runs: next(reversed(trace_of(what, *runs)), None))
+
+
+def worst_axis(what: Signal) -> Quantity:
+    """Return the largest size of a vector's components at each row: of one by its name, or of any by a function."""
+    rows = vector(what) if isinstance(what, str) else what
+    return Quantity(lambda *runs: np.abs(rows(*runs)).max(axis=1))
+
+
+def largest_of(what: Signal) -> Quantity:
     """Return the largest finite value of a signal, without sign; None where there is none."""
 
     def value(*runs: Run) -> float | None:
-        given = np.abs(trace_of(signal, *runs))
+        given = np.abs(trace_of(what, *runs))
         finite = given[np.isfinite(given)]
         return float(finite.max()) if finite.size else None
 
-    return value
+    return Quantity(value)
 
 
-def scaled(factor: float, what: Callable[..., float]) -> Callable[..., float]:
+def highest_of(what: Signal) -> Quantity:
+    """Return the largest value of a signal, with its sign."""
+    return Quantity(lambda *runs: trace_of(what, *runs).max())
+
+
+def lowest_of(what: Signal) -> Quantity:
+    """Return the smallest value of a signal, with its sign."""
+    return Quantity(lambda *runs: trace_of(what, *runs).min())
+
+
+def range_of(what: Signal) -> Quantity:
+    """Return the largest value of a signal less the smallest."""
+    return highest_of(what) - lowest_of(what)
+
+
+def total_of(what: Signal) -> Quantity:
+    """Return the sum of the values of a signal."""
+    return Quantity(lambda *runs: trace_of(what, *runs).sum())
+
+
+def time_of_largest(what: Signal) -> Quantity:
+    """Return when a signal is largest, without sign, in s."""
+    return Quantity(lambda *runs: trace_of("t", runs[0])[int(np.argmax(np.abs(trace_of(what, *runs))))])
+
+
+def size_of(what: Callable[..., float]) -> Quantity:
+    """Return a number without its sign."""
+    return Quantity(lambda *runs: abs(what(*runs)))
+
+
+def scaled(factor: float, what: Callable[..., float]) -> Quantity:
     """Return so many times a number, such as 1000 for mm."""
-    return lambda *runs: factor * what(*runs)
+    return factor * Quantity(what)
 
 
-def part(what: Callable[..., Mapping[str, Any]], key: str, factor: float = 1.0) -> Callable[..., Any]:
+def part(what: Callable[..., Mapping[str, Any]], key: str, factor: float = 1.0) -> Quantity:
     """Return so many times one of the numbers that a function gives, or one of its texts, by its key."""
-
-    def value(*runs: Run) -> Any:
-        own = what(*runs)[key]
-        return own if factor == 1.0 else factor * own
-
-    return value
+    value = Quantity(lambda *runs: what(*runs)[key])
+    return value if factor == 1.0 else factor * value
 
 
-def setting(key: str, factor: float = 1.0) -> Callable[[Run], float]:
+def setting(key: str, factor: float = 1.0) -> Quantity:
     """Return so many times the number that stands in a run's config under a dotted key."""
-    return lambda run: factor * float(config_value(run, key))
+    return factor * Quantity(lambda run, *_: float(config_value(run, key)))
+
+
+def metric_of(name: str, factor: float = 1.0) -> Quantity:
+    """Return so many times the median of a metric."""
+    return factor * Quantity(lambda run, *_: median(run, name))
+
+
+def recorded(key: str, factor: float = 1.0) -> Quantity:
+    """Return so many times the number that stands in a run's record under a dotted key; None where there is none."""
+    return factor * Quantity(lambda run, *_: get(run.record, key))
+
+
+def failed(run: Run) -> bool:
+    """Tell whether a run failed."""
+    return run.status == "failed"
+
+
+def power_law(value: Any, at: float, power: float = 1.0) -> Callable[[float], float | None]:
+    """Return the law that is proportional to a power of its argument and has a value, measured or not, at one place."""
+    known = getattr(value, "value", value)
+    return lambda x: None if known is None else known * x / at if power == 1.0 else known * (x / at) ** power
 
 
 def manipulability(run: Run) -> FloatArray:
@@ -79,7 +214,7 @@ def smallest_singular_value(run: Run) -> FloatArray:
 
 
 def limit_margin(run: Run) -> FloatArray:
-    """Return how far the joint nearest to a limit of its position is from it at each row, in rad or m."""
+    """Return the smallest distance of a joint position from one of its limits at each row, in rad or m."""
     return np.asarray(model_of(run).limit_margins(joint_columns(run.trace(), "q")).min(axis=1))
 
 

@@ -9,6 +9,7 @@ from fixtures.studies import Made
 
 from runner.store import Run
 from runner.studies.thesis import figures, folding
+from runner.study.prose.signals import largest_of
 
 NAME = "folding/full_equations/tip_goal/quintic"
 
@@ -56,7 +57,7 @@ def test_two_draws_part_when_their_joints_are_a_radian_apart(runs: Mapping[str, 
     apart = np.where(first.trace()["t"] < parting, 1e-12, 2.0)
     second.__dict__["_frame"] = first.trace().assign(q2=first.trace()["q2"] + apart)
     assert folding.parted_at(first, second) == pytest.approx(parting)
-    assert folding.largest_parting(first, second) == pytest.approx(2.0)
+    assert largest_of(folding.parting)(first, second) == pytest.approx(2.0)
     assert folding.parted_at(first, first) is None
     second.__dict__["_frame"] = second.trace()[:3]  # diverged
     assert len(folding.parting(first, second)) == 3

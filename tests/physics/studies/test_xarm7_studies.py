@@ -12,10 +12,10 @@ from support.thin_plans import make_runs
 from runner.store import Run
 from runner.studies.xarm7.figures import ROWS, first_saturation, lag, sag
 from runner.studies.xarm7.kinematics import random_postures
-from runner.studies.xarm7.null_space import between_commands, drifts, way
+from runner.studies.xarm7.null_space import between_commands, drifts
 from runner.studies.xarm7.payload import largest_payloads, lost_when, stretched
 from runner.studies.xarm7.why_it_failed import invert, jacobians
-from runner.study.prose.signals import largest_of
+from runner.study.prose.signals import largest_of, moved, norm, vector
 from runner.sweeps.job import run
 
 NULL_SPACE_BOUND, TORQUE_BOUND = 1e-6, 1e-4  # m
@@ -59,8 +59,9 @@ def test_the_last_true_column_is_missing(xarm7: Any) -> None:
 
 def test_the_tip_stands_still_at_1_rad_per_s_by_rk4_alone(planned: Make) -> None:
     fastest = {rule: planned(f"null_space/{rule}/1.0") for rule in ("euler", "midpoint", "rk4")}
-    moved = {rule: largest_of(way)(run) or 0.0 for rule, run in fastest.items()}
-    assert moved["rk4"] < NULL_SPACE_BOUND < moved["midpoint"] < moved["euler"]
+    way = norm(moved(vector("tip")))
+    moved_by = {rule: largest_of(way)(run) or 0.0 for rule, run in fastest.items()}
+    assert moved_by["rk4"] < NULL_SPACE_BOUND < moved_by["midpoint"] < moved_by["euler"]
     assert fastest["rk4"].metrics["peak_joint_speed"].median == pytest.approx(1.0, abs=1e-3)
 
 

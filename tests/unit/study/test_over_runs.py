@@ -131,6 +131,36 @@ def test_signals_over_time():
         plots.line(RUNS, "held", "q3")
 
 
+def test_quantities_of_runs_have_arithmetic():
+    run, other = RUNS["gain/1/full_equations"], RUNS["gain/5/full_equations"]
+    error = signals.norm("error")
+    assert signals.at_the_end(error)(run) == pytest.approx(5.0)
+    assert (1.0 - 2 * signals.setting("controller.gain") ** 2 / 4)(run) == pytest.approx(-49.0)
+    assert (signals.at_the_end(error) / signals.of_next(signals.at_the_end(error)))(run, other) == pytest.approx(0.2)
+    assert signals.at_the_end(signals.difference(error, 0.2))(run, other) == pytest.approx(0.0)
+    assert signals.norm(signals.at_the_end(signals.of_joints()))(run) == pytest.approx(np.sqrt(2.0))
+    assert signals.range_of("q1")(run) == pytest.approx(1.0)
+    assert signals.time_of_largest(signals.moved("q2"))(run) == 1.0
+    assert signals.at_the_end(signals.worst_axis(-signals.vector("error")))(run) == pytest.approx(4.0)
+    assert (2 * signals.metric_of("settling_time"))(run) is None
+    assert signals.recorded("failure.time")(run) is None
+    assert signals.total_of("t")(run) == signals.power_law(1.5, 2)(2.0) == 1.5
+    with pytest.raises(TypeError, match="has a value for a run; write of_run"):
+        str(error)
+
+
+def test_runs_are_points_over_two_of_their_numbers():
+    gain, end = signals.setting("controller.gain"), signals.at_the_end(signals.norm("error"))
+    (series,) = plots.points(RUNS, "gain/{gain}/full_equations", "gain", end, "all")
+    assert (series.x.tolist(), series.y.tolist()) == ([1.0, 10.0, 5.0], pytest.approx([5.0, 50.0, 25.0]))
+
+    def small(run):
+        return gain(run) < 60.0
+
+    (series,) = plots.points(RUNS, "gain/{gain}/full_equations", gain, end, only=small, where=False)
+    assert series.x.tolist() == [100.0]
+
+
 def test_panels_to_be_compared_share_the_range_of_y_that_shows_all_of_them():
     small, large = (plots.panel(str(top), "t", "y", plots.limit(top, 0, 1), plots.limit(0, 0, 1)) for top in (1.0, 4.0))
     (first, second) = plots.same_y(small, large)
