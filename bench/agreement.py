@@ -53,7 +53,7 @@ def _apart(*overrides: str) -> float:
 
 def _run(*overrides: str) -> Trace:
     own = {text.partition("=")[0]: text for text in overrides}
-    config = validate(compose(list(own.values())).resolved)
+    config = validate(compose(list(own.values())))
     closed = assemble(config)
     try:
         return simulate(closed, make_encoders(closed, config.noise, config.settings.seed, 0))

@@ -101,7 +101,7 @@ def assembled(arm: Arm, law: str, plant: str, substeps: int, ticks: int, *more: 
         more: Further overrides.
     """
     timing = (f"plant={plant}", f"plant.step={arm.tick / substeps:.12g}", f"duration={ticks * arm.tick:.12g}")
-    config = validate(compose([*_SCENE, *arm.scene, *arm.laws[law], *timing, *more]).resolved)
+    config = validate(compose([*_SCENE, *arm.scene, *arm.laws[law], *timing, *more]))
     loop = assemble(config)
     assert loop.ticks == ticks, f"{arm.name}: {loop.ticks} ticks"
     return config, loop

@@ -21,7 +21,7 @@ from runner.sensing import encoder_errors
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.provenance import job_provenance
-from runner.simulation.result import timing
+from runner.simulation.results import timing
 from runner.simulation.sensors import make_encoders
 from runner.store import Outcome
 from runner.store.json_texts import JsonTexts
@@ -34,13 +34,12 @@ _OVERRIDES = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", 
 
 def main() -> bool:
     """Measure and print; return whether every target is met."""
-    composed = compose(_OVERRIDES)
-    config = validate(composed.resolved)
+    config = validate(compose(_OVERRIDES))
     loop, context = assemble(config), metric_context(config)
     trace = simulate(loop, make_encoders(loop, config.noise, 0, 0))
     loop.close()
     traces = _varied(Traces.of(trace))
-    clocked, provenance = timing(np.zeros(1), 0.0, 0.0), job_provenance(config, composed)
+    clocked, provenance = timing(np.zeros(1), 0.0, 0.0), job_provenance(config)
     metrics = measure(traces, context)
 
     def look() -> list[Watch]:

@@ -35,7 +35,7 @@ def main() -> bool:
 
 
 def _judge(*overrides: str) -> bool:
-    config = validate(compose(overrides).resolved)
+    config = validate(compose(overrides))
     loop, context = assemble(config), metric_context(config)
     sensor = make_wrist_sensor(loop, config.wrist_sensor, 0, 0)
     trace = simulate(loop, make_encoders(loop, config.noise, 0, 0), sensor)

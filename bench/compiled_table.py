@@ -75,7 +75,7 @@ def compiled_section() -> Iterator[str]:
 
 
 def _compiled(*overrides: str) -> str:
-    closed = assemble(validate(compose(overrides).resolved))
+    closed = assemble(validate(compose(overrides)))
     try:
         if closed.compiled is None:
             return "Python"

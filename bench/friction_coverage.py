@@ -60,7 +60,7 @@ def main() -> bool:
 
 @cache
 def _model(arm: str) -> RobotModel:
-    return validate(compose([f"robot={arm}"]).resolved).arm.model
+    return validate(compose([f"robot={arm}"])).arm.model
 
 
 def _errors(arm: str, effects: tuple[str, ...], seed: int) -> FloatArray:

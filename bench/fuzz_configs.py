@@ -19,12 +19,13 @@ from typing import Any, Literal
 from bench.fuzz_files import experiment
 from bench.fuzz_grammar import keys_of, mutated, override
 from runner.base.errors import RunnerError
-from runner.config.compose.compose import Composed, compose
+from runner.config.compose.compose import compose
 from runner.config.compose.options import group_options, groups
+from runner.config.composed import Composed
 from runner.config.validation import validate
+from runner.simulation.run import simulate_run
 from runner.store import run_hash
 from runner.store.writing import make_record
-from runner.sweeps.job import simulate_job
 
 CPU = 5.0  # s, over what a sound case takes
 MEMORY = 500  # MB, likewise
@@ -101,7 +102,7 @@ def attempt(given: Case, folder: Path) -> Ended:
     try:
         with _no_longer_than(_HANGS):
             resolved = _resolve(given, folder)
-            config = validate(resolved, [folder])
+            config = validate(Composed(resolved, config_dirs=(folder,)))
             run_hash(resolved, config.arm.urdf)
             if config.path.duration < _LONG * config.timing.tick:
                 _run_briefly(resolved, config.timing.tick, folder)
@@ -157,7 +158,7 @@ def _run_briefly(resolved: dict[str, Any], tick: float, folder: Path) -> None:
     composed = Composed({**resolved, "duration": _TICKS * tick, "repetitions": 1}, (), {}, (folder,))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # numpy's, of a run that diverges: that is a result
-        record = make_record(simulate_job(validate(composed.resolved, composed.config_dirs), composed))
+        record = make_record(simulate_run(validate(composed)))
     json.dumps(record, allow_nan=False)
 
 

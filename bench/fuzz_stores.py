@@ -13,14 +13,12 @@ from pathlib import Path
 from runner import store
 from runner.base.errors import StoreError
 from runner.cli.main import dispatch
-from runner.config.compose.compose import compose
 from runner.config.compose.composer import Composer
 from runner.metrics.summary import MOST_LISTED
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.store.shards import open_row, read_outcomes, shard_files
-from runner.sweeps.calibration_job import calibrate
-from runner.sweeps.job import execute
+from runner.sweeps.job import calibrate, run
 from runner.sweeps.plan import Grid
 from runner.sweeps.run import Engine, run_sweep
 from runner.sweeps.status import read_pace
@@ -148,7 +146,7 @@ def make_store(outputs: Path) -> None:
     for more in (("seed=0,1",), ("seed=2,3,4", "sweep.trace=never", "noise=thesis", "repetitions=3")):
         swept = run_sweep(Grid([*given, *more], Composer()), here, "runner -m").folder
         write_atomically(swept / "progress.json", sealed_json({"seconds_per_run": 0.5}))
-    execute(compose([*given, "plant=rk4", "noise=thesis", f"repetitions={MOST_LISTED + 1}"]))
+    run(*given, "plant=rk4", "noise=thesis", f"repetitions={MOST_LISTED + 1}")
     key = "controller.damping_ratio=interval(0.5,1.5)"
     tune([*given, key, "hydra.sweeper.workers=0"], [Objective("peak_torque", "minimize")], 3, 2, "runner tune")
     calibrate("calibration=tool_direction", "repetitions=2", f"outputs={outputs}")

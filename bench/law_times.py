@@ -39,7 +39,7 @@ def main() -> bool:
     print(f"  {'':26} {'':8} {'':>8}   {'CPU':31}   wall")
     print(f"  {'law':26} {'loop':8} {'period':>8}   {shares}   {shares}")
     for name, overrides in _LAWS.items():
-        config = validate(compose([*overrides, "plant=rk4", "trajectory=quintic", "noise=thesis"]).resolved)
+        config = validate(compose([*overrides, "plant=rk4", "trajectory=quintic", "noise=thesis"]))
         closed = assemble(config)
         trace = simulate(closed, *make_sensors(closed, config, 0))
         for loop in closed.loops:

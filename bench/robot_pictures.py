@@ -35,7 +35,7 @@ def _sheet() -> Figure:
     camera, rows = Camera(-35.0, 14.0), -(-len(ARMS) // _COLUMNS)
     figure, axes = scene(9.0, 9.0 * rows * _HIGH / (_COLUMNS * _WIDE))
     for number, name in enumerate(ARMS):
-        arm = validate(compose((f"robot={name}", "plant=rk4")).resolved).arm
+        arm = validate(compose((f"robot={name}", "plant=rk4"))).arm
         size = 2.0 if name == "so101" else 1.0
         bodies = playback_bodies(arm.urdf, arm.model, arm.home[None])
         faces = [face for body in bodies for face in _faces(body, camera)]

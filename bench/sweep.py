@@ -21,8 +21,8 @@ from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
+from runner.simulation.run import simulate_run
 from runner.simulation.sensors import make_encoders
-from runner.sweeps.job import simulate_job
 
 _SHORT = ("robot=macro", "noise=thesis", "duration=1")
 _SHORTEST = ("robot=macro", "plant=rk4", "noise=thesis", "duration=0.05", "sweep.trace=never")
@@ -88,14 +88,14 @@ def _sweep(overrides: tuple[str, ...], runs: int) -> Cost:
 
 
 def _simulating(overrides: tuple[str, ...]) -> float:
-    config = validate(compose(overrides).resolved)
+    config = validate(compose(overrides))
     loop = assemble(config)
     return _cpu_time(lambda: simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)))
 
 
 def _saving(overrides: tuple[str, ...]) -> float:
     composed = compose(overrides)
-    result = simulate_job(validate(composed.resolved), composed)
+    result = simulate_run(validate(composed))
     with tempfile.TemporaryDirectory() as folder:
         return _cpu_time(lambda: store.write_run(Path(folder), "run", result))
 

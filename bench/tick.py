@@ -73,7 +73,7 @@ def main() -> bool:
 
 
 def _assemble(*overrides: str) -> tuple[RunConfig, ClosedLoop]:
-    config = validate(compose([*_SCENE, *overrides]).resolved)
+    config = validate(compose([*_SCENE, *overrides]))
     loop = assemble(config)
     assert loop.ticks == TICKS
     return config, loop

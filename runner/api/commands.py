@@ -163,11 +163,11 @@ def calibrate(
     Raises:
         RunnerError: if the config cannot be carried out, or a folder cannot be written.
     """
-    from runner.sweeps import calibration_job
+    from runner.sweeps import job
 
     use_plugins(plugins)
     texts = run_overrides(overrides, values)
-    return calibration_job.calibrate(*texts, config_dirs=config_folders(config_dirs))
+    return job.calibrate(*texts, config_dirs=config_folders(config_dirs))
 
 
 def _several(metrics: str | Sequence[str]) -> Sequence[str]:

@@ -78,7 +78,7 @@ def _checked(run: store.Run, repetition: int) -> "RunConfig":
             "of its plug-ins is not loaded; simulate it again with runner.run"
         )
     try:
-        config = validate(run.config, run.config_dirs)
+        config = validate(run.composed)
     except ConfigError as error:
         raise RunnerError(f"{cannot}{'; '.join(error.problems)}") from None
     if config.arm.urdf != run.urdf:
@@ -88,11 +88,10 @@ def _checked(run: store.Run, repetition: int) -> "RunConfig":
 
 def _simulate(config: "RunConfig", repetition: int) -> "Trace":
     from runner.simulation.assembly import assemble
-    from runner.simulation.loop import simulate
-    from runner.simulation.sensors import make_sensors
+    from runner.simulation.run import simulate_repetition
 
     loop = assemble(config, repetition)
     try:
-        return simulate(loop, *make_sensors(loop, config, repetition))
+        return simulate_repetition(loop, config, repetition)[0]
     finally:
         loop.close()

@@ -229,5 +229,5 @@ def _from_config(robot: str, folder: Path) -> tuple[str, str]:
     if robot not in known:
         told = f"no robot '{robot}'{nearest(robot, known)}" if robot else "a truth of a model needs a 'robot'"
         raise RunnerError(f"{told}; robots: {', '.join(known)}, or a .urdf file")
-    arm = validate(compose((f"robot={robot}",), [folder]).resolved, [folder]).arm
+    arm = validate(compose((f"robot={robot}",), [folder])).arm
     return arm.urdf, arm.model.tip_name

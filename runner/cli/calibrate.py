@@ -22,7 +22,7 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Simulate one calibration; print a table of its errors, and its folder as the last line."""
     quiet_environment()
-    from runner.sweeps.calibration_job import calibrate
+    from runner.sweeps.job import calibrate
 
     done = calibrate(*options.overrides, config_dirs=options.config_dir)
     for warning in done.provenance["warnings"]:

@@ -126,10 +126,10 @@ def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -
     composed = compose(overrides, config_dirs, line.root)
     from runner.config.validation import validate  # after the composition, so that errors are reported at once
 
-    config = validate(composed.resolved, composed.config_dirs)
-    from runner.sweeps.job import find_or_make  # after validation, for the same reason
+    config = validate(composed)
+    from runner.sweeps.job import RunJob, perform  # after validation, for the same reason
 
-    run, made = find_or_make(composed, config)
+    run, made = perform(RunJob(config))
     return print_run(run, made, composed.resolved.get("caveats"))
 
 

@@ -12,8 +12,8 @@ from runner.base.sanitize import quoted
 from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
 from runner.config.arms import build_robot, read_outline
-from runner.config.compose.compose import Composed
 from runner.config.compose.problems import Problems, require
+from runner.config.composed import Composed
 from runner.config.parsing import group_of, parse, parse_kind, parse_robot
 from runner.config.robot import RobotConfig
 from runner.plugins.registry import KindConfig
@@ -52,13 +52,15 @@ class CalibrationConfig:
         robot: Config of the robot.
         arm: The robot.
         procedure: The calibration procedure.
-        resolved: The part of the composed config that a calibration reads, as plain data.
+        composed: The composed config that was checked.
+        resolved: The part of it that a calibration reads, as plain data.
     """
 
     settings: CalibrationSettings
     robot: RobotConfig
     arm: Robot
     procedure: Procedure
+    composed: Composed
     resolved: Mapping[str, object]
 
 
@@ -83,7 +85,7 @@ def validate_calibration(composed: Composed) -> CalibrationConfig:
     bench = None if calibration is None else problems.attempt(_make_bench, robot, arm, sensor)
     procedure = problems.attempt(CALIBRATIONS.build, calibration, bench)
     problems.report()
-    return CalibrationConfig(require(settings), require(robot), require(arm), require(procedure), resolved)
+    return CalibrationConfig(require(settings), require(robot), require(arm), require(procedure), composed, resolved)
 
 
 def _check_keys(composed: Composed) -> None:

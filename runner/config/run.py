@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from runner.base.arrays import FloatArray
 from runner.config.caveats import CaveatsConfig
+from runner.config.composed import Composed
 from runner.config.limits import LimitsConfig, SweepConfig
 from runner.config.robot import RobotConfig
 from runner.config.settings import RunSettings
@@ -22,7 +23,7 @@ from runner.sensing import EncoderNoise, EndpointSensorConfig, ForceTorqueConfig
 from runner.trajectories import Trajectory
 
 # Fields that differ between configs of the same run, or that are new objects in each config.
-_OF_ONE_RUN = frozenset({"settings", "resolved", "loaded", "plugged", "joint_torques", "timing"})
+_OF_ONE_RUN = frozenset({"settings", "composed", "loaded", "plugged", "joint_torques", "timing"})
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class RunConfig:
         caveats: Thresholds of the caveats of a run.
         spec: Bounds on metrics; the runner reports how often they are met.
         plugged: Configs of plug-ins that replace built-in parts, by group: encoders, sensors, mismatch.
-        resolved: The composed config as plain data, interpolations resolved.
+        composed: The composed config that was checked.
     """
 
     settings: RunSettings
@@ -83,11 +84,17 @@ class RunConfig:
     caveats: CaveatsConfig
     spec: SpecConfig
     plugged: Mapping[str, KindConfig]
-    resolved: Mapping[str, object]
+    composed: Composed
 
-    def with_seed(self, resolved: Mapping[str, object]) -> "RunConfig":
+    @property
+    def resolved(self) -> Mapping[str, object]:
+        """The composed config as plain data, interpolations resolved."""
+        return self.composed.resolved
+
+    def with_seed(self, composed: Composed) -> "RunConfig":
         """Return the same run with the seed of another config, the only difference between the two."""
-        return replace(self, settings=self.settings.model_copy(update={"seed": resolved["seed"]}), resolved=resolved)
+        seed = composed.resolved["seed"]
+        return replace(self, settings=self.settings.model_copy(update={"seed": seed}), composed=composed)
 
     @property
     def cache_key(self) -> tuple[object, ...]:

@@ -1,8 +1,7 @@
 """Validation of a composed config, with one message that lists all problems."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields
-from pathlib import Path
 
 import numpy as np
 
@@ -11,6 +10,7 @@ from runner.base.errors import ConfigError
 from runner.base.sanitize import few
 from runner.config.arms import build_loaded, build_robot, read_outline
 from runner.config.compose.problems import Problems, require
+from runner.config.composed import Composed
 from runner.config.cross_checks import (
     check_computation,
     check_notch,
@@ -44,25 +44,24 @@ from runner.trajectories.kinds import HasStart
 _MEMORY = Memory(4096)
 
 
-def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -> RunConfig:
+def validate(composed: Composed) -> RunConfig:
     """Check a composed config.
 
     The objects built from groups are cached for configs with the same groups, such as the cells of a sweep. Callers
     must not change them.
 
     Args:
-        resolved: The config as plain data, interpolations resolved.
-        config_dirs: Config folders of the user, searched for URDFs.
+        composed: The config; its config folders are searched for URDFs.
 
     Raises:
         ConfigError: with every problem found: dotted key, value found, values allowed, nearest valid name.
     """
     problems = Problems(_MEMORY)
-    groups = read_groups(resolved, problems)
+    groups = read_groups(composed.resolved, problems)
     settings, robot, sensor = (groups.get(name) for name in ("settings", "robot", "wrist_sensor"))
     plant, controller = groups.get("plant"), groups.get("controller")
     problems.recall(check_payload, robot, groups.get("mismatch"))
-    outline = problems.recall(read_outline, robot, config_dirs)
+    outline = problems.recall(read_outline, robot, composed.config_dirs)
     noise = problems.recall(NoiseConfig.by_joint, groups.get("noise"), outline)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), outline)
     problems.recall(_check_commands, plant, controller)
@@ -79,7 +78,7 @@ def validate(resolved: Mapping[str, object], config_dirs: Sequence[Path] = ()) -
         **{name: group for name, group in groups.items() if name in _PARTS}
         | built
         | {"noise": noise or exact_encoders(require(arm).model.nq), "torque_limits": torque_limits}
-        | {"loaded": loaded, "notch": groups.get("notch"), "resolved": resolved}
+        | {"loaded": loaded, "notch": groups.get("notch"), "composed": composed}
     )
     for check in _CHECKS:
         check(config)

@@ -7,10 +7,9 @@ Metrics of single joints or axes have a suffix (`peak_torque_q1`, `max_tracking_
 """
 
 from runner.metrics.family import MetricContext
-from runner.metrics.summary import Columns, Summary, evaluate, measure, of_run, summarize_arrays
+from runner.metrics.summary import Summary, evaluate, measure, of_run, summarize_arrays
 
 __all__ = [
-    "Columns",
     "MetricContext",
     "Summary",
     "evaluate",

@@ -111,31 +111,6 @@ def of_run(measured: Mapping[str, FloatArray], run: int) -> dict[str, float | No
     return {name: _present(value) for name, value in values.items()}
 
 
-class Columns:
-    """The metrics of a job's repetitions, taken as they end: an array for each metric.
-
-    Args:
-        repetitions: Number of repetitions.
-    """
-
-    def __init__(self, repetitions: int) -> None:
-        self._repetitions = repetitions
-        self._columns: dict[str, FloatArray] = {}
-
-    def put(self, repetition: int, values: Mapping[str, float | None]) -> None:
-        """Take the metrics of a repetition by name."""
-        for name, value in values.items():
-            if name not in self._columns:
-                self._columns[name] = np.full(self._repetitions, np.nan)
-            self._columns[name][repetition] = np.nan if value is None else value
-
-    def summarize(self) -> dict[str, Summary]:
-        """Return the metrics over the repetitions; of one that was not taken a metric has no value."""
-        names = tuple(self._columns)
-        pairs = zip(names, metric_units.units_of(names), strict=True)
-        return {name: _summarize(unit, self._columns[name]) for name, unit in pairs}
-
-
 def summarize_arrays(names: tuple[str, ...], values: FloatArray) -> dict[str, Summary]:
     """Summarize the metrics of a job's repetitions, given as an array of shape (repetitions, names), NaN for none."""
     pairs = zip(names, metric_units.units_of(names), values.T, strict=True)

@@ -50,7 +50,7 @@ def setting_of(run: Run) -> Setting:
     if run.failure is not None:
         raise RunnerError(f"{run.folder}: {run.failure}; a recording is compared with a run that ended well")
     try:
-        config = validate(run.config, run.config_dirs)
+        config = validate(run.composed)
     except ConfigError as error:
         raise RunnerError(f"run {run.hash} cannot be made again: {'; '.join(error.problems)}") from None
     if config.arm.urdf != run.urdf:

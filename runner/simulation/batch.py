@@ -7,6 +7,7 @@ import math
 import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import groupby
 
 import numpy as np
 
@@ -15,13 +16,15 @@ from runner.base.cache import Memory
 from runner.base.ticks import add_ticks
 from runner.base.trace import Trace, Traces
 from runner.config.run import RunConfig
-from runner.metrics import MetricContext
+from runner.metrics import MetricContext, measure
+from runner.metrics.caveats import Watch, look_together, setting_of, signals_of
 from runner.plugins.discovery import added_parts
 from runner.robots.robot import Robot, end_points
 from runner.sensing.encoders import encoder_errors
 from runner.simulation.assembly import assemble_program, metric_context, reach_of
 from runner.simulation.compiled.closed_loop import LoopProgram, Signals, run_all
 from runner.simulation.failures import ended_well, find_failure
+from runner.simulation.results import Collector
 from runner.trajectories.trajectory import joint_reference
 
 _MOST_BYTES = 32e6  # of the signals of runs that are simulated together
@@ -243,3 +246,52 @@ def _grouped(places: Sequence[int], key: Callable[[int], Hashable]) -> list[list
     for place in places:
         groups.setdefault(key(place), []).append(place)
     return list(groups.values())
+
+
+def simulate_together(runs: Sequence[Sequence[RunSpec]], batcher: BatchSimulator) -> Iterator[list[Collector]]:
+    """Simulate several runs; yield the results of complete runs, some at a time.
+
+    Args:
+        runs: Repetitions of each run, in order.
+        batcher: The simulator.
+
+    Raises:
+        SimulationError: if a user-supplied trajectory fails in a metric.
+    """
+    owners = []
+    for place, of_run in enumerate(runs):
+        collector = _collector(place, of_run, batcher)
+        owners += [(collector, run.repetition) for run in of_run]
+    for found in batcher.simulate([run for of_run in runs for run in of_run]):
+        if isinstance(found, BatchResult):
+            complete = _collect(found, [owners[place] for place in found.places])
+        else:
+            collector, repetition = owners[found[0]]
+            complete = [collector] if collector.add(repetition, found[1], {}) else []
+        if complete:
+            yield complete
+
+
+def _collector(place: int, runs: Sequence[RunSpec], batcher: BatchSimulator) -> Collector:
+    config, q_start = runs[0].config, runs[0].q_start
+    setting = batcher.memory.known(("setting", q_start, *config.cache_key), lambda: setting_of(config, q_start))
+    watch = Watch(setting, config.caveats)
+    return Collector(config, watch, len(runs), np.zeros((len(runs), 0)), place, runs[0].repetition)
+
+
+def _collect(found: BatchResult, owners: Sequence[tuple[Collector, int]]) -> list[Collector]:
+    """Measure repetitions that succeeded, given the collector and the number of each; return complete collectors."""
+    traces, complete = found.traces, []
+    metrics = measure(traces, found.context)
+    names, values = tuple(metrics), np.stack(list(metrics.values()), axis=1)
+    parts = [(owner, [repetition for _, repetition in group]) for owner, group in groupby(owners, lambda it: it[0])]
+    watches = [owner.watch for owner, _ in (owners if len(parts) > 1 else parts)]
+    look_together(watches, signals_of(traces, metrics))
+    seconds, row = float(traces.tick_seconds.sum()), 0
+    for owner, repetitions in parts:
+        owner.put(repetitions, names, values[row : row + len(repetitions)])
+        first = traces.run(row) if owner.first == repetitions[0] else None
+        if owner.end(len(repetitions), seconds, first):
+            complete.append(owner)
+        row += len(repetitions)
+    return complete

@@ -16,7 +16,7 @@ from runner.statistics.spec.history import today
 from runner.symbolic.engine import evaluator
 
 if TYPE_CHECKING:
-    from runner.config.compose.compose import Composed
+    from runner.config.composed import Composed
     from runner.config.run import RunConfig
 
 _LIBRARIES = ("arm-control-runner", "pybullet", "mujoco", "pin", "numpy", "scipy", "hydra-core")
@@ -39,11 +39,11 @@ def describe_origin(composed: "Composed", *subcommand: str) -> dict[str, Any]:
     }
 
 
-def job_provenance(config: "RunConfig", composed: "Composed", notices: Sequence[str] = ()) -> dict[str, Any]:
+def job_provenance(config: "RunConfig", notices: Sequence[str] = ()) -> dict[str, Any]:
     """Return where a run comes from: what made it, choices, time steps, seed, warnings."""
     return {
-        **describe_origin(composed),
-        "choices": dict(composed.choices),
+        **describe_origin(config.composed),
+        "choices": dict(config.composed.choices),
         "plant_step": config.timing.step,
         "steps_per_tick": config.timing.steps_per_tick,
         "tip_frame": config.arm.model.tip_name,

@@ -55,10 +55,9 @@ _TABLE = """
     schema: per_joint per_stage
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds streams velocity wrench
-    simulation: assembly batch batch_blocks batch_jobs closed_loop=loop.closed_loop command compiled_loop
-        contact=loop.contact failures loop=simulation recorder sensors
+    simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop command compiled_loop
+        contact=loop.contact failures loop=simulation recorder results run=job sensors
     simulation/compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
-    sweeps: calibration_job job
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation

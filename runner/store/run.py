@@ -13,6 +13,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
+from runner.config.composed import Composed
 from runner.store.kinds import kind_of
 from runner.store.record import Metrics, find_faults
 from runner.store.seal import DamagedError
@@ -78,6 +79,11 @@ class Run(Stored):
         """Config folders in the command of the run, which are searched for the robot file."""
         words = shlex.split(str(self.provenance["command"]))
         return [Path(after) for before, after in itertools.pairwise(words) if before == "--config-dir"]
+
+    @property
+    def composed(self) -> Composed:
+        """Composed config, to be checked again."""
+        return Composed(self.config, tuple(self.overrides), {}, tuple(self.config_dirs))
 
     @property
     def overrides(self) -> Sequence[str]:

@@ -15,7 +15,7 @@ import yaml
 from runner.base.errors import StoreError
 from runner.base.trace import Trace
 from runner.metrics.caveats import Found
-from runner.simulation.result import RunResult
+from runner.simulation.results import RunResult
 from runner.statistics.spec import bounds_of, judge
 from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically
@@ -46,34 +46,34 @@ def write_run(outputs: Path, name: str, result: RunResult) -> Run:
         StoreError: if a file cannot be written.
     """
     folder = outputs / "runs" / name
-    config = yaml.dump(dict(result.resolved), sort_keys=False, Dumper=yaml.CSafeDumper)
+    config = yaml.dump(dict(result.config.resolved), sort_keys=False, Dumper=yaml.CSafeDumper)
     files = {
         "trace.parquet": _parquet(result.trace),
         "config.yaml": config.encode(),
-        "robot.urdf": result.urdf.encode(),
+        "robot.urdf": result.config.arm.urdf.encode(),
     }
     beside = {metric: summary.values for metric, summary in result.metrics.items() if not summary.listed}
     if beside:
         files[VALUES_FILE] = values_parquet(beside)
     dear = ("trace.parquet", VALUES_FILE)
     record = write_job(folder, "metrics.json", make_record(result), files, flushed=dear)
-    return Run(folder, result.resolved, record)
+    return Run(folder, result.config.resolved, record)
 
 
 def make_record(result: RunResult) -> dict[str, Any]:
     """Return the content of metrics.json, without schema and digests."""
     record: dict[str, Any] = {
         "status": "ok" if result.failure is None else "failed",
-        "repetitions": result.repetitions,
+        "repetitions": result.config.settings.repetitions,
     }
     if result.failure is not None:
         repetition, failure = result.failure
         record["failure"] = {**asdict(failure), "repetition": repetition}
     record |= result.caveats.record()
-    bounds = bounds_of(result.resolved)
+    bounds = bounds_of(result.config.resolved)
     if bounds:
         values = {metric: summary.values for metric, summary in result.metrics.items()}
-        record["spec"] = judge(bounds, result.repetitions, values, values.__getitem__).record()
+        record["spec"] = judge(bounds, result.config.settings.repetitions, values, values.__getitem__).record()
     record["metrics"] = {metric: summary.record() for metric, summary in result.metrics.items()}
     if result.plant_error is not None:
         record["plant_error"] = result.plant_error.record()

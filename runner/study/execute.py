@@ -8,6 +8,7 @@ from pathlib import Path
 from runner import store
 from runner.base import progress
 from runner.config.compose.composer import Composer
+from runner.config.composed import CALIBRATION
 from runner.simulation.provenance import portable_overrides
 from runner.store import Calibration, Run
 from runner.study.estimate import counted, estimate_all, planned, told
@@ -16,7 +17,6 @@ from runner.study.job import Results
 from runner.study.study import Study
 from runner.study.tune import find_gains
 from runner.study.tunings import Tuning
-from runner.sweeps.calibration_job import CALIBRATION
 from runner.sweeps.check import check
 from runner.sweeps.plan import Item
 

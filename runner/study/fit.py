@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 
 from runner.base.errors import ConfigError, RunnerError
-from runner.config.compose.compose import Composed, compose
+from runner.config.compose.compose import compose
+from runner.config.composed import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.controllers import CONTROLLERS
 from runner.simulation.assembly import assemble
-from runner.simulation.loop import simulate
-from runner.simulation.sensors import make_sensors
+from runner.simulation.run import simulate_repetition
+from runner.simulation.tick_time import PROBED_TICKS
 from runner.store import simulated_part
 from runner.study.estimate import Amount, counted, estimate_all, planned
 from runner.study.gains import without_gains
@@ -26,7 +27,6 @@ from runner.study.study import Study
 from runner.study.tune import read_number
 from runner.study.tunings import Tuning, key_of
 from runner.sweeps.differing import entries
-from runner.sweeps.job import PROBED_TICKS
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def _validated(composed: Composed, part: UserPlugin) -> RunConfig:
     if kind != part.name or CONTROLLERS.is_ours(part.name):
         must = f"must be '{part.name}', as the file is called, and that no name of a law of ours"
         raise ConfigError([f"controller.kind: {must}; found '{kind}'"])
-    return validate(composed.resolved, composed.config_dirs)
+    return validate(composed)
 
 
 def _unlike(own: tuple[str, Composed], other: Composed) -> list[str]:
@@ -146,7 +146,7 @@ def _first_ticks(config: RunConfig) -> Tick:
     whole = assemble(config)
     try:
         some = replace(whole, ticks=min(whole.ticks, PROBED_TICKS))
-        trace = simulate(some, *make_sensors(some, config, 0))
+        trace, _ = simulate_repetition(some, config, 0)
     finally:
         whole.close()
     failure = trace.failure

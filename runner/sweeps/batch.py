@@ -6,21 +6,22 @@ import numpy as np
 
 from runner import store
 from runner.base.errors import StoreError
+from runner.config.run import RunConfig
 from runner.metrics.summary import MOST_LISTED
 from runner.plugins.metric_units import units_of
-from runner.simulation.batch import BatchSimulator
-from runner.simulation.batch_jobs import Job, Simulated, simulate_together
+from runner.simulation.batch import BatchSimulator, simulate_together
 from runner.simulation.provenance import command, job_provenance
+from runner.simulation.results import Collector
 from runner.store.json_texts import JsonTexts
 from runner.store.shards import ShardRow
 from runner.store.writing import record_texts
 from runner.sweeps.deadline import TimeLimitError, deadline
 from runner.sweeps.writer import ResultWriter, Rules, without_trace
 
-Named = tuple[str, Simulated]
+Named = tuple[str, Collector]
 
 
-def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, writer: ResultWriter) -> tuple[set[str], bool]:
+def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: ResultWriter) -> tuple[set[str], bool]:
     """Simulate the runs of a chunk that can share a batch; return the names of the finished ones and if one failed.
 
     A run with too many repetitions for its record to list is left out. The caller simulates it on its own, block after
@@ -40,10 +41,10 @@ def make_together(jobs: Sequence[tuple[str, Job]], rules: Rules, writer: ResultW
     batcher, texts, made, failed = BatchSimulator(), JsonTexts(), set[str](), False
     try:
         with deadline(rules.time_limit):
-            few = [(name, job) for name, job in jobs if job[0].settings.repetitions <= MOST_LISTED]
-            found = [(name, job, batcher.repetitions(job[0])) for name, job in few]
-        chosen = [(name, job, runs) for name, job, runs in found if runs is not None]
-        steps = simulate_together([job for _, job, _ in chosen], [runs for *_, runs in chosen], batcher)
+            few = [(name, config) for name, config in jobs if config.settings.repetitions <= MOST_LISTED]
+            found = [(name, batcher.repetitions(config)) for name, config in few]
+        chosen = [(name, runs) for name, runs in found if runs is not None]
+        steps = simulate_together([runs for _, runs in chosen], batcher)
         while True:
             with deadline(rules.time_limit):
                 complete = next(steps, None)
@@ -79,18 +80,17 @@ def _rows(runs: Iterable[Named], texts: JsonTexts, batcher: BatchSimulator) -> I
             values.shape[1],
             [run.caveats for _, run in some],
             some[0][1].timing,
-            [_provenance(run.job, batcher) for _, run in some],
+            [_provenance(run.config, batcher) for _, run in some],
             texts,
         )
         for (name, run), record in zip(some, records, strict=True):
-            config, composed = run.job
+            config = run.config
             end = store.Outcome(name, "", False, len(run.caveats.caveats))
-            yield ShardRow(end, texts.of(composed.resolved), config.arm.urdf, record, metrics, run.values)
+            yield ShardRow(end, texts.of(config.resolved), config.arm.urdf, record, metrics, run.values)
 
 
-def _provenance(job: Job, batcher: BatchSimulator) -> dict[str, object]:
+def _provenance(config: RunConfig, batcher: BatchSimulator) -> dict[str, object]:
     """Return the provenance of a run; runs with the same components share most of it."""
-    config, composed = job
-    key = ("provenance", composed.choices, *config.cache_key)
-    common = batcher.memory.known(key, lambda: job_provenance(config, composed))
-    return {**common, "command": command(composed), "seed": config.settings.seed}
+    key = ("provenance", config.composed.choices, *config.cache_key)
+    common = batcher.memory.known(key, lambda: job_provenance(config))
+    return {**common, "command": command(config.composed), "seed": config.settings.seed}

@@ -11,17 +11,14 @@ from numpy.typing import NDArray
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError
-from runner.config.calibration import validate_calibration
-from runner.config.compose.compose import Composed
 from runner.config.limits import LimitsConfig, SweepConfig, memory_of_run
 from runner.config.run import RunConfig
 from runner.config.spec import Bound
-from runner.config.validation import validate
 from runner.simulation.assembly import assemble
 from runner.store.identity import json_text
 from runner.store.names import Names, Texts
-from runner.sweeps.calibration_job import CALIBRATION, TICKS
 from runner.sweeps.differing import Resolved, is_one_arm, resolve
+from runner.sweeps.job import CalibrationJob, check_job
 from runner.sweeps.plan import Block, Plan
 
 _PROBLEMS_SHOWN = 20
@@ -71,18 +68,18 @@ def check(plan: Plan) -> Checked:
     for block in plan.blocks():
         cells = slice(block.cells.start, block.cells.stop, block.cells.step)
         try:
-            composed = plan.composed(block.cells[0])
-            if composed.root == CALIBRATION:
+            job = check_job(plan.composed(block.cells[0]))
+            costs[cells] = job.ticks
+            if isinstance(job, CalibrationJob):
                 calibrations.add(block.cells[0])
-                names[cells], costs[cells] = _check_calibration(composed)
+                names[cells] = job.name
                 continue
-            config = validate(composed.resolved, composed.config_dirs)
+            config, composed = job.config, job.config.composed
             first = first or config
             _check_alike(first, config)
-            _check_assembly(composed, config, assembled)
-            names[cells] = _names(composed, config, block)
+            _check_assembly(config, assembled)
+            names[cells] = _names(config, block)
             repetitions = config.settings.repetitions
-            costs[cells] = config.timing.ticks * repetitions
             memory = max(memory, memory_of_run(config.arm, config.timing.ticks, repetitions, config.has_contact))
             start = config.path.start.tolist() if is_one_arm(composed.resolved) else None
             described = resolve(composed.resolved, config.timing.step, start)
@@ -125,18 +122,11 @@ class _Problems:
         raise ConfigError([_describe(plan, problem, *where) for problem, where in found[:_PROBLEMS_SHOWN]], hint)
 
 
-def _names(composed: Composed, config: RunConfig, block: Block) -> Texts:
+def _names(config: RunConfig, block: Block) -> Texts:
     """Return the names of the runs of a block, shape (n,)."""
     if block.seeds is None:
-        return Names.of([store.run_hash(composed.resolved, config.arm.urdf)]).texts
-    return store.run_hashes(composed.resolved, config.arm.urdf, block.seeds).texts
-
-
-def _check_calibration(composed: Composed) -> tuple[str, int]:
-    """Return hash and cost of a calibration."""
-    config = validate_calibration(composed)
-    name = store.run_hash(config.resolved, config.arm.urdf)
-    return name, TICKS * config.settings.repetitions
+        return Names.of([store.run_hash(config.resolved, config.arm.urdf)]).texts
+    return store.run_hashes(config.resolved, config.arm.urdf, block.seeds).texts
 
 
 def _check_alike(first: RunConfig, other: RunConfig) -> None:
@@ -149,11 +139,9 @@ def _shared(config: RunConfig) -> tuple[object, ...]:
     return config.settings.outputs, config.sweep, config.limits, config.caveats, config.spec
 
 
-def _check_assembly(
-    composed: Composed, config: RunConfig, assembled: dict[tuple[str, bytes], ConfigError | None]
-) -> None:
+def _check_assembly(config: RunConfig, assembled: dict[tuple[str, bytes], ConfigError | None]) -> None:
     """Assemble each robot with each plant and start once; some problems appear only during assembly."""
-    parts = [json_text(composed.resolved[group]) for group in ("robot", "plant")]
+    parts = [json_text(config.resolved[group]) for group in ("robot", "plant")]
     key = ", ".join(parts), config.path.start.tobytes()
     if key not in assembled:
         assembled[key] = None

@@ -10,14 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.quantities import format_duration
-from runner.config.compose.compose import Composed
+from runner.config.composed import Composed
 from runner.config.validation import validate
-from runner.simulation.batch_jobs import seconds_together
+from runner.simulation.tick_time import PROBED_TICKS, seconds_per_tick, seconds_together
 from runner.store.atomic import write_atomically
 from runner.store.seal import sealed_json
 from runner.sweeps.check import Checked
 from runner.sweeps.deadline import TimeLimitError, deadline
-from runner.sweeps.job import PROBED_TICKS, seconds_per_tick
 from runner.sweeps.plan import Plan
 from runner.sweeps.status import NOTE
 
@@ -116,14 +115,14 @@ def _probe(composed: Composed, ticks: int, ticks_together: int) -> tuple[float, 
 
     Assembly and compilation are not counted because they happen once.
     """
-    config = validate(composed.resolved, composed.config_dirs)
+    config = validate(composed)
     probed = max(ticks, ticks_together)
     try:
-        per_tick = seconds_together((config, composed), ticks_together, deadline(_PROBED_WITHIN))
+        per_tick = seconds_together(config, ticks_together, deadline(_PROBED_WITHIN))
         if per_tick is not None:
             return per_tick, True, "about"
         probed = min(ticks, PROBED_TICKS)
-        return seconds_per_tick(config, composed, deadline(_PROBED_WITHIN)), False, "about"
+        return seconds_per_tick(config, deadline(_PROBED_WITHIN)), False, "about"
     except TimeLimitError:
         return _PROBED_WITHIN / probed, False, "more than"
     except Exception:  # the error of a component is stored with its run

@@ -6,6 +6,7 @@ a run.
 """
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -68,19 +69,17 @@ def work_out(outputs: Path, runs: Iterable[Run]) -> None:
 def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
     """Return the reason if a run has no finer step, and its metrics on it; None if the run cannot be repeated."""
     # Imports of the simulator, which a comparison of runs with known errors does not need
-    from runner.config.compose.compose import Composed
     from runner.config.validation import validate
-    from runner.simulation.batch_blocks import simulate_blocks, threads_allowed
+    from runner.simulation.run import simulate_blocks, threads_allowed
 
     try:
-        config = validate(run.config, run.config_dirs)
+        config = validate(run.composed)
         if store.run_hash(run.config, config.arm.urdf) != run.hash:
             return None
         if reason := _hindrance(config):
             return reason, {}
         resolved = _finer(run.config, config)
-        composed = Composed(resolved, (), {}, tuple(run.config_dirs))
-        result = simulate_blocks((validate(resolved, run.config_dirs), composed), threads_allowed())
+        result = simulate_blocks(validate(replace(run.composed, resolved=resolved)), threads_allowed())
     except RunnerError:
         return None
     if result is None:

@@ -8,10 +8,10 @@ from functools import cached_property
 from typing import Any
 
 from runner.base.errors import ConfigError
-from runner.config.compose.compose import Composed
 from runner.config.compose.composer import Composer
 from runner.config.compose.options import groups
 from runner.config.compose.overrides import prepare
+from runner.config.composed import Composed
 from runner.schema.plausibility import LARGEST_WHOLE
 from runner.store.axes import Axes, digits, is_simulated
 from runner.sweeps.swept import SweptKey, parse_sweep

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner import store
-from runner.config.compose.compose import Composed
+from runner.config.composed import Composed
 from runner.store.shards import next_number, shard_name
 from runner.sweeps.work import Chunk, Part, Report, find_stored
 from runner.sweeps.writer import Rules

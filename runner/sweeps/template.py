@@ -13,9 +13,10 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf
 
 from runner.base.dotted_keys import get
-from runner.config.compose.compose import Composed, from_hydra
+from runner.config.compose.compose import from_hydra
 from runner.config.compose.composer import put_values
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.composed import Composed
 from runner.sweeps.swept import SweptKey
 
 Place = tuple[str, ...]  # path of a value in a config, such as ("noise", "position")

@@ -5,30 +5,26 @@ import signal
 import threading
 import time
 import traceback
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar, cast
 
 from runner import store
 from runner.base.environment_variables import quiet_environment
 from runner.base.errors import DISK_FULL, RunnerError, StoreError, describe_write_error, user_place
 from runner.base.ticks import report_ticks
-from runner.config.calibration import validate_calibration
-from runner.config.compose.compose import Composed
+from runner.config.composed import CALIBRATION, Composed
 from runner.config.run import RunConfig
-from runner.config.validation import validate
 from runner.plugins.discovery import use_only
-from runner.simulation.batch_jobs import Job
 from runner.simulation.provenance import job_provenance
-from runner.simulation.result import RunResult
+from runner.simulation.results import RunResult
 from runner.store.shards import find_shards, outcome, read_outcomes, write_shard
 from runner.store.writing import cut_short_record
 from runner.sweeps.batch import make_together
-from runner.sweeps.calibration_job import CALIBRATION, carry_out
 from runner.sweeps.deadline import TimeLimitError, deadline
-from runner.sweeps.job import simulate_job
+from runner.sweeps.job import CalibrationJob, RunJob, check_job
 from runner.sweeps.writer import ResultWriter, Rules, without_trace, write_failure, write_log
 
 Made = TypeVar("Made")
@@ -127,10 +123,7 @@ def _make_all(chunk: Chunk, disk: Executor, outcomes: list[store.Outcome]) -> No
     for name, composed in left:
         if failed and rules.stop_at_failure:
             break
-        if composed.root == CALIBRATION:
-            outcomes.append(_calibrate(name, composed, rules))
-            failed = bool(outcomes[-1].failure)
-        elif name not in made:
+        if name not in made:
             failed = writer.put(name, _make(name, composed, rules))
     writer.close()
 
@@ -168,18 +161,20 @@ def _check_folder(rules: Rules) -> None:
         raise StoreError(f"a worker does not see {rules.sweep}; outputs must be a folder that all workers share")
 
 
-def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run:
-    """Simulate one run; return the result to store, in a separate folder or in a shard."""
-    config = _checked(name, composed)
-    result, reason, details = _try(lambda: simulate_job(config, composed), rules)
-    if result is not None:
+def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run | store.Outcome:
+    """Make one job; return a run as it is stored, or the outcome of a stored calibration."""
+    job = _checked(name, composed)
+    result: Any
+    result, reason, details = _try(job.simulate, rules)
+    if result is None:
+        return cut_short(job, rules, reason, details)
+    if isinstance(result, RunResult):
         return without_trace(name, result, rules)
-    run = cut_short(name, config, composed, rules, reason)
-    write_failure(run, details, rules)
-    return run
+    job.write(rules.outputs, result)
+    return store.Outcome(name, "", False)
 
 
-def _checked_runs(parts: Sequence[Sequence[tuple[str, Composed]]]) -> Iterator[tuple[str, Job]]:
+def _checked_runs(parts: Sequence[Sequence[tuple[str, Composed]]]) -> Iterator[tuple[str, RunConfig]]:
     """Yield the runs among the jobs with their checked configs; runs that differ only in the seed are checked once.
 
     This is sufficient: the command has checked all runs, and every run reveals a worker with other source code.
@@ -192,32 +187,16 @@ def _checked_runs(parts: Sequence[Sequence[tuple[str, Composed]]]) -> Iterator[t
         shared = tuple((key, id(group)) for key, group in first.resolved.items() if key != "seed")
         checked = known.get(shared)
         if checked is None:
-            checked = known[shared] = _checked(name, first)
+            checked = known[shared] = cast(RunJob, _checked(name, first)).config
         for name, composed in part:
-            yield name, (checked.with_seed(composed.resolved), composed)
+            yield name, checked.with_seed(composed)
 
 
-def _checked(name: str, composed: Composed) -> RunConfig:
-    config = validate(composed.resolved, composed.config_dirs)
-    _check_name(name, composed.resolved, config.arm.urdf)
-    return config
-
-
-def _calibrate(name: str, composed: Composed, rules: Rules) -> store.Outcome:
-    """Carry out one calibration and store it; an aborted one is not stored."""
-    config = validate_calibration(composed)
-    _check_name(name, config.resolved, config.arm.urdf)
-    record, reason, details = _try(lambda: carry_out(config, composed), rules)
-    if record is None:
-        write_log(name, f"{reason}\n{details}", rules)
-        return store.Outcome(name, f"cut short: {reason}", cut_short=True)
-    store.write_calibration(rules.outputs, name, config.resolved, config.arm.urdf, record)
-    return store.Outcome(name, "", False)
-
-
-def _check_name(name: str, resolved: Mapping[str, object], urdf: str) -> None:
-    if store.run_hash(resolved, urdf) != name:
+def _checked(name: str, composed: Composed) -> RunJob | CalibrationJob:
+    job = check_job(composed)
+    if job.name != name:
         raise StoreError("a worker has other source code or libraries than the command; install the same version there")
+    return job
 
 
 def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]:
@@ -240,18 +219,21 @@ def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]
 
 def give_up(chunk: Chunk, reason: str) -> Report:
     """Store the single job of a chunk as aborted because it crashes every worker."""
-    ((name, composed),), rules = chunk.jobs, chunk.rules
-    if composed.root == CALIBRATION:
-        write_log(name, reason, rules)
-        return Report([store.Outcome(name, f"cut short: {reason}", cut_short=True)], "", 0.0)
-    config = validate(composed.resolved, composed.config_dirs)
-    run = cut_short(name, config, composed, rules, reason)
-    write_failure(run, "", rules)
-    write_shard(rules.outputs, chunk.name, [run])
-    return Report([outcome(run)], "", 0.0)
+    (composed,), rules = [composed for _, composed in chunk.jobs], chunk.rules
+    made = cut_short(check_job(composed), rules, reason)
+    if isinstance(made, store.Outcome):
+        return Report([made], "", 0.0)
+    write_shard(rules.outputs, chunk.name, [made])
+    return Report([outcome(made)], "", 0.0)
 
 
-def cut_short(name: str, config: RunConfig, composed: Composed, rules: Rules, reason: str) -> store.Run:
-    """Return the run to store if a run ended for another reason than its physics."""
-    record = cut_short_record(reason, config.settings.repetitions, job_provenance(config, composed))
-    return store.Run(rules.outputs / "runs" / name, composed.resolved, record, config.arm.urdf)
+def cut_short(job: RunJob | CalibrationJob, rules: Rules, reason: str, details: str = "") -> store.Run | store.Outcome:
+    """Log a job that ended for another reason than its physics; return a run as it is stored, or an outcome."""
+    if isinstance(job, CalibrationJob):
+        write_log(job.name, f"{reason}\n{details}", rules)
+        return store.Outcome(job.name, f"cut short: {reason}", cut_short=True)
+    config = job.config
+    record = cut_short_record(reason, config.settings.repetitions, job_provenance(config))
+    run = store.Run(rules.outputs / "runs" / job.name, config.resolved, record, config.arm.urdf)
+    write_failure(run, details, rules)
+    return run

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from runner import store
-from runner.simulation.result import RunResult
+from runner.simulation.results import RunResult
 from runner.store.atomic import write_atomically
 from runner.store.shards import ShardRow, outcome, write_shard
 from runner.store.writing import make_record
@@ -90,11 +90,11 @@ class ResultWriter:
         self._written: Future[store.Run] | None = None
         self._traceless: list[store.Run | ShardRow] = []
 
-    def put(self, name: str, made: RunResult | store.Run) -> bool:
-        """Add a run; return True if it failed."""
-        if isinstance(made, store.Run):
-            self._traceless.append(made)
-            self._outcomes.append(outcome(made))
+    def put(self, name: str, made: RunResult | store.Run | store.Outcome) -> bool:
+        """Add a run, or the outcome of a stored calibration; return True if it failed."""
+        if not isinstance(made, RunResult):
+            self._traceless += [made] if isinstance(made, store.Run) else []
+            self._outcomes.append(outcome(made) if isinstance(made, store.Run) else made)
             return bool(self._outcomes[-1].failure)
         self._wait()
         self._written = self._disk.submit(store.write_run, self._rules.outputs, name, made)
@@ -126,7 +126,13 @@ def without_trace(name: str, result: RunResult, rules: Rules) -> RunResult | sto
     if rules.keeps_trace(name, result.failure is not None):
         return result
     folder, record = rules.outputs / "runs" / name, make_record(result)
-    run = store.Run(folder, result.resolved, record, result.urdf, beside=lambda metric: result.metrics[metric].values)
+    run = store.Run(
+        folder,
+        result.config.resolved,
+        record,
+        result.config.arm.urdf,
+        beside=lambda metric: result.metrics[metric].values,
+    )
     if run.failure:
         write_failure(run, "", rules)
     return run

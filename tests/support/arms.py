@@ -2,10 +2,9 @@
 
 import copy
 import functools
-from collections.abc import Mapping
-from typing import Any
 
 from runner.config.compose.compose import compose
+from runner.config.composed import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
@@ -29,8 +28,8 @@ def checked(*overrides: str) -> RunConfig:
 
 
 @functools.cache
-def _composed(*overrides: str) -> Mapping[str, Any]:
-    return compose(overrides).resolved
+def _composed(*overrides: str) -> Composed:
+    return compose(overrides)
 
 
 def last_of_each(*overrides: str) -> list[str]:

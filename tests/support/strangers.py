@@ -122,4 +122,4 @@ def read(name):
 
 def config(name, *overrides):
     """The checked config of a run of a stranger."""
-    return validate(compose([f"robot={robot(name)}", *overrides], [folder()]).resolved, [folder()])
+    return validate(compose([f"robot={robot(name)}", *overrides], [folder()]))

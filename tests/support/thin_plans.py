@@ -14,8 +14,7 @@ from typing import Protocol, TypeVar
 
 from runner import store
 from runner.store import Calibration, Run
-from runner.sweeps.calibration_job import calibrate
-from runner.sweeps.job import run
+from runner.sweeps.job import calibrate, run
 
 Overrides = tuple[str, ...]
 

@@ -1,8 +1,7 @@
 """Derivatives of a run's metrics by its parameters."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,8 @@ from runner.analysis.sensitivity.smooth_metrics import Change, derivatives
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
-from runner.config.compose.compose import Composed, compose
+from runner.config.compose.compose import compose
+from runner.config.composed import Composed
 from runner.config.flexibility import find_flexibility, is_flexible
 from runner.config.run import RunConfig
 from runner.config.validation import validate
@@ -111,7 +111,7 @@ def slopes_of(composed: Composed, groups: Sequence[str], repetition: int) -> Slo
 
     def recomposed(*overrides: str) -> RunConfig:
         again = compose([*composed.overrides, *overrides], composed.config_dirs) if overrides else composed
-        return by_runge_kutta(again.resolved, composed.config_dirs)
+        return by_runge_kutta(again)
 
     slopes = Slopes(scene_of(recomposed(), repetition))
     for parameter in find_links(slopes.scene.config, groups):
@@ -121,14 +121,15 @@ def slopes_of(composed: Composed, groups: Sequence[str], repetition: int) -> Slo
     return slopes
 
 
-def by_runge_kutta(resolved: Mapping[str, Any], config_dirs: Sequence[Path]) -> RunConfig:
+def by_runge_kutta(composed: Composed) -> RunConfig:
     """Return the checked config of a run, with the Runge-Kutta plant instead of another one that takes torques."""
-    config = validate(resolved, config_dirs)
+    config = validate(composed)
     if config.plant.kind == "rk4" or is_flexible(config) or PLANTS.commands(config.plant.kind) != "torque":
         return config
-    plant: Any = resolved["plant"]
+    plant: Any = composed.resolved["plant"]
     kept = {key: value for key, value in plant.items() if key in Rk4Config.model_fields}
-    return validate({**resolved, "plant": {**kept, "kind": "rk4", "step": None}}, config_dirs)
+    changed = {**composed.resolved, "plant": {**kept, "kind": "rk4", "step": None}}
+    return validate(replace(composed, resolved=changed))
 
 
 def simulate_run(run: RunSpec) -> tuple[Trace, Mapping[str, float | None]]:
@@ -196,7 +197,7 @@ def of_run(run: Run, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sen
         raise RunnerError(f"no repetition {repetition} of {run.hash}; allowed: 0 to {count - 1}")
     try:
         composed = compose(run.overrides, run.config_dirs)
-        arm = validate(composed.resolved, run.config_dirs).arm
+        arm = validate(composed).arm
     except ConfigError as error:
         raise RunnerError(f"run {run.hash} cannot be rerun: {'; '.join(error.problems)}") from None
     if arm.urdf != run.urdf:

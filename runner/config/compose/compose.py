@@ -1,7 +1,6 @@
 """Config composition from the groups in conf/ and a list of overrides, as plain data in SI units."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import cast
 
@@ -14,25 +13,7 @@ from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.data_files import take_data_file
 from runner.config.compose.stage_defaults import complete_stage_arms, complete_stages
 from runner.config.compose.units import to_si
-
-
-@dataclass(frozen=True)
-class Composed:
-    """A composed config before validation.
-
-    Attributes:
-        resolved: The config as plain data, with interpolations resolved and quantities such as 20ms in SI units.
-        overrides: The overrides of the composition, as typed.
-        choices: The option chosen in each group, such as {"robot": "macro"}.
-        config_dirs: Config folders of the user.
-        root: Name of the root file in conf/: "config" for a run, "calibrate" for a calibration.
-    """
-
-    resolved: Mapping[str, object]
-    overrides: tuple[str, ...]
-    choices: Mapping[str, str]
-    config_dirs: tuple[Path, ...]
-    root: str = "config"
+from runner.config.composed import Composed
 
 
 def compose(overrides: Sequence[str], config_dirs: Sequence[Path] = (), root: str = "config") -> Composed:

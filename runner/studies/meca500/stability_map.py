@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.quantities import number
+from runner.config.composed import Composed
 from runner.config.validation import validate
 from runner.controllers.force.admittance_stability import stiffest_wall
 from runner.metrics.caveats.contact_stability import servo_contact
@@ -105,7 +106,7 @@ def servo_panels(runs: Runs, pattern: str, x: Callable[[Run], float], y: Callabl
 
 
 def _loop(config: Mapping[str, Any], q: tuple[float, ...]) -> ServoContact:
-    loop = servo_contact(validate(dict(config)), np.array(q))
+    loop = servo_contact(validate(Composed(config)), np.array(q))
     assert loop is not None  # noqa: S101 - the plan's runs have servos, a law and a wall
     return loop
 

@@ -58,7 +58,7 @@ def measure(outputs: Path) -> None:
     for name, overrides in Grids(Path(__file__).parent / RUNS).runs.items():
         case, arm, plant, step = name.split("/")
         if plant == PLANT:
-            cases.setdefault(f"{case}/{arm}", {})[step] = validate(compose(overrides).resolved)
+            cases.setdefault(f"{case}/{arm}", {})[step] = validate(compose(overrides))
     hashes = {
         f"{case}/{PLANT}/{step}": store.run_hash(config.resolved, config.arm.urdf)
         for case, steps in cases.items()

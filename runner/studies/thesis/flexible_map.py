@@ -6,6 +6,7 @@ from typing import Any, cast
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.config.composed import Composed
 from runner.config.validation import validate
 from runner.controllers import Controller
 from runner.plants.flexible_joints import FlexibleJoints
@@ -24,7 +25,7 @@ def radius(run: Run, changes: Mapping[str, Any]) -> float:
         run: A run of one loop on flexible joints.
         changes: Values in place of those of its config, by dotted key.
     """
-    closed = assemble(validate(_changed(run.config, changes)))
+    closed = assemble(validate(Composed(_changed(run.config, changes))))
     try:
         plant, side, (loop,) = unwrapped(closed.plant), closed.motor_side, closed.loops
         assert isinstance(plant, FlexibleJoints)  # noqa: S101 - the caller says so

@@ -51,7 +51,7 @@ def load(path: Path) -> dict[str, Any] | None:
 
 def _chains() -> list[RobotModel]:
     """Return the Macro, the Macro with a Mini on it, one with a Mini on that, and so on."""
-    config = validate(compose(("robot=combined",)).resolved)
+    config = validate(compose(("robot=combined",)))
     if not isinstance(config.robot, StagedRobotConfig):
         raise TypeError("robot=combined has stages")
     place = config.robot.stages["mini"].mount

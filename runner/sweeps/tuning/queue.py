@@ -8,9 +8,10 @@ import numpy as np
 
 from runner import store
 from runner.base.errors import ConfigError
-from runner.config.compose.compose import Composed
 from runner.config.compose.composer import Composer
+from runner.config.composed import Composed
 from runner.config.validation import validate
+from runner.sweeps.job import RunJob
 from runner.sweeps.plan import Grid
 from runner.sweeps.queue import Queue
 from runner.sweeps.tuning.journal import Journal
@@ -100,8 +101,8 @@ class TrialQueue(Queue):
         overrides = [*self._study.overrides, *(key.override(params[key.name]) for key in self._study.keys)]
         try:
             composed = Grid(overrides, self._loader).composed(0)
-            config = validate(composed.resolved, composed.config_dirs)
-            run = store.run_hash(composed.resolved, config.arm.urdf)
+            job = RunJob(validate(composed))
+            run = job.name
         except ConfigError as error:
             self._started.append(_Started(params, "", "; ".join(error.problems)))
             return
@@ -109,7 +110,7 @@ class TrialQueue(Queue):
         if run not in self._cell_of:
             cell = self._cell_of[run] = len(self._runs)
             self._runs.append(run)
-            self._costs_of_runs.append(config.timing.ticks * config.settings.repetitions)
+            self._costs_of_runs.append(job.ticks)
             self._configs[cell] = composed
             self.put(cell)
 

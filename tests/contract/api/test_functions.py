@@ -43,7 +43,7 @@ def test_keywords_and_texts_make_the_same_run():
 
 def test_a_second_call_returns_the_stored_run_without_simulating(monkeypatch):
     first = runner.run(*SHORT)
-    monkeypatch.setattr(job, "simulate", None)
+    monkeypatch.setattr(job, "simulate_run", None)
     second = runner.run(*SHORT)
     assert second.folder == first.folder
     assert second.record == first.record
@@ -51,7 +51,7 @@ def test_a_second_call_returns_the_stored_run_without_simulating(monkeypatch):
 
 def test_the_command_line_finds_what_python_stored(cli, monkeypatch):
     run = runner.run(*SHORT)
-    monkeypatch.setattr(job, "simulate", None)
+    monkeypatch.setattr(job, "simulate_run", None)
     assert cli(*SHORT).folder == run.folder.resolve()
 
 

@@ -9,7 +9,7 @@ from support.patience import PATIENCE
 from runner.base import ticks
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.sweeps.job import simulate_job
+from runner.simulation.run import simulate_run
 
 
 def test_those_of_a_repetition_under_way_count():
@@ -33,10 +33,9 @@ def test_a_repetition_that_ends_early_counts_as_made():
 @pytest.mark.parametrize("plant", ["rk4", "mujoco"])
 def test_a_run_counts_the_ticks_of_all_its_repetitions(plant):
     """Compiled as a whole, or tick by tick."""
-    composed = compose(["robot=macro", f"plant={plant}", "duration=0.1", "repetitions=3"])
-    config = validate(composed.resolved, composed.config_dirs)
+    config = validate(compose(["robot=macro", f"plant={plant}", "duration=0.1", "repetitions=3"]))
     count = ticks.counter()
-    simulate_job(config, composed)
+    simulate_run(config)
     assert count() == 3 * config.timing.ticks
 
 

@@ -12,8 +12,8 @@ from runner.plugins import discovery
 from runner.simulation import provenance
 from runner.store import open_calibration
 from runner.store.seal import sealed_json
-from runner.sweeps import calibration_job
-from runner.sweeps.calibration_job import calibrate
+from runner.sweeps import job as jobs
+from runner.sweeps.job import calibrate
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def test_a_calibration_is_a_folder_of_its_own(job, tmp_path):
 
 def test_an_equal_config_returns_the_stored_one(job, monkeypatch):
     first = job("calibration=gravity")
-    monkeypatch.setattr(calibration_job, "carry_out", None)
+    monkeypatch.setattr(jobs, "simulate_calibration", None)
     second = job("calibration=gravity")
     assert (second.folder, second.record) == (first.folder, first.record)
     assert job("calibration=gravity", "wrist_sensor=mini40").hash == first.hash

@@ -15,7 +15,7 @@ from runner.study.expected_caveats import ExpectedCaveat
 from runner.study.findings import finding
 from runner.study.measured import Measured
 from runner.study.study import load_study
-from runner.sweeps import work as workers
+from runner.sweeps import job as workers
 from runner.sweeps.status import at_work
 
 FILES = {
@@ -76,14 +76,14 @@ def test_a_second_time_nothing_is_simulated(cli, small_study, tmp_path):
 
 
 def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missing(cli, small_study, monkeypatch):
-    simulate = workers.simulate_job
+    simulate = workers.simulate_run
 
-    def breaks(config, composed):
-        if composed.choices["robot"] == "mini":
+    def breaks(config, threads):
+        if config.composed.choices["robot"] == "mini":
             raise RuntimeError("the machine broke")
-        return simulate(config, composed)
+        return simulate(config, threads)
 
-    monkeypatch.setattr(workers, "simulate_job", breaks)
+    monkeypatch.setattr(workers, "simulate_run", breaks)
     ending = cli("reproduce", "small", HERE)
     assert ending.code == 1
     assert "runner: small: quintic is missing in the report: cut short: RuntimeError: the machine broke" in ending.err
@@ -91,7 +91,7 @@ def test_a_run_that_was_cut_short_is_an_error_and_the_report_says_what_is_missin
     assert "Not made, and so missing in this report" in page
     assert "This part needs what was not made: quintic: cut short: RuntimeError: the machine broke" in page
     assert "1 of 1 runs failed" in page  # the one that diverged is a result like any other
-    monkeypatch.setattr(workers, "simulate_job", simulate)
+    monkeypatch.setattr(workers, "simulate_run", simulate)
     assert cli("reproduce", "small", HERE).code == 0
 
 

@@ -40,7 +40,7 @@ def test_an_outline_has_the_joints_of_the_model(name):
 )
 def test_a_wrong_arm_is_reported_with_all_other_problems(override, problem):
     with pytest.raises(ConfigError) as raised:
-        validate(compose(["robot=combined", "seed=x", "typo=1", override]).resolved)
+        validate(compose(["robot=combined", "seed=x", "typo=1", override]))
     typo, seed, arm = raised.value.problems
     assert typo.startswith("typo: unknown key")
     assert seed.startswith("seed: must be")

@@ -148,7 +148,7 @@ def test_an_own_file_that_is_no_config_is_named_with_its_line(cli, tmp_path, con
     (own / "noise" / "own.yaml").write_bytes(content)
     if way == "python":
         with pytest.raises(ConfigError) as raised:
-            validate(compose(["noise=own"], [own]).resolved)
+            validate(compose(["noise=own"], [own]))
         text = str(raised.value)
     else:
         ending = cli("--config-dir", own, "noise=own")
@@ -163,7 +163,7 @@ def test_the_command_line_says_of_an_own_file_what_python_says(cli, tmp_path, co
     (tmp_path / "own" / "noise").mkdir(parents=True)
     (tmp_path / "own" / "noise" / "own.yaml").write_text(content)
     with pytest.raises(ConfigError) as raised:
-        validate(compose(["noise=own"], [tmp_path / "own"]).resolved)
+        validate(compose(["noise=own"], [tmp_path / "own"]))
     ending = cli("--config-dir", tmp_path / "own", "noise=own")
     assert (ending.code, ending.err) == (2, f"runner: {raised.value}\n")
 
@@ -186,7 +186,7 @@ def test_an_own_robot_runs(cli, tmp_path, place):
     assert "warning" not in ending.err
     assert 'mass value="2.0"' in (ending.folder / "robot.urdf").read_text()
     again = compose(["robot=mine", "torque_limits=thesis"], [own])
-    assert validate(again.resolved, again.config_dirs).torque_limits.tolist() == [50.0, 50.0, 20.0]
+    assert validate(again).torque_limits.tolist() == [50.0, 50.0, 20.0]
 
 
 def test_an_own_robot_without_urdf_names_the_places_searched(cli, tmp_path):

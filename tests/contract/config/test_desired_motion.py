@@ -9,7 +9,7 @@ from runner.config.validation import validate
 
 def problems_of(*overrides):
     with pytest.raises(ConfigError) as raised:
-        validate(compose(["robot=xarm7", "trajectory=joint_quintic", *overrides]).resolved)
+        validate(compose(["robot=xarm7", "trajectory=joint_quintic", *overrides]))
     return raised.value.problems
 
 

@@ -46,7 +46,7 @@ def nested(key, value):
 @pytest.mark.parametrize(("former", "present"), KEYS.items())
 def test_a_former_key_is_rejected_with_its_present_name(former, present):
     with pytest.raises(ConfigError) as raised:
-        validate(compose([*OWNERS[present], f"{former}=1"]).resolved)
+        validate(compose([*OWNERS[present], f"{former}=1"]))
     assert raised.value.problems == (f"{former}: this key is now called {present}.",)
 
 
@@ -57,17 +57,17 @@ def test_the_present_key_exists(present):
 
 @pytest.mark.parametrize(("former", "present"), KEYS.items())
 def test_a_group_that_has_the_former_key_instead_of_the_present_one_has_one_problem(former, present):
-    resolved = compose(OWNERS[present]).resolved
-    group = value_at(resolved, former.rpartition(".")[0])
+    composed = compose(OWNERS[present])
+    group = value_at(composed.resolved, former.rpartition(".")[0])
     group[former.rpartition(".")[2]] = group.pop(present.rpartition(".")[2])
     with pytest.raises(ConfigError) as raised:
-        validate(resolved)
+        validate(composed)
     assert raised.value.problems == (f"{former}: this key is now called {present}.",)
 
 
 def test_a_former_key_of_another_kind_is_unknown():
     with pytest.raises(ConfigError, match=r"controller.layer: unknown key; keys: task, "):
-        validate(compose(["controller=computed_torque", "controller.layer=1"]).resolved)
+        validate(compose(["controller=computed_torque", "controller.layer=1"]))
 
 
 @pytest.mark.parametrize(("group", "former", "present"), OPTIONS)
@@ -80,7 +80,7 @@ def test_a_former_option_is_rejected_with_its_present_name(group, former, presen
 
 def test_a_former_kind_is_rejected_with_its_present_name():
     with pytest.raises(ConfigError) as raised:
-        validate(compose(["environment=hand_guiding", "environment.kind=hand"]).resolved)
+        validate(compose(["environment=hand_guiding", "environment.kind=hand"]))
     assert raised.value.problems == ("environment.kind: 'hand' is now called 'hand_guiding'.",)
 
 
@@ -111,7 +111,7 @@ def test_a_file_is_rejected_as_the_command_line_is(tmp_path, text, problem):
     (tmp_path / "experiment").mkdir()
     (tmp_path / "experiment" / "own.yaml").write_text(f"# @package _global_\n{text}")
     with pytest.raises(ConfigError) as raised:
-        validate(compose(["experiment=own"], [tmp_path]).resolved)
+        validate(compose(["experiment=own"], [tmp_path]))
     assert raised.value.problems == (problem,)
 
 

@@ -9,8 +9,8 @@ from runner.base.ticks import counter
 from runner.config.compose.compose import compose
 from runner.config.limits import LimitsConfig, check_cpu_time, check_memory_together, memory_of_run
 from runner.config.validation import validate
+from runner.simulation.tick_time import seconds_per_tick
 from runner.store import simulated_part
-from runner.sweeps.job import seconds_per_tick
 
 
 @pytest.fixture(autouse=True)
@@ -99,6 +99,6 @@ def test_limits_are_no_part_of_a_result(checked_config):
 @pytest.mark.parametrize(("plant", "most"), [("rk4", 200_000), ("mujoco", 200)])
 def test_a_tick_is_timed_in_few_ticks(plant, most):
     composed = compose(["robot=macro", f"plant={plant}", "controller=operational_space"])
-    config, ticks = validate(composed.resolved), counter()
-    assert seconds_per_tick(config, composed) > 0.0
+    config, ticks = validate(composed), counter()
+    assert seconds_per_tick(config) > 0.0
     assert 0 < ticks() <= most

@@ -1,5 +1,7 @@
 """Memory of checked parts: one call for equal arguments, and no part is shared that differs."""
 
+from dataclasses import replace
+
 from runner.base.cache import Memory
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
@@ -44,12 +46,13 @@ def test_what_follows_from_parts_is_made_once_for_the_same_parts():
 
 
 def test_what_groups_give_is_shared_by_configs_that_share_them():
-    resolved = compose(["robot=macro"]).resolved
-    one, two = validate({**resolved, "seed": 1}), validate({**resolved, "seed": 2})
+    composed = compose(["robot=macro"])
+    resolved = composed.resolved
+    one, two = (validate(replace(composed, resolved={**resolved, "seed": seed})) for seed in (1, 2))
     assert (one.settings.seed, two.settings.seed) == (1, 2)
     assert one.robot is two.robot
     assert one.loops is two.loops
     assert one.path is two.path
-    other = validate({**resolved, "noise": {**resolved["noise"], "position": 0.5}})
+    other = validate(replace(composed, resolved={**resolved, "noise": {**resolved["noise"], "position": 0.5}}))
     assert other.noise.position[0] == 0.5
     assert other.loops is one.loops

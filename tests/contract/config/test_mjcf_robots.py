@@ -49,7 +49,7 @@ def mine(tmp_path, monkeypatch):
 @pytest.fixture
 def checked(mine):
     """A checked config of a robot of that folder."""
-    return lambda *overrides: validate(compose(overrides, [mine]).resolved, [mine])
+    return lambda *overrides: validate(compose(overrides, [mine]))
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from runner.store import run_hash
 
 def bounds(*overrides, config_dirs=()):
     composed = compose(["robot=macro", "plant=rk4", *overrides], config_dirs)
-    return validate(composed.resolved, composed.config_dirs).spec.metrics
+    return validate(composed).spec.metrics
 
 
 def problems(*overrides):

@@ -60,7 +60,7 @@ def test_a_robot_of_ten_lines_runs(mine):
 
 @pytest.mark.parametrize("group", ["noise=thesis", "torque_limits=thesis", "trajectory=circle"])
 def test_other_groups_take_the_defaults(mine, group):
-    validate(compose(["robot=plain", group], [mine]).resolved, [mine])
+    validate(compose(["robot=plain", group], [mine]))
 
 
 def test_what_its_file_says_wins(mine):
@@ -72,7 +72,7 @@ def test_what_its_file_says_wins(mine):
 def test_what_has_no_default_is_missed(mine):
     (mine / "robot/plain.yaml").write_text(ONE_ARM.replace("  tip: tip\n", "").replace("  goal: [0.4, 1.1, 0.9]\n", ""))
     with pytest.raises(ConfigError) as raised:
-        validate(compose(["robot=plain", "trajectory=circle"], [mine]).resolved, [mine])
+        validate(compose(["robot=plain", "trajectory=circle"], [mine]))
     assert raised.value.problems == ("robot.tip: missing", "robot.goal: missing")
 
 
@@ -92,7 +92,7 @@ def test_each_stage_takes_the_defaults_of_an_arm(mine):
 
 def test_a_value_of_one_arm_is_refused_for_a_robot_of_several():
     with pytest.raises(ConfigError, match=r"robot.armature: unknown key"):
-        validate(compose(["robot=combined", "robot.armature=0.1"]).resolved)
+        validate(compose(["robot=combined", "robot.armature=0.1"]))
 
 
 @pytest.mark.parametrize("robot", ["macro", "combined", "xarm7", "meca500"])

@@ -28,7 +28,7 @@ def resolve(*overrides):
 def problems(*overrides, config_dirs=()):
     composed = compose(overrides, config_dirs)
     with pytest.raises(ConfigError) as raised:
-        validate(composed.resolved, composed.config_dirs)
+        validate(composed)
     return raised.value.problems
 
 
@@ -47,14 +47,15 @@ def problems(*overrides, config_dirs=()):
     ],
 )
 def test_one_stage_is_changed_and_the_others_keep_theirs(override, group, key, expected):
-    resolved = resolve(override)
+    composed = compose([*COMBINED, override])
+    resolved = composed.resolved
     if expected is not None:
         assert resolved[group][key] == expected
     else:
         stages = resolved[group][key]
         assert stages["mini"]["masses"] == {"link2": 0.2, "link3": 0.1}
         assert stages["macro"]["masses"] == {"link2": 1.0, "link3": 1.0}
-    config = validate(resolved)
+    config = validate(composed)
     assert config.arm.stage_names == ("macro", "mini")
 
 

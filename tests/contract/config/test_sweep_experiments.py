@@ -28,7 +28,7 @@ def test_the_corners_of_a_ready_made_sweep_can_be_run(name):
     assert all(len(values) > 1 for values in axes.values())
     for corner in itertools.product(*((values[0], values[-1]) for values in axes.values())):
         cell = [f"{key}={value}" for key, value in zip(axes, corner, strict=True)]
-        config = validate(compose([f"experiment={name}", *cell]).resolved)
+        config = validate(compose([f"experiment={name}", *cell]))
         assert config.settings.repetitions >= 6  # fewer give no intervals
 
 

@@ -16,9 +16,9 @@ MACRO = ("robot=macro", "trajectory=quintic")
 
 
 def problems(*overrides, config_dirs=()):
-    resolved = compose(overrides, config_dirs).resolved
+    composed = compose(overrides, config_dirs)
     with pytest.raises(ConfigError) as caught:
-        validate(resolved, config_dirs)
+        validate(composed)
     return caught.value.problems
 
 

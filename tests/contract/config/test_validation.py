@@ -147,7 +147,7 @@ def test_start_and_goal_are_checked_together(cli):
 
 def test_the_error_holds_its_problems():
     with pytest.raises(ConfigError) as raised:
-        validate(compose(["seed=-1", "repetitions=0"]).resolved)
+        validate(compose(["seed=-1", "repetitions=0"]))
     assert raised.value.problems == ("seed: must be 0 or more; found -1", "repetitions: must be above 0; found 0")
 
 
@@ -161,6 +161,6 @@ def test_the_error_holds_its_problems():
     ],
 )
 def test_the_step_follows_from_the_period(overrides, step, steps):
-    config = validate(compose(overrides).resolved)
+    config = validate(compose(overrides))
     assert config.timing.step == pytest.approx(step, rel=1e-12)
     assert config.timing.steps_per_tick == steps

@@ -43,7 +43,7 @@ def written(tmp_path):
 def test_a_tip_of_any_name_is_taken(written, tmp_path, tip):
     _, (robot, _) = written("lamp.urdf", tip)
     assert yaml.safe_load(robot.read_text())["robot"]["tip"] == tip
-    config = validate(compose(["robot=lamp"], [tmp_path / "mine"]).resolved, [tmp_path / "mine"])
+    config = validate(compose(["robot=lamp"], [tmp_path / "mine"]))
     assert config.arm.model.tip_name == tip
 
 
@@ -119,7 +119,7 @@ def test_an_arm_without_mass_runs_as_it_is_written_and_refuses_torques(tmp_path)
     with pytest.raises(
         ConfigError, match=r"robot: no mass behind q1, q2, q3, so torques cannot move it; .* plant=kinem"
     ):
-        validate(torques.resolved, torques.config_dirs)
+        validate(torques)
 
 
 def test_a_folder_that_cannot_be_made_is_told(written, tmp_path):

@@ -19,7 +19,7 @@ FINGERS = CHAIN.replace(
 
 
 def config(folder):
-    return validate(compose(["robot=elbow"], [folder]).resolved, [folder])
+    return validate(compose(["robot=elbow"], [folder]))
 
 
 def test_an_mjcf_is_examined_as_a_urdf(tmp_path):
@@ -98,7 +98,7 @@ def test_a_gripper_joint_in_the_config_is_told(tmp_path):
         ("robot.home=[0,0.5,1,0]", "robot.home: 4 values for 3 joints (q1, q2, q3); found "),
     ):
         with pytest.raises(ConfigError) as error:
-            validate(compose(["robot=elbow", override], [tmp_path]).resolved, [tmp_path])
+            validate(compose(["robot=elbow", override], [tmp_path]))
         (problem,) = error.value.problems
         assert problem.startswith(told)
 

@@ -38,8 +38,8 @@ def record_alone(metrics, run, found, provenance):
     repetitions = len(next(iter(metrics.values()))[run])
     each = summarize_arrays(tuple(metrics), np.array([values[run] for values in metrics.values()]).T)
     result = SimpleNamespace(
-        failure=None, repetitions=repetitions, caveats=found, metrics=each, timing=TIMING,
-        provenance=provenance, resolved={}, plant_error=None,
+        failure=None, caveats=found, metrics=each, timing=TIMING, provenance=provenance, plant_error=None,
+        config=SimpleNamespace(settings=SimpleNamespace(repetitions=repetitions), resolved={}),
     )  # fmt: skip
     return make_record(result)
 

@@ -1,6 +1,7 @@
 """A disk that takes no more, by a limit on the size of files: one sentence, nothing lost, the same command goes on."""
 
 import resource
+import sys
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -11,13 +12,14 @@ CASE = ("robot=macro", "plant=rk4", "controller=computed_torque", "duration=0.5"
 
 @contextmanager
 def largest_file(size):
-    """Let no file of this process grow beyond a size, in bytes."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    """Let no file of this process grow beyond a size, in bytes; Python writes no byte code, which it would cut off."""
+    before, sys.dont_write_bytecode = resource.getrlimit(resource.RLIMIT_FSIZE), True
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
     try:
         yield
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
+        sys.dont_write_bytecode = False
 
 
 def contents(folder=Path()):

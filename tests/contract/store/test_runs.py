@@ -26,8 +26,8 @@ def simulated(monkeypatch):
     """Count the runs that are simulated."""
     from runner.sweeps import job
 
-    count, simulate = [], job.simulate_job
-    monkeypatch.setattr(job, "simulate_job", lambda *given: count.append(1) or simulate(*given))
+    count, simulate = [], job.simulate_run
+    monkeypatch.setattr(job, "simulate_run", lambda *given: count.append(1) or simulate(*given))
     return count
 
 

@@ -200,7 +200,7 @@ def test_a_failed_run_says_why_in_words(run):
 @pytest.mark.parametrize("place", ["a_file", "/proc/nowhere", "a_file/below"])
 def test_an_outputs_folder_that_cannot_be_written_to_is_said_before_simulating(cli, tmp_path, monkeypatch, place):
     (tmp_path / "a_file").write_text("kept")
-    monkeypatch.setattr(runner.sweeps.job, "simulate", None)
+    monkeypatch.setattr(runner.sweeps.job, "simulate_run", None)
     for command in (SHORT, ("-m", "hydra.sweeper.workers=0", *SHORT, "seed=0,1")):
         ending = cli(*command, f"outputs={place}")
         assert (ending.code, ending.out) == (2, "")

@@ -35,4 +35,4 @@ def test_each_robot_and_key_of_a_plan_is_taken(study: str) -> None:
         jobs = {name: overrides for name, overrides in jobs.items() if not any("bullet" in text for text in overrides)}
     for overrides in covering(jobs):
         composed = compose(overrides, dirs)
-        assert validate(composed.resolved, composed.config_dirs).timing.ticks > 0
+        assert validate(composed).timing.ticks > 0

@@ -8,12 +8,11 @@ from support.grids import plan_sweep
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.simulation import batch_jobs
-from runner.simulation.batch_jobs import seconds_together, warm_time
-from runner.sweeps import job, run
+from runner.simulation import tick_time
+from runner.simulation.tick_time import PROBED_TICKS, seconds_per_tick, seconds_together, warm_time
+from runner.sweeps import run
 from runner.sweeps.engine import in_process
 from runner.sweeps.estimate import START_UP, Estimate
-from runner.sweeps.job import PROBED_TICKS, seconds_per_tick
 from runner.sweeps.run import Engine, run_sweep
 
 SHORT = ("robot=macro", "duration=0.05", "noise=none")
@@ -99,8 +98,8 @@ def test_what_is_quick_is_timed_the_second_time(first, made):
     assert len(calls) == made
 
 
-def together(config, composed, within, clock):
-    return seconds_together((config, composed), 15, within, clock)
+def together(config, within, clock):
+    return seconds_together(config, 15, within, clock)
 
 
 @pytest.mark.parametrize(
@@ -124,11 +123,11 @@ def test_assembly_is_outside_the_deadline_and_the_ticks_within(monkeypatch, meas
         plain = getattr(owner, name)
         monkeypatch.setattr(owner, name, lambda *args, **options: (events.append(event), plain(*args, **options))[1])
 
-    noted(batch_jobs.BatchSimulator, "repetitions", "repetitions asked for")
-    noted(batch_jobs.BatchSimulator, "simulate", "ticks")
-    noted(job, "assemble", "assembled")
-    noted(job, "simulate", "ticks")
-    composed = compose([*SHORT, f"plant={plant}", f"duration={duration}"])
-    per_tick = measure(validate(composed.resolved), composed, within(), Steps(0.25))
+    noted(tick_time.BatchSimulator, "repetitions", "repetitions asked for")
+    noted(tick_time.BatchSimulator, "simulate", "ticks")
+    noted(tick_time, "assemble", "assembled")
+    noted(tick_time, "simulate_repetition", "ticks")
+    config = validate(compose([*SHORT, f"plant={plant}", f"duration={duration}"]))
+    per_tick = measure(config, within(), Steps(0.25))
     assert events == [*before, "deadline", "ticks", "ticks", "end"]
     assert per_tick == pytest.approx(0.25 / ticks)

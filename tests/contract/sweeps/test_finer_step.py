@@ -45,7 +45,7 @@ def test_both_sides_err_alike_so_that_a_difference_errs_less(tmp_path):
 
 def test_what_is_known_is_not_made_again(tmp_path, monkeypatch):
     own = made(tmp_path, ASKED)
-    monkeypatch.setattr("runner.simulation.batch_blocks.simulate_blocks", None)
+    monkeypatch.setattr("runner.simulation.run.simulate_blocks", None)
     work_out(tmp_path, [own])
 
 

@@ -28,7 +28,7 @@ def test_cells_are_named_as_one_by_one(arguments, blocks):
     checked = check(plan)
     for cell in range(len(plan)):
         composed = plan.composed(cell)
-        config = validate(composed.resolved)
+        config = validate(composed)
         assert checked.names[cell] == run_hash(composed.resolved, config.arm.urdf)
         assert checked.costs[cell] == config.timing.ticks * config.settings.repetitions
 

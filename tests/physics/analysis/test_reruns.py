@@ -51,7 +51,7 @@ class Again:
         return self.changed(name, held[0])
 
     def changed(self, name, value):
-        config = validate(compose([*self.overrides, f"{name}={json.dumps(value)}"]).resolved)
+        config = validate(compose([*self.overrides, f"{name}={json.dumps(value)}"]))
         return RunSpec(config, 0, *assemble_program(config))
 
 

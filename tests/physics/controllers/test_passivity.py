@@ -9,9 +9,7 @@ from runner.config.validation import validate
 
 CONFIGS = {
     name: validate(
-        compose(
-            [f"robot={name}", "controller=passivity", "trajectory=joint_quintic", "robot.natural_frequency=30"]
-        ).resolved
+        compose([f"robot={name}", "controller=passivity", "trajectory=joint_quintic", "robot.natural_frequency=30"])
     )
     for name in ("macro", "xarm7")
 }

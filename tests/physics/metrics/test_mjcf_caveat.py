@@ -33,7 +33,7 @@ def told(request, tmp_path):
             written(tmp_path, read_mjcf(path).urdf, file)
         written(tmp_path, dedent(ROBOT).replace("FORMAT", request.param).replace("FILE", file), "robot/elbow.yaml")
         composed = compose(["robot=elbow", "duration=0.1", "trajectory.duration=0.1", *overrides], [tmp_path])
-        caveat = found(validate(composed.resolved, [tmp_path])).get("robot_file")
+        caveat = found(validate(composed)).get("robot_file")
         return caveat and caveat.text.replace(file, "FILE")
 
     return run

@@ -21,7 +21,7 @@ from runner.config.validation import validate
 from runner.simulation.assembly import assemble
 from runner.simulation.sensors import make_encoders
 from runner.simulation.loop import simulate
-config = validate(compose(["robot=macro", "noise=thesis", "torque_limits=thesis", "duration=0.5"]).resolved)
+config = validate(compose(["robot=macro", "noise=thesis", "torque_limits=thesis", "duration=0.5"]))
 loop = assemble(config)
 print(simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0)).q[-1].tobytes().hex())
 """

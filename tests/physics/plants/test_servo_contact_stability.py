@@ -114,9 +114,7 @@ def test_runs_bounce_beyond_the_bound_alone(plant):
 )
 def test_without_servos_or_a_wall_there_is_none(overrides):
     config = validate(
-        compose(
-            ("robot=meca500", *(("environment=wall",) if overrides[0] == "plant=kinematic" else ()), *overrides)
-        ).resolved
+        compose(("robot=meca500", *(("environment=wall",) if overrides[0] == "plant=kinematic" else ()), *overrides))
     )
     assert servo_contact(config, config.arm.home) is None
 

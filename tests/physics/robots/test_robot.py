@@ -39,7 +39,7 @@ def three(tmp_path_factory):
     robot["name"], robot["stages"]["top"] = "three", TOP
     (own / "robot" / "three.yaml").write_text(f"# @package _global_\n{yaml.safe_dump(content, sort_keys=False)}")
     overrides = ["robot=three", "controller.period.top=0.0005", "duration=0.02"]
-    return validate(compose(overrides, [own]).resolved, [own])
+    return validate(compose(overrides, [own]))
 
 
 def postures(robot, count=8, seed=0):

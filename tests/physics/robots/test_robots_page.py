@@ -27,7 +27,7 @@ def test_every_arm_of_one_maker_has_a_row():
 @pytest.mark.parametrize("name", ROWS)
 def test_a_row_tells_what_the_file_holds(name):
     _, joints, reach, payload, mass, armature, _ = ROWS[name]
-    run = validate(compose((f"robot={name}",)).resolved)
+    run = validate(compose((f"robot={name}",)))
     robot, arm = run.robot, run.arm
     assert int(joints) == arm.model.nq
     assert f"reach {reach} m, payload {payload}" in group_options("robot")[name]

@@ -1,5 +1,6 @@
 """Runs that are simulated together: each as it is alone, to the last bit."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -166,8 +167,8 @@ def test_what_runs_have_in_common_is_worked_out_once(monkeypatch):
     made = []
     whole = batch.assemble_program
     monkeypatch.setattr(batch, "assemble_program", lambda *given: made.append(1) or whole(*given))
-    composed = compose([*SCENE, "noise=thesis"]).resolved
+    composed = compose([*SCENE, "noise=thesis"])
     batcher = BatchSimulator()
     for seed in range(5):
-        batcher.repetitions(validate({**composed, "seed": seed}))
+        batcher.repetitions(validate(replace(composed, resolved={**composed.resolved, "seed": seed})))
     assert len(made) == 1

@@ -98,7 +98,7 @@ def damping_ratios(frequency, *keys):
     """Frequencies in Hz and damping ratios of the modes of the Macro with its brakes on, under the Mini's law."""
     config = validate(
         compose([*FLEXIBLE, "gravity=0", stiff(1000), f"{KEY}.damping_ratio=0", f"{KEY}.brake_time={{macro: 0}}",
-                 f"controller.natural_frequency={{macro: 30, mini: {frequency}}}", *keys]).resolved
+                 f"controller.natural_frequency={{macro: 30, mini: {frequency}}}", *keys])
     )  # fmt: skip
     closed = assemble(config)
     plant, mini = closed.plant, closed.loops[1]
@@ -203,5 +203,5 @@ def test_a_law_of_joints_has_no_use_for_it():
                     "trajectory=joint_quintic",
                     "endpoint_sensor.read_by=[whole]",
                 ]
-            ).resolved
+            )
         )

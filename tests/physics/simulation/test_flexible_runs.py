@@ -65,7 +65,7 @@ def test_a_stage_with_null_stays_rigid():
                 f"{KEY}.stiffness={{macro: 1000, mini: null}}",
                 f"{KEY}.motor_inertia={{macro: 2, mini: null}}",
             ]
-        ).resolved
+        )
     )
     flexibility = config.plant.flexible_joints.by_joint(config.arm)
     assert flexibility.flexible.tolist() == [True] * 3 + [False] * 3

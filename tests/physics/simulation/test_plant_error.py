@@ -11,7 +11,8 @@ from runner.base.trace import Failure
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.metrics.plant_error import compare, on_runge_kutta, sufficient_step
-from runner.sweeps.job import run, simulate_job
+from runner.simulation.run import simulate_run
+from runner.sweeps.job import run
 
 CASE = ("robot=macro", "trajectory=quintic", "trajectory.duration=1", "duration=1.5")
 OTHER = "bullet" if has_pybullet() else "mujoco"
@@ -25,8 +26,7 @@ def measured(tmp_path, *overrides):
 @pytest.fixture(scope="module")
 def simulated():
     """Repetition 0 of a case on Runge-Kutta: its trace and its metrics."""
-    composed = compose((*CASE, "plant=rk4"))
-    result = simulate_job(validate(composed.resolved, composed.config_dirs), composed)
+    result = simulate_run(validate(compose((*CASE, "plant=rk4"))))
     return result.trace, {name: summary.median for name, summary in result.metrics.items()}
 
 
@@ -145,14 +145,14 @@ def test_nothing_is_stored_where_nobody_asks_or_nothing_is_to_be_compared(tmp_pa
 
 def test_what_runge_kutta_cannot_make_is_told(tmp_path, monkeypatch):
     from runner.base.errors import ConfigError
-    from runner.sweeps import job
+    from runner.simulation import run as simulation
 
-    def refuse(resolved, config_dirs):
-        if resolved["plant"]["kind"] == "rk4":
+    def refuse(composed):
+        if composed.resolved["plant"]["kind"] == "rk4":
             raise ConfigError(["plant.kind: rk4 cannot do that"])
-        return validate(resolved, config_dirs)
+        return validate(composed)
 
-    monkeypatch.setattr(job, "validate", refuse)
+    monkeypatch.setattr(simulation, "validate", refuse)
     stored = measured(tmp_path, f"plant={OTHER}")
     assert stored.plant_error["plant"] == "rk4"
     assert "rk4 cannot do that" in stored.plant_error["reason"]

@@ -78,9 +78,7 @@ def test_modes_are_those_of_the_posture_where_the_arm_starts():
 def test_the_macro_with_its_mini_rings_slower():
     soft = ("stiffness={macro: 1000, mini: null}", "motor_inertia={macro: 2, mini: null}")
     keys = ("robot=combined", "plant=rk4_flexible", *(f"plant.flexible_joints.{key}" for key in soft))
-    config = validate(
-        compose([*keys, "trajectory=quintic", "trajectory.goal=[0.4,0.8,0.7]", "input_shaper=zv"]).resolved
-    )
+    config = validate(compose([*keys, "trajectory=quintic", "trajectory.goal=[0.4,0.8,0.7]", "input_shaper=zv"]))
     frequencies = [mode.frequency for mode in PLANTS.modes(config.plant, config.arm, config.arm.home)]
     assert frequencies == pytest.approx([2.511, 3.361, 6.149], abs=5e-4)
     assert config.path.duration - 3.0 == pytest.approx(0.5 / 2.511, rel=1e-3)

@@ -238,7 +238,7 @@ def test_another_process_gives_the_same_bits(simulated):
         "import test_simulation as t\n"
         "from runner.config.compose.compose import compose\n"
         "from runner.config.validation import validate\n"
-        "config = validate(compose(sys.argv[3:]).resolved)\n"
+        "config = validate(compose(sys.argv[3:]))\n"
         "loop = t.assemble(config)\n"
         "print(t.fingerprint(t.simulate(loop, t.make_encoders(loop, config.noise, config.settings.seed, 1))))\n"
     )

@@ -50,7 +50,7 @@ def written(tmp_path):
 
 def checked(file, *more, robot="macro"):
     overrides = [f"robot={robot}", "trajectory=from_file", f"trajectory.file={file}", *more]
-    return validate(compose(overrides).resolved)
+    return validate(compose(overrides))
 
 
 def problems_of(file, *more):
@@ -120,7 +120,7 @@ def test_a_stored_run_needs_no_file(written, tmp_path):
     file = written(JOINTS[:3], POSTURE)
     made = run("robot=macro", "trajectory=from_file", f"trajectory.file={file}", "duration=0.1", f"outputs={tmp_path}")
     file.unlink()
-    path = validate(made.config).path
+    path = validate(made.composed).path
     np.testing.assert_allclose(path.sample_joints(T)[:, 0], POSTURE, atol=1e-14)
 
 
@@ -137,7 +137,7 @@ def test_a_changed_file_is_another_run_though_the_line_is_the_same(written, cli)
 def test_a_sweep_over_files_is_one_of_their_contents(written):
     names = [written(JOINTS[:3], share * POSTURE, f"m{share}.csv").name for share in (1.0, 0.5)]
     plan = plan_sweep(["robot=macro", "trajectory=from_file", f"trajectory.file={','.join(names)}"])
-    swept = [run_hash(validate(plan.composed(cell).resolved).resolved, "") for cell in range(len(plan))]
+    swept = [run_hash(validate(plan.composed(cell)).resolved, "") for cell in range(len(plan))]
     assert swept == [run_hash(checked(name).resolved, "") for name in names]
     assert swept[0] != swept[1]
 

@@ -106,7 +106,7 @@ def test_a_hint_names_no_plant_that_is_missing():
     with pytest.raises(
         ConfigError, match="take plant=mujoco or plant=rk4 or plant=rk4_flexible_links, or a controller"
     ):
-        validate(compose(["plant=kinematic"]).resolved)
+        validate(compose(["plant=kinematic"]))
 
 
 @pytest.mark.usefixtures("_missing")

@@ -14,7 +14,7 @@ from runner.config.compose.compose import compose
 from runner.config.validation import validate
 
 try:
-    validate(compose(sys.argv[1:]).resolved)
+    validate(compose(sys.argv[1:]))
 except ConfigError as error:
     heavy = ("pinocchio", "scipy", "pandas", "matplotlib", "llvmlite")
     print(len(error.problems), *(name for name in heavy if name in sys.modules))

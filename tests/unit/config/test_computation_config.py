@@ -12,7 +12,7 @@ ARM = ("robot=macro", "trajectory=goal", "duration=0.1")
 
 
 def _config(*overrides):
-    return validate(compose([*ARM, *overrides]).resolved)
+    return validate(compose([*ARM, *overrides]))
 
 
 @pytest.mark.parametrize("delay", [0, 1, 7])

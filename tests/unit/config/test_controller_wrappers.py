@@ -11,7 +11,7 @@ OBSERVER, NOTCH = "disturbance_observer=momentum", "notch=torques"
 
 
 def _validate(*overrides):
-    return validate(compose([*ARM, *overrides]).resolved)
+    return validate(compose([*ARM, *overrides]))
 
 
 @pytest.mark.parametrize("overrides", [(), (OBSERVER,), (NOTCH, "notch.frequency=10", "notch.width=2")])

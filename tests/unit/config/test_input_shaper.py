@@ -56,4 +56,4 @@ def test_a_mode_that_the_plant_lacks_is_told(modes, problem):
 def test_motions_that_cannot_be_shaped_are_told(override, problem):
     shaper = ("input_shaper=zv", "input_shaper.frequency=1000")
     with pytest.raises(ConfigError, match=problem):
-        validate(compose(["robot=macro", "plant=rk4", "controller.period=0.01", *override.split(), *shaper]).resolved)
+        validate(compose(["robot=macro", "plant=rk4", "controller.period=0.01", *override.split(), *shaper]))

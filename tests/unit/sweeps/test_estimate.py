@@ -19,7 +19,7 @@ class Plan:
     """Runs whose configs are their numbers."""
 
     def composed(self, cell):
-        return SimpleNamespace(resolved=cell, config_dirs=())
+        return SimpleNamespace(resolved=cell)
 
 
 @pytest.fixture
@@ -33,11 +33,11 @@ def estimated(monkeypatch):
                 raise told
             return told
 
-        monkeypatch.setattr(pace, "validate", lambda resolved, _: resolved)
+        monkeypatch.setattr(pace, "validate", lambda composed: composed.resolved)
 
         def found_together(job, ticks, _):
             make.ticks.append(ticks)
-            return found(job[0]) if together else None
+            return found(job) if together else None
 
         monkeypatch.setattr(pace, "seconds_together", found_together)
         monkeypatch.setattr(pace, "seconds_per_tick", found)

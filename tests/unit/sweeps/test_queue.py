@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.config.compose.compose import Composed
+from runner.config.composed import Composed
 from runner.store import Outcome
 from runner.sweeps import queue as queues
 from runner.sweeps.queue import Queue

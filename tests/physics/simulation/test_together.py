@@ -4,10 +4,9 @@ import pytest
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.simulation.batch import BatchSimulator
-from runner.simulation.batch_jobs import simulate_together
+from runner.simulation.batch import BatchSimulator, simulate_together
+from runner.simulation.run import simulate_run
 from runner.store.writing import make_record
-from runner.sweeps.job import simulate_job
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")
@@ -16,18 +15,17 @@ TIMED = ("timing", "provenance")
 
 
 def job(*overrides):
-    composed = compose([*SCENE, *overrides])
-    return validate(composed.resolved), composed
+    return validate(compose([*SCENE, *overrides]))
 
 
 def record(result):
     return {key: value for key, value in make_record(result).items() if key not in TIMED}
 
 
-def one_by_one(monkeypatch, *given):
+def one_by_one(monkeypatch, config):
     with monkeypatch.context() as apart:
         apart.setattr(BatchSimulator, "repetitions", lambda *_: None)
-        return simulate_job(*given)
+        return simulate_run(config)
 
 
 @pytest.mark.parametrize(
@@ -40,8 +38,8 @@ def one_by_one(monkeypatch, *given):
     ],
 )
 def test_a_run_s_record_is_the_same_together_and_one_by_one(monkeypatch, overrides):
-    given = job(*overrides)
-    assert record(simulate_job(*given)) == record(one_by_one(monkeypatch, *given))
+    config = job(*overrides)
+    assert record(simulate_run(config)) == record(one_by_one(monkeypatch, config))
 
 
 def test_runs_are_complete_once_all_their_repetitions_have_ended(monkeypatch):
@@ -58,12 +56,12 @@ def test_runs_are_complete_once_all_their_repetitions_have_ended(monkeypatch):
         job("duration=2"),
     ]
     batcher = BatchSimulator()
-    runs = [batcher.repetitions(config) for config, _ in jobs]
-    found = {run.place: run for some in simulate_together(jobs, runs, batcher) for run in some}
+    runs = [batcher.repetitions(config) for config in jobs]
+    found = {run.place: run for some in simulate_together(runs, batcher) for run in some}
     assert sorted(found) == [0, 1, 2, 3]
-    for place, given in enumerate(jobs):
+    for place, config in enumerate(jobs):
         ours = found[place].result()
-        assert record(ours) == record(one_by_one(monkeypatch, *given))
-        assert ours.provenance["command"] == f"runner {' '.join(given[1].overrides)}"
+        assert record(ours) == record(one_by_one(monkeypatch, config))
+        assert ours.provenance["command"] == f"runner {' '.join(config.composed.overrides)}"
         assert ours.timing["wall_s"] > 0.0
     assert found[1].failure[0] == 0

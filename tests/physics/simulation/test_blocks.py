@@ -8,9 +8,9 @@ import pytest
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.simulation import batch_blocks
+from runner.simulation import run as simulation
 from runner.simulation.batch import BatchSimulator
-from runner.simulation.batch_blocks import MOST_THREADS, simulate_blocks
+from runner.simulation.run import MOST_THREADS, simulate_blocks
 from runner.store.writing import make_record
 from runner.symbolic.engine import evaluator
 
@@ -22,8 +22,7 @@ FAILING = (
 
 
 def job(*overrides):
-    composed = compose([*SCENE, *overrides])
-    return validate(composed.resolved), composed
+    return validate(compose([*SCENE, *overrides]))
 
 
 @functools.cache
@@ -77,12 +76,12 @@ def test_no_block_is_larger_than_asked_for(monkeypatch):
         return simulate(self, runs)
 
     monkeypatch.setattr(BatchSimulator, "simulate", noted)
-    config, composed = job("trajectory=quintic", "duration=0.1", "repetitions=95")
-    simulate_blocks((config, composed), threads=2, ticks=10 * config.timing.ticks)
+    config = job("trajectory=quintic", "duration=0.1", "repetitions=95")
+    simulate_blocks(config, threads=2, ticks=10 * config.timing.ticks)
     assert sorted(size for size, _ in asked) == [5, *[10] * 9]
     assert len({thread for _, thread in asked}) == 3  # ours, and two more
     asked.clear()
-    simulate_blocks((config, composed), threads=2, ticks=config.timing.ticks - 1)
+    simulate_blocks(config, threads=2, ticks=config.timing.ticks - 1)
     assert asked == [(1, threading.main_thread())] * 95
 
 
@@ -96,18 +95,18 @@ def test_an_error_in_a_block_ends_the_run_and_its_threads(monkeypatch):
 
     monkeypatch.setattr(BatchSimulator, "simulate", failing)
     before = threading.active_count()
-    config, composed = job("trajectory=quintic", "duration=0.1", "repetitions=95")
+    config = job("trajectory=quintic", "duration=0.1", "repetitions=95")
     with pytest.raises(OSError, match="the disk is gone"):
-        simulate_blocks((config, composed), threads=2, ticks=10 * config.timing.ticks)
+        simulate_blocks(config, threads=2, ticks=10 * config.timing.ticks)
     assert threading.active_count() == before
 
 
 def test_parts_of_the_user_s_are_asked_by_one_thread_alone(monkeypatch):
     monkeypatch.setattr("os.cpu_count", lambda: 64)
     monkeypatch.delattr("os.sched_getaffinity", raising=False)
-    assert batch_blocks.threads_allowed() == MOST_THREADS
-    monkeypatch.setattr(batch_blocks, "has_users_parts", lambda: True)
-    assert batch_blocks.threads_allowed() == 1
+    assert simulation.threads_allowed() == MOST_THREADS
+    monkeypatch.setattr(simulation, "has_users_parts", lambda: True)
+    assert simulation.threads_allowed() == 1
 
 
 def test_what_is_not_compiled_as_a_whole_is_left_to_the_loop():

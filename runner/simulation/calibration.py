@@ -1,69 +1,30 @@
-"""Calibration job: check of a composed config, repeated calibration, and storage or reuse of the result."""
+"""Repetitions of a calibration, and their record."""
 
-import sys
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from runner import store
-from runner.base import progress
 from runner.base.arrays import FloatArray
-from runner.base.ticks import add_ticks, counter
+from runner.base.ticks import add_ticks
 from runner.calibration import consistency
 from runner.calibration.procedures import Outcome
-from runner.config.calibration import CalibrationConfig, validate_calibration
-from runner.config.compose.compose import Composed, compose
+from runner.config.calibration import CalibrationConfig
 from runner.simulation import provenance
-from runner.store.kinds import note
 
-CALIBRATION = "calibrate"
-"""Root of a calibration's config; the root of a run's config is "config"."""
 LEVEL = 0.99
 """Probability of the band in which the mean normalised error squared must lie."""
 TICKS = 200
 """Ticks of a run that take as long as one repetition of a calibration."""
 
 
-def calibrate(*overrides: str, config_dirs: Sequence[Path] = ()) -> store.Calibration:
-    """Run `runner calibrate OVERRIDES` from Python.
-
-    Args:
-        overrides: Hydra overrides, such as "calibration=gravity" and "calibration.orientations=8".
-        config_dirs: User config folders, searched before the built-in ones.
-
-    Returns:
-        The stored calibration; an existing one is reused.
-
-    Raises:
-        ConfigError: if the calibration cannot be carried out; the error lists all problems of the config.
-        StoreError: if the outputs folder cannot be written.
-    """
-    composed = compose(overrides, config_dirs, root=CALIBRATION)
-    config = validate_calibration(composed)
-    outputs = Path(config.settings.outputs)
-    name = store.run_hash(config.resolved, config.arm.urdf)
-    try:
-        stored = store.find_calibration(outputs, name)
-    except store.DamagedError as error:
-        print(f"runner: {error}; making it again", file=sys.stderr)
-        stored = None
-    if stored is None:
-        progress.begin("calibrating", total=TICKS * config.settings.repetitions, unit="ticks", count=counter())
-        stored = store.write_calibration(outputs, name, config.resolved, config.arm.urdf, carry_out(config, composed))
-    note(stored.folder)
-    return stored
-
-
-def carry_out(config: CalibrationConfig, composed: Composed) -> dict[str, Any]:
+def simulate_calibration(config: CalibrationConfig) -> dict[str, Any]:
     """Repeat a calibration; return the record to store.
 
     Args:
         config: The checked config.
-        composed: The composed config before its check, for provenance.
     """
     wall = time.perf_counter()
     procedure, settings = config.procedure, config.settings
@@ -82,7 +43,7 @@ def carry_out(config: CalibrationConfig, composed: Composed) -> dict[str, Any]:
         "consistency": judge(outcomes),
         "postures": procedure.postures.tolist(),
         "timing": {"wall_s": time.perf_counter() - wall},
-        "provenance": _provenance(config, composed, outcomes),
+        "provenance": _provenance(config, outcomes),
     }
 
 
@@ -112,7 +73,8 @@ def judge(outcomes: Sequence[Outcome]) -> dict[str, Any] | None:
     return {**asdict(judged), "level": LEVEL, "holds": judged.holds, "values": single}
 
 
-def _provenance(config: CalibrationConfig, composed: Composed, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+def _provenance(config: CalibrationConfig, outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    composed = config.composed
     messages = next((outcome.messages for outcome in outcomes if outcome.messages), ())
     return {
         **provenance.describe_origin(composed, "calibrate"),

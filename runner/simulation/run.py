@@ -1,0 +1,169 @@
+"""Simulation and measurement of the repetitions of one run.
+
+Repetitions that are compiled as a whole are simulated together, in blocks on several threads. A block takes bounded
+memory, whatever the number of repetitions. Compiled ticks, random draws and array operations release Python's lock for
+most of the time, so that threads use the cores. Results do not depend on the blocks or the number of threads.
+"""
+
+import os
+import time
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+
+from runner.base.errors import ConfigError, SimulationError
+from runner.base.trace import Failure, Trace
+from runner.config.limits import TICKS_AT_ONCE
+from runner.config.run import RunConfig
+from runner.config.validation import validate
+from runner.metrics import evaluate
+from runner.metrics.caveats import Watch, setting_of
+from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
+from runner.plugins.discovery import has_users_parts
+from runner.sensing import ForceTorqueSensor
+from runner.simulation.assembly import assemble, metric_context
+from runner.simulation.batch import BatchSimulator, simulate_together
+from runner.simulation.loop import ClosedLoop, simulate
+from runner.simulation.results import Collector, RunResult
+from runner.simulation.sensors import make_sensors
+
+MOST_THREADS = 4
+"""Largest number of threads; more would wait for each other."""
+
+TICKS = TICKS_AT_ONCE // MOST_THREADS
+"""Approximate number of ticks of a block, which take a tenth of a second."""
+
+_AHEAD = 2  # blocks for each thread that are in flight or wait
+
+
+def simulate_run(config: RunConfig, threads: int = 1) -> RunResult:
+    """Simulate the repetitions of a checked config.
+
+    Args:
+        config: The checked config.
+        threads: Number of threads for a run that is compiled as a whole.
+
+    Raises:
+        ConfigError: if the start of the trajectory cannot be reached, or a component rejects its config.
+    """
+    return simulate_blocks(config, threads) or _simulate_one_by_one(config)
+
+
+def simulate_repetition(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
+    """Simulate one repetition; return its trace, and the warnings of the controllers and of the wrist sensor."""
+    made = make_sensors(closed, config, repetition)
+    trace, wrist = simulate(closed, *made), made[1]
+    users = [loop.wrench_feedback for loop in closed.loops if loop.wrench_feedback is not None]
+    told = [message for controller in users for message in controller.messages()]
+    return trace, told + (wrist.overloads() if isinstance(wrist, ForceTorqueSensor) else [])
+
+
+def _simulate_one_by_one(config: RunConfig) -> RunResult:
+    wall, cpu = time.perf_counter(), time.process_time()
+    loop, context, repetitions = assemble(config), metric_context(config), config.settings.repetitions
+    watch = Watch(setting_of(config, loop.q_start), config.caveats)
+    collector = Collector(config, watch, repetitions, np.zeros((repetitions, 0)))
+    warnings: list[str] = []
+    notices: list[str] = []
+    try:
+        for repetition in range(repetitions):
+            if repetition > 0 and (config.mismatch.spread > 0.0 or "mismatch" in config.plugged):  # another model
+                last, loop = loop, assemble(config, repetition)
+                last.close()
+            trace, told = simulate_repetition(loop, config, repetition)
+            warnings = warnings or told
+            metrics: dict[str, float | None] = {}
+            try:
+                metrics = evaluate(trace, context, notices)
+            except SimulationError as error:  # of a plug-in
+                trace = replace(trace, failure=Failure(error.reason, float(trace.t[-1])))
+            collector.add(repetition, trace, metrics)
+    finally:
+        loop.close()
+    clock = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
+    return collector.result(_plant_error(collector), [*warnings, *dict.fromkeys(notices)], clock)
+
+
+def _plant_error(collector: Collector) -> PlantError | None:
+    """Return the integration error in repetition 0; None if it is disabled or the plant cannot be compared."""
+    config, trace = collector.config, collector.trace
+    if not config.settings.plant_error or config.plant.kind not in COMPARED or trace is None:
+        return None
+    if reason := reason_not_comparable(config.environment.kind):
+        return PlantError(None, reason)
+    try:
+        other = validate(replace(config.composed, resolved=on_runge_kutta(config.resolved)))
+        made = simulate_run(other)
+    except ConfigError as error:
+        return PlantError(None, str(error))
+    measured = {} if trace.failure else dict(zip(collector.names, collector.values[0].tolist(), strict=True))
+    ours = {name: None if np.isnan(value) else value for name, value in measured.items()}
+    theirs = {name: summary.median for name, summary in made.metrics.items()}
+    return compare(trace, ours, made.trace, theirs, config.robot.settling_band, other.timing.step)
+
+
+def simulate_blocks(config: RunConfig, threads: int = 1, ticks: int = TICKS) -> RunResult | None:
+    """Simulate a run in blocks of repetitions; None if one of its repetitions is not compiled as a whole.
+
+    Args:
+        config: The checked config.
+        threads: Number of threads; with 1, or if a repetition has more ticks than a block, the caller's thread.
+        ticks: Approximate number of ticks of a block.
+
+    Raises:
+        ConfigError: see assemble.
+    """
+    wall, cpu = time.perf_counter(), time.process_time()
+    batcher, count, size = BatchSimulator(), config.settings.repetitions, max(1, ticks // config.timing.ticks)
+    blocks = [range(start, min(start + size, count)) for start in range(0, count, size)]
+    threads = threads if config.timing.ticks <= ticks else 1
+    simulate_block = partial(_simulate_block, config, batcher)
+    whole = simulate_block(blocks[0])  # before the others, because it creates what all have in common
+    if whole is None:
+        return None
+    whole.reserve(count)
+    for run in _in_order(simulate_block, blocks[1:], threads):
+        if run is None:
+            return None
+        whole.join(run)
+    clock = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
+    return whole.result(clock=clock)
+
+
+def _simulate_block(config: RunConfig, batcher: BatchSimulator, block: range) -> Collector | None:
+    """Simulate some repetitions of a run; None if one of them is not compiled as a whole."""
+    runs = batcher.repetitions(config, block)
+    if runs is None:
+        return None
+    ((run,),) = [found for found in simulate_together([runs], batcher) if found]
+    return run
+
+
+def _in_order(
+    simulate_block: "partial[Collector | None]", blocks: Sequence[range], threads: int
+) -> Iterator[Collector | None]:
+    """Yield blocks in order as they are simulated, some of them at the same time."""
+    if threads == 1 or len(blocks) < 2:
+        yield from map(simulate_block, blocks)
+        return
+    in_flight: deque[Future[Collector | None]] = deque()
+    pool = ThreadPoolExecutor(threads)
+    try:
+        for block in blocks:
+            in_flight.append(pool.submit(simulate_block, block))
+            if len(in_flight) >= _AHEAD * threads:
+                yield in_flight.popleft().result()
+        while in_flight:
+            yield in_flight.popleft().result()
+    finally:  # Ctrl-C waits only for the blocks in flight
+        pool.shutdown(cancel_futures=True)
+
+
+def threads_allowed() -> int:
+    """Return the number of threads that may simulate a run; plug-ins run in one thread only."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return 1 if has_users_parts() else min(cores, MOST_THREADS)

@@ -1,0 +1,83 @@
+"""Measured time for a tick of a run."""
+
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
+
+from runner.config.run import RunConfig
+from runner.simulation.assembly import assemble
+from runner.simulation.batch import BatchSimulator, simulate_together
+from runner.simulation.run import simulate_repetition
+
+PROBED_TICKS = 50
+"""Number of ticks for a measurement of the time for a tick, if a run is simulated separately."""
+
+_PROBED_TOGETHER = 100_000  # ticks, if repetitions are simulated together
+_LONG = 0.5  # s; a longer measurement is not repeated
+_NO_DEADLINE: AbstractContextManager[None] = nullcontext()
+
+
+def seconds_per_tick(
+    config: RunConfig,
+    within: AbstractContextManager[None] = _NO_DEADLINE,
+    clock: Callable[[], float] = time.perf_counter,
+) -> float:
+    """Return the time for a tick of a run, in s, measured on its first ticks.
+
+    Args:
+        config: The checked config.
+        within: Context of the measurement, entered after assembly and compilation; it may end the measurement.
+        clock: Function that returns the time, in s.
+    """
+    if config.timing.ticks <= _PROBED_TOGETHER:
+        together = seconds_together(config, _PROBED_TOGETHER, within, clock)
+        if together is not None:
+            return together
+    whole = assemble(config)
+    part = replace(whole, ticks=min(whole.ticks, PROBED_TICKS))
+    try:
+        with within:
+            return warm_time(lambda: simulate_repetition(part, config, 0), clock) / (part.ticks + 1)
+    finally:
+        whole.close()
+
+
+def seconds_together(
+    config: RunConfig,
+    ticks: int,
+    within: AbstractContextManager[None] = _NO_DEADLINE,
+    clock: Callable[[], float] = time.perf_counter,
+) -> float | None:
+    """Return the time for a tick of a run in a batch, in s; None if the run cannot be simulated in a batch.
+
+    Args:
+        config: The checked config.
+        ticks: Approximate number of ticks to simulate, twice if they are fast.
+        within: See `seconds_per_tick`.
+        clock: See `seconds_per_tick`.
+    """
+    batcher = BatchSimulator()
+    repetitions = range(min(config.settings.repetitions, max(1, ticks // config.timing.ticks)))
+    runs = batcher.repetitions(config, repetitions)
+    if runs is None:
+        return None
+    copies = max(1, ticks // (len(runs) * config.timing.ticks))
+
+    def simulate_copies() -> None:
+        for _ in simulate_together([runs] * copies, batcher):
+            pass
+
+    with within:
+        return warm_time(simulate_copies, clock) / (copies * len(runs) * config.timing.ticks)
+
+
+def warm_time(measured: Callable[[], object], clock: Callable[[], float]) -> float:
+    """Return the time that a function takes, in s: in its second call, unless the first takes long."""
+    took = 0.0
+    for _ in range(2):
+        if took < _LONG:
+            start = clock()
+            measured()
+            took = clock() - start
+    return took
