@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from matplotlib.figure import Figure
 
 from runner.api.resimulate import Signals
-from runner.base.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, unknown
 from runner.base.quantities import label_with_unit
 from runner.reporting.charts.stills import as_figure, draw
 from runner.reporting.document import Curves, Panel, Series
@@ -60,7 +60,7 @@ def svg_of(signals: Signals, name: str) -> str:
 def _curves(signals: Signals, name: str) -> Curves:
     known = families(list(signals.frame.columns))
     if name not in known:
-        raise RunnerError(f"no signal '{name}'{nearest(name, known)}; the run has: {', '.join(known)}")
+        raise RunnerError(unknown("signal", name, known))
     title = _TITLES.get(name, name.replace("_", " "))
     units = dict.fromkeys(signals.units[column] for column in known[name].values())
     beside = known.get(_BESIDE.get(name, ""), {})

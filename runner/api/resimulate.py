@@ -40,8 +40,7 @@ def signals_of(run: store.Run, repetition: int) -> Signals:
     """
     count = run.repetitions
     if not 0 <= repetition < count:
-        allowed = "0 alone" if count == 1 else f"0 to {count - 1}"
-        raise RunnerError(f"repetition {repetition}: the run {run.hash} has no such one; allowed: {allowed}")
+        raise RunnerError(f"repetition: run {run.hash} has no repetition {repetition}. Allowed: 0 to {count - 1}.")
     if repetition == 0 and run.text is None:
         return Signals(store.Run.trace(run).copy(), run.units)
     return _simulated(run, repetition)

@@ -10,9 +10,9 @@ from runner import store
 from runner.api import page
 from runner.api.boundary import public, public_class
 from runner.api.run import Run
-from runner.base.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, unknown
 from runner.base.quantities import quantity
-from runner.base.sanitize import few, one_line, quoted
+from runner.base.sanitize import few, one_line
 from runner.sweeps.measurements import Axis, Measurements, axes_of, find_axis, measure_sweep
 from runner.sweeps.status import Status, find_status
 
@@ -96,7 +96,7 @@ class Sweep(store.Sweep):
             RunnerError: if there is no such metric or level, or if runs are missing.
         """
         if level not in _LEVELS:
-            raise RunnerError(f"level: no {quoted(level)}{nearest(str(level), _LEVELS)}; allowed: {', '.join(_LEVELS)}")
+            raise RunnerError(unknown("name", level, _LEVELS, "level"))
         names = self._names(metrics)
         return self._cell_frame(names) if level == "cells" else self._repetition_frame(names)
 

@@ -6,12 +6,13 @@ Every command imports this module. It therefore imports code for messages only w
 """
 
 import errno
+import itertools
 import math
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base.sanitize import VALUE, lines, one_line
+from runner.base.sanitize import VALUE, lines, one_line, quoted
 
 if TYPE_CHECKING:
     import traceback
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 """What the system says of a disk that takes no more."""
 _PROBLEMS_SHOWN = 20
+_LISTED = 1500  # characters of the allowed names in a message
 
 
 class RunnerError(Exception):
@@ -79,10 +81,37 @@ def describe_write_error(error: OSError, path: Path | None = None) -> str:
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
     """Return " (did you mean X?)" for the nearest allowed name, or an empty text when none is near."""
+    near = _nearest(name, allowed)
+    return f" (did you mean {near}?)" if near else ""
+
+
+def unknown(what: str, name: object, allowed: Iterable[str], place: str = "") -> str:
+    """Return the message on an unknown name: what is allowed, and the nearest name.
+
+        >>> unknown("axis", "rob", ["robot", "seed"], "--by")
+        "--by: unknown axis 'rob'. Allowed: robot, seed. Did you mean 'robot'?"
+
+    Args:
+        what: Noun for the thing that the name names, such as "axis".
+        name: The name as given.
+        allowed: The allowed names.
+        place: The option, command or file that has the name; empty for none.
+    """
+    known = list(allowed)
+    near = _nearest(str(name), known)
+    fitting = sum(total <= _LISTED for total in itertools.accumulate(len(each) + 2 for each in known))
+    more = f" and {len(known) - fitting} more" if fitting < len(known) else ""
+    listed = f"{', '.join(known[:fitting])}{more}" if known else "none"
+    hint = f" Did you mean {quoted(near)}?" if near else ""
+    return f"{place}{': ' if place else ''}unknown {what} {quoted(name)}. Allowed: {listed}.{hint}"
+
+
+def _nearest(name: str, allowed: Iterable[str]) -> str:
+    """Return the nearest allowed name; empty if none is near."""
     import difflib
 
     matches = difflib.get_close_matches(name, list(allowed), n=1, cutoff=0.5) if len(name) <= VALUE else []
-    return f" (did you mean {matches[0]}?)" if matches else ""
+    return matches[0] if matches else ""
 
 
 def describe_part_error(error: Exception) -> str:

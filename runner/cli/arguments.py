@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
-from runner.base.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, nearest, unknown
 from runner.base.former_names import OPTIONS
 from runner.store.kinds import Kind, find_folder
 
@@ -42,24 +42,23 @@ class Names:
         names = [name.strip() for name in text.split(",") if name.strip()]
         for name in names if self.allowed else ():
             if name not in self.allowed:
-                known = ", ".join(self.allowed)
-                raise argparse.ArgumentTypeError(f"no '{name}'{nearest(name, self.allowed)}; allowed: {known}")
+                raise argparse.ArgumentTypeError(unknown("name", name, self.allowed))
         if self.most is not None and len(names) > self.most:
-            raise argparse.ArgumentTypeError(f"takes at most {self.most}, found {len(names)}: {text}")
+            raise argparse.ArgumentTypeError(f"too many names ({text}). Allowed: at most {self.most}.")
         return names
 
 
 def count(text: str) -> int:
     """Return an integer of 1 or more."""
     if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"must be a whole number, 1 or more; found '{text}'")
+        raise argparse.ArgumentTypeError(f"not a count ('{text}'). Allowed: a whole number, 1 or more.")
     return int(text)
 
 
 def config_folder(text: str) -> Path:
     """Return a config folder, which must exist."""
     if not Path(text).is_dir():
-        raise RunnerError(f"--config-dir: no folder {text}")
+        raise RunnerError(f"--config-dir: no such folder ('{text}').")
     return Path(text)
 
 
@@ -71,6 +70,7 @@ _SHARED: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
     "baseline": (("--baseline",), {"type": Path, "metavar": "FILE"}),
     "save_baseline": (("--save-baseline",), {"type": Path, "metavar": "FILE"}),
     "by": (("--by",), {"type": Names(), "metavar": "A,B"}),
+    "within": (("--within",), {"type": Names(), "metavar": "A,B"}),
     "where": (("--where",), {"action": "append", "default": [], "metavar": "KEY=VALUE"}),
     "config_dir": (
         ("--config-dir", "-cd"),
@@ -164,7 +164,7 @@ class Parser(argparse.ArgumentParser):
         choices = [str(choice) for choice in action.choices or ()]
         if choices and value not in choices:
             name = "/".join(action.option_strings) or str(action.metavar)
-            raise RunnerError(f"{name}: no '{value}'{nearest(str(value), choices)}; allowed: {', '.join(choices)}")
+            raise RunnerError(unknown("name", value, choices, name))
 
     def _parse_optional(self, arg_string: str) -> Any:
         """Reject the former name of one of the command's options, before any value is read."""
@@ -175,15 +175,15 @@ class Parser(argparse.ArgumentParser):
                     raise RunnerError(f"{name} is now called {present}.")
         return super()._parse_optional(arg_string)
 
-    def reject(self, unknown: Sequence[str]) -> NoReturn:
+    def reject(self, words: Sequence[str]) -> NoReturn:
         """Raise an error for arguments that the command does not take.
 
         Raises:
             UsageError: always, with the nearest option and the usage.
         """
         options = [name.removeprefix("--") for name in self._option_string_actions if name.startswith("--")]
-        near = nearest(unknown[0].removeprefix("--"), options).replace("mean ", "mean --")
-        self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
+        near = nearest(words[0].removeprefix("--"), options).replace("mean ", "mean --")
+        self.error(f"unrecognized arguments: {' '.join(words)}{near}")
 
     def error(self, message: str) -> NoReturn:
         """Raise an error for invalid arguments.
@@ -191,4 +191,6 @@ class Parser(argparse.ArgumentParser):
         Raises:
             UsageError: always, with the usage.
         """
-        raise UsageError(f"{message.removeprefix('argument ')}; {' '.join(self.format_usage().split())}")
+        text = message.removeprefix("argument ")
+        usage = " ".join(self.format_usage().split()).replace("usage", "Usage", 1)
+        raise UsageError(f"{text}{'' if text.endswith(('.', '?')) else '.'} {usage}")

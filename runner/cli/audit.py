@@ -46,11 +46,11 @@ def run(options: Namespace) -> int:
     files = {name: getattr(options, name.replace("-", "_")) for name in QUANTITIES}
     given = {name: path for name, path in files.items() if path is not None}
     if not given:
-        raise RunnerError(f"nothing to compare: give one of {', '.join('--' + name for name in QUANTITIES)}")
+        raise RunnerError(f"no formulas to compare. Add one of {', '.join('--' + name for name in QUANTITIES)}.")
     if not 1 <= options.samples <= _MOST:
-        raise RunnerError(f"--samples is {options.samples}; allowed: 1 to {_MOST}")
+        raise RunnerError(f"--samples: out of range ({options.samples}). Allowed: 1 to {_MOST}.")
     if not 0 < options.tolerance < math.inf:
-        raise RunnerError(f"--tolerance is {options.tolerance:g}; allowed: above 0")
+        raise RunnerError(f"--tolerance: out of range ({options.tolerance:g}). Allowed: above 0.")
     urdf = str(Path(options.urdf).resolve()) if Path(options.urdf).is_file() else options.urdf
     model = audited_arm(urdf, options.tip, (), Path()).model
     differ = 0

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_overrides("such as calibration=gravity, repetitions=10", root="calibrate")
-    parser.add_shared("config_dir")
+    parser.add_shared("config_dir", output="outputs folder, as outputs=PATH")
 
 
 def run(options: Namespace) -> int:
@@ -24,7 +24,8 @@ def run(options: Namespace) -> int:
     quiet_environment()
     from runner.sweeps.job import calibrate
 
-    done = calibrate(*options.overrides, config_dirs=options.config_dir)
+    outputs = [] if options.output is None else [f"outputs={options.output}"]
+    done = calibrate(*options.overrides, *outputs, config_dirs=options.config_dir)
     for warning in done.provenance["warnings"]:
         print(one_line(f"runner: warning: {warning}"), file=sys.stderr)
     print(_report(done))

@@ -61,7 +61,7 @@ def run(options: argparse.Namespace) -> int:
     if not (baseline is None or isinstance(baseline, Bands)):
         return _check_sweep(store.open_sweep(options.folder), baseline, markdown)
     if markdown:
-        options.parser.error("--format markdown needs the baseline of a sweep, made by --save-baseline")
+        options.parser.error("--format markdown: only for the baseline of a sweep. Add --baseline FILE.")
     runs = store.open_runs(options.folder)
     judged = options.baseline is None and runs[0].spec is not None
     if options.max_failure_probability is not None and not judged:
@@ -81,7 +81,7 @@ def _probability(text: str) -> float:
     except ValueError:
         value = math.nan
     if not 0.0 < value < 1.0:
-        raise argparse.ArgumentTypeError(f"must be a number above 0 and below 1; found '{text}'")
+        raise argparse.ArgumentTypeError(f"not a probability ('{text}'). Allowed: a number above 0 and below 1.")
     return value
 
 

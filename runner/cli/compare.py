@@ -18,7 +18,7 @@ from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.quantities import plain_number
 from runner.base.sanitize import align_columns, one_line
-from runner.cli.arguments import Names, Parser, Stored
+from runner.cli.arguments import Parser, Stored
 from runner.store.kinds import kind_of
 
 if TYPE_CHECKING:
@@ -50,13 +50,13 @@ def add_arguments(parser: Parser) -> None:
         metavar="DIR",
         help="runs, or sweeps; or latest; or a run and a recording, a CSV file or a ROS bag",
     )
-    parser.add_shared(metrics="compare only these metrics", json="print the rows of runner.compare as JSON")
-    parser.add_argument("--by", metavar="AXIS", help="of one sweep: compare the levels of this axis")
-    parser.add_argument(
-        "--within",
-        type=Names(),
-        metavar="AXIS,AXIS",
-        help="within each level of these; default: over all others and within each",
+    parser.add_shared(
+        metrics="compare only these metrics",
+        json="print the rows of runner.compare as JSON",
+        by="of one sweep: compare the levels of each of these axes",
+        within="within each level of these; default: over all others and within each",
+        where="of sweeps: only the cells with this value; repeat for more",
+        output="of a recording: folder of the report; default: a folder in reports/ of the outputs folder",
     )
     parser.add_argument("--columns", type=Path, metavar="FILE", help="of a recording: which signal each column holds")
     parser.add_argument(
@@ -79,26 +79,32 @@ def _compare(options: Namespace) -> None:
     """Print a comparison of levels, runs or sweeps."""
     from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, measure_compared
     from runner.store import Run, Sweep, open_stored
-    from runner.sweeps.measurements import check_metrics
+    from runner.sweeps.measurements import check_metrics, find_axis, limit_sweep
 
     metrics, things = options.metrics or (), list(map(open_stored, options.folders))
     runs = [thing for thing in things if isinstance(thing, Run)]
     sweeps = [thing for thing in things if isinstance(thing, Sweep)]
     if options.within and not options.by:
-        raise RunnerError("--within goes with --by AXIS, which says what is compared")
-    if options.by and (len(things) > 1 or runs):
-        raise RunnerError("--by is for one sweep: `runner compare SWEEP --by AXIS`")
+        raise RunnerError("--within: needs --by AXIS, the axis that is compared.")
+    if (options.by and (len(things) > 1 or runs)) or (options.where and runs):
+        option, allowed = ("--by", "one sweep") if options.by else ("--where", "sweeps")
+        raise RunnerError(f"{option}: not for these results. Allowed: only for {allowed}.")
     if len(things) == 1 and not options.by:
         raise RunnerError(_explain_alone(*runs, *sweeps))
     if runs and sweeps:
         raise RunnerError(_explain_mixture(runs[0], sweeps[0]))
+    sweeps = [limit_sweep(sweep, options.where) for sweep in sweeps]
     first, *others = sides = measure_compared(runs or sweeps)
     for side in sides:
         for damage in side.damage:
             print(f"runner: {damage}", file=sys.stderr)
     if options.by:
-        answers = compare_levels(first, options.by, options.within or None, metrics)
-        texts = ["\n".join(_level_lines(first, options.by, answers))]
+        for option in ("by", "within"):
+            for name in getattr(options, option) or ():
+                find_axis(first.axes, name, f"--{option}")
+        by_axis = {axis: compare_levels(first, axis, options.within or None, metrics) for axis in options.by}
+        answers = [answer for some in by_axis.values() for answer in some]
+        texts = ["\n".join(_level_lines(first, axis, some)) for axis, some in by_axis.items()]
     elif sweeps or options.json:
         found = [compare_sweeps(first, other, metrics) for other in others]
         answers = [answer for one in found for answer in one.answers]
@@ -282,29 +288,29 @@ def _explain_alone(thing: "Run | Sweep") -> str:
 
     folder = thing.folder
     if isinstance(thing, Run):
-        return f"{folder} is one run alone; give a second one to compare it with: `runner compare {folder} OTHER`"
+        return f"{folder}: only one run. Add a second one: `runner compare {folder} OTHER`"
     axes, _ = axes_of(thing.overrides)
     known = ", ".join(axis.name for axis in axes) or "nothing"
     return (
-        f"{folder} is one sweep alone; compare the levels of one of its axes (it was swept over: {known}) by "
-        f"`runner compare {folder} --by AXIS`, or give a second sweep"
+        f"{folder}: only one sweep. Add a second one, or compare the levels of an axis ({known}): "
+        f"`runner compare {folder} --by AXIS`"
     )
 
 
 def _explain_mixture(run: "Run", sweep: "Sweep") -> str:
     """Return the reason why a run and a sweep are not compared, and an alternative."""
     folder, names = sweep.folder, list(sweep.hashes)
-    what = f"{run.folder} is a run and {folder} a sweep; compare runs with runs, and sweeps with sweeps"
+    what = f"{run.folder} is a run and {folder} is a sweep. Allowed: only runs, or only sweeps"
     if run.hash in names:
         cell = " ".join(sweep.overrides[names.index(run.hash)])
         return (
-            f"{what}: this run is the sweep's cell {cell}; `runner compare {folder} --by AXIS` compares the cells with "
-            "each other"
+            f"{what}. This run is the cell {cell} of the sweep; `runner compare {folder} --by AXIS` compares the cells "
+            "with each other"
         )
     first = " ".join(sweep.overrides[0])
     return (
-        f"{what}: a cell of the sweep is a run as well; `runner {first}` prints the folder of the first one, to "
-        f"compare {run.folder} with"
+        f"{what}. A cell of the sweep is also a run; `runner {first}` prints the folder of the first one, to compare "
+        f"{run.folder} with"
     )
 
 
@@ -322,26 +328,26 @@ def _seconds(text: str) -> float:
     found = read_quantity(text)
     seconds = None if found is None else found.in_unit("s")
     if seconds is None or seconds <= 0.0:
-        raise ArgumentTypeError(f"must be a time above 0, such as 20ms; found {text!r}")
+        raise ArgumentTypeError(f"not a time ({text!r}). Allowed: a time above 0, such as 20ms.")
     return seconds
 
 
 def _compare_recording(given: Sequence[Path], recordings: Sequence[Path], options: Namespace) -> None:
     folders = [path for path in given if path not in recordings]
     if len(recordings) != 1 or len(folders) != 1:
-        raise RunnerError("a recording is compared with one run: `runner compare RUN recording.csv --columns map.yaml`")
-    if options.columns is None:
         raise RunnerError(
-            f"{recordings[0]} is a recording; say by --columns FILE which signal each column holds (docs/recordings.md)"
+            "recordings: not one run and one recording. Allowed: `runner compare RUN recording.csv --columns map.yaml`"
         )
+    if options.columns is None:
+        raise RunnerError(f"{recordings[0]}: add --columns FILE, which describes its columns (docs/recordings.md).")
     if kind_of(folders[0]) != "run":
-        raise RunnerError(f"{folders[0]} is a sweep; a recording is compared with one run")
-    if options.by or options.within or options.metrics:
-        raise RunnerError("--by, --within and --metrics are not for recordings")
-    _print_recording(folders[0], recordings[0], options.columns, options.fill_gaps or 0.0)
+        raise RunnerError(f"{folders[0]}: it is a sweep. Allowed: one run and one recording.")
+    if options.by or options.within or options.metrics or options.where:
+        raise RunnerError("--by, --within, --where and --metrics: not for recordings.")
+    _print_recording(folders[0], recordings[0], options)
 
 
-def _print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: float) -> None:
+def _print_recording(folder: Path, recording: Path, options: Namespace) -> None:
     """Print the differences between a recording and a run, and write the report; its folder is the last line."""
     from runner import store
     from runner.base import progress
@@ -351,9 +357,9 @@ def _print_recording(folder: Path, recording: Path, columns: Path, fill_gaps: fl
     from runner.store.kinds import note
 
     progress.begin("reading runs")
-    found = compare_recording(store.open_run(folder), recording, columns, fill_gaps)
+    found = compare_recording(store.open_run(folder), recording, options.columns, options.fill_gaps or 0.0)
     print(_recording_text(found), end="\n\n")
-    made = report_folder(found)
+    made = options.output or report_folder(found)
     write_report(recording_document(found), made)
     note(made)
     print(made)

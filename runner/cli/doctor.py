@@ -40,7 +40,7 @@ def run(options: Namespace) -> int:
     if options.format and options.output is None:
         options.parser.error("--format needs --output DIR")
     if not options.file.is_file():
-        raise RunnerError(f"no file {options.file}")
+        raise RunnerError(f"{options.file}: no such file. Allowed: a URDF or an MJCF.")
     quiet_environment()
     from runner.doctor.config_folder import write_folder
     from runner.doctor.examination import examine

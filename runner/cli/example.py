@@ -35,7 +35,7 @@ def copy_examples(folder: Path) -> list[Path]:
         RunnerError: if the folder is not empty, or cannot be written to.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise RunnerError(f"{folder}: is there already, and not empty; name a new folder")
+        raise RunnerError(f"{folder}: this folder is not empty. Allowed: a new folder, or an empty one.")
     source = examples_dir()
     found = sorted(path for path in source.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
     copies = [folder / path.relative_to(source) for path in found]

@@ -62,9 +62,8 @@ def _millimetres(text: str) -> float:
     except ValueError:
         width = math.nan
     if not _NARROWEST <= width <= _WIDEST:
-        raise RunnerError(
-            f"--width {text}: allowed are single (88 mm), double (180 mm) or {_NARROWEST:g} to {_WIDEST:g} in mm"
-        )
+        widths = f"single (88 mm), double (180 mm), or {_NARROWEST:g} to {_WIDEST:g} in mm"
+        raise RunnerError(f"--width: not a width ('{text}'). Allowed: {widths}.")
     return width
 
 

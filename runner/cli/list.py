@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base import engines
-from runner.base.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, unknown
 from runner.base.former_names import TOPICS as FORMER_TOPICS
 from runner.base.sanitize import escaped, one_line
 from runner.cli.arguments import Parser
@@ -33,9 +33,7 @@ def run(options: Namespace) -> int:
     elif options.topic in FORMER_TOPICS:
         raise RunnerError(f"{options.topic} is now called {FORMER_TOPICS[options.topic]}.")
     else:
-        raise RunnerError(
-            f"list: no topic '{options.topic}'{nearest(options.topic, TOPICS)}; topics: {', '.join(TOPICS)}"
-        )
+        raise RunnerError(unknown("topic", options.topic, TOPICS, "list"))
     return 0
 
 

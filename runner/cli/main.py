@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
-from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, nearest, user_place
+from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, unknown, user_place
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import show_progress
 from runner.base.sanitize import one_line
@@ -216,9 +216,9 @@ def run_line(words: Sequence[str]) -> int:
 
 
 def _run_command(name: str, words: Sequence[str]) -> int:
-    arguments, unknown = build_parser([name]).parse_known_args([name, *words])
-    if unknown:
-        arguments.parser.reject(unknown)
+    arguments, others = build_parser([name]).parse_known_args([name, *words])
+    if others:
+        arguments.parser.reject(others)
     arguments.words = words
     code: int = arguments.run(arguments)
     return code
@@ -237,10 +237,7 @@ def _run_overrides(words: Sequence[str]) -> int:
         given = "".join(words[1:3]) if words[1] == "=" else words[1]
         raise RunnerError(f"an override has no spaces around its '=': `runner {shlex.join([first + given])}`")
     if first not in OVERRIDES and first and first[0].isalpha() and "=" not in first:
-        raise RunnerError(
-            f"no command '{first}'{nearest(first, COMMANDS)}; commands: {', '.join(COMMANDS)}; a run starts with "
-            "overrides such as robot=macro"
-        )
+        raise RunnerError(f"{unknown('command', first, COMMANDS)} A run starts with overrides such as robot=macro.")
     if {"-h", "--help"} & {*words}:
         build_parser(["run"]).parse_args(["run", "--help"])
     from runner.cli.run import simulate

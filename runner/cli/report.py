@@ -1,4 +1,4 @@
-"""`runner report DIR... [--format html,pdf] [--metrics A,B]`: write a report on runs, a sweep or a comparison."""
+"""`runner report DIR... [--format html,pdf] [--metrics A,B] [-o DIR]`: write a report on runs, sweeps or a tuning."""
 
 from argparse import Namespace
 
@@ -18,7 +18,10 @@ def add_arguments(parser: Parser) -> None:
         help="run folders, sweep folders, or the folder of one tuning; or latest",
     )
     parser.add_formats(FORMATS, "html, pdf or both; default: both")
-    parser.add_shared(metrics="metrics by which a sweep is compared; the first ranks it")
+    parser.add_shared(
+        metrics="metrics by which a sweep is compared; the first ranks it",
+        output="folder to write to; default: a folder in reports/ of the outputs folder",
+    )
 
 
 def run(options: Namespace) -> int:
@@ -26,7 +29,6 @@ def run(options: Namespace) -> int:
     quiet_environment()
     from runner.reporting.stored import write
 
-    print(
-        write(options.folders, options.metrics or (), [name for name in FORMATS if name in (options.format or FORMATS)])
-    )
+    formats = [name for name in FORMATS if name in (options.format or FORMATS)]
+    print(write(options.folders, options.metrics or (), formats, options.output))
     return 0

@@ -81,11 +81,10 @@ def run(options: Namespace) -> int:
     """Reproduce one study or all; print the report's folder as the last line."""
     others = [text for text in options.overrides if not text.startswith(_FREE) or text.startswith("sweep.trace")]
     if others and options.json and "=" not in others[0]:
-        raise RunnerError(f"reproduce: {others[0]}: --json prints; write a file by `--json > {others[0]}`")
+        raise RunnerError(f"reproduce: --json takes no file ({others[0]}). Write a file by `--json > {others[0]}`")
     if others:
-        raise RunnerError(
-            f"reproduce: {others[0]}: the study decides what it simulates; you may set {', '.join(_FREE)}"
-        )
+        allowed = ", ".join(f"{key}*" for key in _FREE)
+        raise RunnerError(f"reproduce: the study decides what it simulates ({others[0]}). Allowed: {allowed}.")
     if options.study not in (AUDIT, "all"):
         find_study(options.study, (AUDIT, "all"))  # rejects an unknown name before anything is read
     quiet_environment()
@@ -110,7 +109,7 @@ def _parts(study: str) -> "tuple[UserPlugin, ...]":
     from runner.study.plugins import read_user_plugins
 
     if in_use() and study in (AUDIT, "all"):
-        raise RunnerError(f"reproduce {study}: --plugin gives a part to one study; name it")
+        raise RunnerError(f"--plugin: not for several studies ({study}). Allowed: one study.")
     return read_user_plugins(in_use())
 
 

@@ -146,7 +146,11 @@ def _read_by_hydra(words: Sequence[str], config_dirs: Sequence[Path]) -> _Line:
 
     line = _Line()
     sys.argv = ["runner", *user_overrides(), *force(words), *(_WITHOUT_OURS if "--hydra-help" in words else ())]
-    given = get_args_parser().parse_args()
+    given, others = get_args_parser().parse_known_args()
+    if others:
+        own = Parser(prog="runner run", add_help=False)
+        add_arguments(own)
+        own.reject(others)
     try:
         if not given.hydra_help:
             mode = RunMode.MULTIRUN if given.multirun else RunMode.RUN

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.environment_variables import quiet_environment
-from runner.base.errors import RunnerError
+from runner.base.errors import RunnerError, unknown
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored
 
@@ -69,10 +69,9 @@ def _format(options: Namespace) -> str:
     if not chosen and options.output is not None:
         chosen = _ENDINGS.get(options.output.suffix.lower(), "")
         if not chosen:
-            endings = ", ".join(_ENDINGS)
-            raise RunnerError(f"--output {options.output}: write --format, or a name that ends in {endings}")
+            raise RunnerError(unknown("ending", options.output.suffix, _ENDINGS, f"--output {options.output}"))
     if chosen == "parquet" and options.output is None:
-        raise RunnerError("--format parquet is no text: write --output FILE as well")
+        raise RunnerError("--format: Parquet cannot be printed. Add --output FILE.")
     return chosen
 
 
@@ -96,7 +95,7 @@ def _of_run(options: Namespace, chosen: str) -> int:
     from runner import store
 
     if options.by or options.where:
-        raise RunnerError(f"--by and --where are for sweeps; {options.folder} is a run")
+        raise RunnerError(f"--by and --where: {options.folder} is a run. Allowed: only for sweeps.")
     run = store.open_run(options.folder)
     if not run.metrics:
         raise RunnerError(f"the run has no metrics: it {run.failure}")

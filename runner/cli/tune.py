@@ -38,7 +38,9 @@ def add_arguments(parser: Parser) -> None:
         )
     parser.add_argument("--trials", type=count, default=_TRIALS, metavar="N", help=f"in all; default {_TRIALS}")
     parser.add_shared(
-        "config_dir", jobs=f"number of trials that run at once, at least as many as processes; default {_JOBS}"
+        "config_dir",
+        output="outputs folder, as outputs=PATH",
+        jobs=f"number of trials that run at once, at least as many as processes; default {_JOBS}",
     )
     parser.set_defaults(jobs=_JOBS)
 
@@ -47,15 +49,16 @@ def run(options: argparse.Namespace) -> int:
     """Simulate the missing trials and write the report; print its folder as the last line."""
     objectives = dict.fromkeys(options.objectives or ())
     if not objectives:
-        options.parser.error("name a metric to --minimize or --maximize")
+        options.parser.error("no metric to tune for. Add --minimize METRIC or --maximize METRIC.")
     if len({metric for _, metric in objectives}) < len(objectives):
-        raise RunnerError("a metric cannot be minimized and maximized at once")
+        raise RunnerError("--minimize and --maximize: both have the same metric. Allowed: each metric once.")
     quiet_environment()
     from runner.sweeps.tuning.objective import Objective
     from runner.sweeps.tuning.run import tune
 
+    outputs = [] if options.output is None else [f"outputs={options.output}"]
     tuning = tune(
-        options.overrides,
+        [*options.overrides, *outputs],
         [Objective(metric, direction) for direction, metric in objectives],
         options.trials,
         options.jobs,

@@ -6,7 +6,7 @@ from stored data and have no checksums; baselines and claims are edited by peopl
 
 from argparse import Namespace
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -16,6 +16,7 @@ from runner.base.environment_variables import quiet_environment
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
+from runner.store.kinds import FILES, KINDS
 
 State = Literal["good", "unfinished", "damaged"]
 _WORDS: Mapping[State, str] = {"good": "as written", "unfinished": "unfinished", "damaged": "damaged"}
@@ -46,7 +47,8 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Print the numbers of stored results, and those that are damaged; return 1 if there are any."""
     if not options.outputs.is_dir():
-        raise RunnerError(f"no folder {options.outputs}; name an outputs folder, as in `runner verify outputs`")
+        allowed = "an outputs folder, as in `runner verify outputs`"
+        raise RunnerError(f"{options.outputs}: no such folder. Allowed: {allowed}.")
     quiet_environment()
     found = []
     progress.begin("verifying", unit="files")
@@ -76,58 +78,43 @@ def verify(outputs: Path) -> Iterator[Found]:
     """
     from runner.store import DamagedError
 
-    for kind, (pattern, needed) in _KINDS.items():
-        for path in sorted((outputs / kind).glob(pattern)):
-            if not all((path / name).exists() for name in needed):
-                yield Found(kind, "unfinished")
+    folders = {of.folder: of for kind, of in KINDS.items() if kind != "report"}
+    for name in sorted({*folders, *FILES}):
+        for path in sorted((outputs / name).glob(FILES.get(name, "[!.]*"))):
+            needed = (folders[name].files[0], *folders[name].more) if name in folders else ()
+            if not all((path / each).exists() for each in needed):
+                yield Found(name, "unfinished")
                 continue
             try:
-                _read(kind, path)
-                yield Found(kind, "good")
+                _read(name, path)
+                yield Found(name, "good")
             except DamagedError as error:
-                yield Found(kind, "damaged", str(error))
+                yield Found(name, "damaged", str(error))
 
 
-def _read(kind: str, path: Path) -> None:
+def _read(name: str, path: Path) -> None:
     """Read a stored result with all its files, which compares them with their checksums."""
     from runner import store
 
-    if kind == "runs":
-        run = store.open_run(path)
-        _ = run.urdf, run.units, [run.values(metric) for metric in run.metrics]
-    elif kind == "calibrations":
-        _ = store.open_calibration(path).urdf
-    elif kind == "shards":
+    if name == "shards":
         from runner.store.shards import open_row, read_outcomes
 
         for row in range(len(read_outcomes(path))):
             open_row(path, row)
-    elif kind in ("sweeps", "tunings"):
-        from runner.sweeps.status import read_pace
-        from runner.sweeps.tuning.study import open_tuning
-
-        if kind == "tunings":
-            open_tuning(path)
-        read_pace(path)
-        store.open_sweep(path)
-    elif kind == "finer":
-        from runner.store.finished import read_finer
-
-        read_finer(path.parents[1], path.stem)
-    else:
+    elif name in FILES:
         from runner.store.seal import read_json
 
         read_json(path, "its command measures it again")
+    elif name in ("sweeps", "tunings"):
+        from runner.sweeps.status import read_pace
+        from runner.sweeps.tuning.study import open_tuning
 
-
-# Of each kind: the pattern of its paths, and the files without which one is unfinished.
-_KINDS: Mapping[str, tuple[str, Sequence[str]]] = {
-    "runs": ("[!.]*", ["metrics.json"]),
-    "shards": ("[!.]*.parquet", []),
-    "sweeps": ("[!.]*", ["sweep.json"]),
-    "tunings": ("[!.]*", ["tuning.json", "journal.log", "sweep.json"]),
-    "calibrations": ("[!.]*", ["result.json"]),
-    "benchmarks": ("[!.]*.json", []),
-    "claims": ("[!.]*.json", []),
-    "finer": ("[!.]*.json", []),
-}
+        if name == "tunings":
+            open_tuning(path)
+        read_pace(path)
+        store.open_sweep(path)
+    else:
+        found = store.open_run(path) if name == "runs" else store.open_calibration(path)
+        _ = found.urdf
+        if isinstance(found, store.Run):
+            _ = found.units, [found.values(metric) for metric in found.metrics]

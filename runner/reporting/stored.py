@@ -20,18 +20,20 @@ from runner.sweeps.measurements import measure_stored
 from runner.sweeps.tuning.study import Tuning, open_tuning
 
 
-def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str]) -> Path:
+def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str], output: Path | None = None) -> Path:
     """Write the report on some runs, sweeps or one tuning; return its folder.
 
     Args:
         folders: Their folders; of several sweeps, which are held against each other.
         metrics: What a sweep is compared by; the first ranks it.
         formats: "html", "pdf" or both.
+        output: Folder to write to; None for one in `reports/` of the outputs folder.
 
     Raises:
         RunnerError: if a folder is none of these, or damaged; for an unknown metric or format.
     """
     document, folder = compose_report(folders, metrics)
+    folder = output or folder
     render.write_report(document, folder, formats)
     note(folder)
     return folder
@@ -53,11 +55,9 @@ def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> tupl
     runs = [thing for thing in things if isinstance(thing, store.Run)]
     first, reports = things[0], outputs_of(folders[0]) / "reports"
     if len(things) > 1 and len(things) not in (len(sweeps), len(runs)):
-        tuned = any(isinstance(thing, Tuning) for thing in things)
-        what = "a tuning has a report of its own" if tuned else "runs and sweeps have no report together"
-        raise RunnerError(f"{what}; give runs alone, sweeps alone, or one folder")
+        raise RunnerError("these results have no common report. Allowed: only runs, only sweeps, or one folder.")
     if metrics and not sweeps:
-        raise RunnerError("--metrics is for the report on sweeps")
+        raise RunnerError(f"--metrics: {folders[0]} is not a sweep. Allowed: only for sweeps.")
     names = [folder.resolve().name for folder in folders]
     if isinstance(first, Tuning):
         document, name = tuning_document(first, reports / "any"), names[0]

@@ -16,7 +16,7 @@ from omegaconf.errors import OmegaConfBaseException
 from pydantic import AfterValidator, Field, ValidationError
 
 from runner.base.bounded_yaml import Bounds, YamlError, read_yaml
-from runner.base.errors import RunnerError, StoreError, nearest
+from runner.base.errors import RunnerError, StoreError, nearest, unknown
 from runner.base.limits import Limit, read_text
 from runner.base.paths import studies_dir
 from runner.base.sanitize import escaped
@@ -80,7 +80,7 @@ def _check_schema(number: object) -> object:
 def _check_metric(name: str) -> str:
     if unit_of(name) is None:
         known = units()
-        raise ValueError(f"unknown metric{nearest(name, known)}; metrics: {', '.join(known)}")
+        raise ValueError(unknown("metric", name, known))
     return name
 
 
@@ -175,7 +175,8 @@ def load_baseline(path: Path, name: str = "") -> Bands | Cells:
     except YamlError as error:
         raise StoreError(f"baseline {error}") from error
     except (OSError, ValueError, OmegaConfBaseException) as error:
-        raise StoreError(f"cannot read the baseline {path}: {error}") from error
+        reason = error.strerror if isinstance(error, OSError) else error
+        raise StoreError(f"cannot read the baseline {path}: {reason}") from error
     model: type[_BandFile | _CellFile] = _CellFile if "cells" in content else _BandFile
     try:
         file = model.model_validate(content)

@@ -30,21 +30,28 @@ class StoredKind:
         folder: Name of its parent folder in the outputs folder.
         files: Files by which a result's folder is recognized, the record first.
         command: Command that creates such a result.
+        more: Files that a finished result also has.
     """
 
     folder: str
     files: Sequence[str]
     command: str
+    more: Sequence[str] = ()
 
 
 # In the order in which a folder is recognized: a tuning is also a sweep, and all jobs have a config.
 KINDS: Mapping[Kind, StoredKind] = {
-    "tuning": StoredKind("tunings", ("tuning.json",), "runner tune"),
+    "tuning": StoredKind("tunings", ("tuning.json",), "runner tune", ("journal.log", "sweep.json")),
     "sweep": StoredKind("sweeps", ("sweep.json",), "runner -m OVERRIDES"),
     "calibration": StoredKind("calibrations", ("result.json",), "runner calibrate"),
     "run": StoredKind("runs", ("metrics.json", "config.yaml", "trace.parquet"), "runner OVERRIDES"),
     "report": StoredKind("reports", ("report.html", "report.pdf"), "runner report"),
 }
+
+FILES: Mapping[str, str] = {
+    "benchmarks": "[!.]*.json", "claims": "[!.]*.json", "finer": "[!.]*.json", "shards": "[!.]*.parquet",
+}  # fmt: skip
+"""Folders in an outputs folder whose results are single files, and the pattern of their names."""
 
 
 def note(folder: Path) -> None:
@@ -82,11 +89,11 @@ def find_folder(text: str | Path, kinds: Sequence[Kind]) -> Path:
     if path.name == WORD and not path.exists():
         return _newest(outputs_dir() if str(text) == WORD else path.parent, kinds)
     if not path.is_dir():
-        raise RunnerError(f"no folder {path}; needed: {_needed(kinds)}")
+        raise RunnerError(f"{path}: no such folder. {_needed(kinds)}")
     kind = kind_of(path)
     if kind not in kinds:
-        what = "nothing that is stored" if kind is None else f"the folder of a {kind}"
-        raise RunnerError(f"{path} is {what}; needed: {_needed(kinds)}")
+        what = "not the folder of a stored result" if kind is None else f"the folder of a {kind}"
+        raise RunnerError(f"{path}: it is {what}. {_needed(kinds)}")
     return path
 
 
@@ -121,11 +128,9 @@ def open_stored(folder: Path) -> "Run | Sweep | Calibration":
 def _newest(outputs: Path, kinds: Sequence[Kind]) -> Path:
     found = max(_notes(outputs, kinds), default=None)
     if found is None:
-        raise RunnerError(
-            f"no {' or '.join(kinds)} was made in {outputs} yet that `{WORD}` could mean; needed: {_needed(kinds)}"
-        )
+        raise RunnerError(f"{WORD}: no {' or '.join(kinds)} was made in {outputs} yet. {_needed(kinds)}")
     if not found[1].is_dir():
-        raise RunnerError(f"{found[1]} was the latest and is gone; needed: {_needed(kinds)}")
+        raise RunnerError(f"{WORD}: {found[1]} no longer exists. {_needed(kinds)}")
     return found[1]
 
 
@@ -143,4 +148,4 @@ def _notes(outputs: Path, kinds: Sequence[Kind]) -> Iterator[tuple[int, Path]]:
 
 def _needed(kinds: Sequence[Kind]) -> str:
     named = ", ".join(f"a {kind} (`{KINDS[kind].command}` prints it)" for kind in kinds)
-    return f"the folder of {named}, or the word {WORD}"
+    return f"Allowed: the folder of {named}, or the word {WORD}."

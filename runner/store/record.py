@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Strict, ValidationError
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, unknown
 from runner.base.quantities import spread
 
 _Number = float | None
@@ -148,10 +148,7 @@ class Metrics(Mapping[str, Metric]):
 
     def __getitem__(self, name: str) -> Metric:
         if name not in self._stored:
-            known = ", ".join(self._stored) or "none, as the run failed"
-            raise UnknownMetricError(
-                f"the run has no metric '{name}'{nearest(str(name), self._stored)}; it has: {known}"
-            )
+            raise UnknownMetricError(unknown("metric", name, self._stored or ["none, because the run failed"]))
         found = self._stored[name]
         ends = found["unit"], found["median"], found["min"], found["max"]
         return Metric(*ends, found.get("quantiles", {}), self._count, partial(self._values, name))

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
-from runner.base.errors import RunnerError, StoreError, nearest
-from runner.base.sanitize import few, quoted
+from runner.base.errors import RunnerError, StoreError, unknown
 from runner.store import DamagedError, Finished, Run, Sweep
 from runner.store.axes import Axes, is_simulated, override_value
 from runner.store.finished import finer_names, read_finer
@@ -59,7 +58,7 @@ class Axis:
 
         Args:
             value: The value.
-            option: Option that gave the value, such as "--where "; a message begins with it.
+            option: Option that gave the value, such as "--where robot=macro"; a message begins with it.
 
         Raises:
             RunnerError: If the axis has no such value; the message lists its values.
@@ -69,8 +68,7 @@ class Axis:
         for level, (own, text) in enumerate(zip(self.values, self.texts, strict=True)):
             if wanted == text or (number is not None and number in (own, _number(text))):
                 return level
-        hint = nearest(wanted, self.texts)
-        raise RunnerError(f"{option}{self.name} has no value {quoted(wanted)}{hint}; allowed: {few(self.texts)}")
+        raise RunnerError(unknown("value", wanted, self.texts, option or self.name))
 
 
 def find_axis(axes: Sequence[Axis], name: str, option: str = "") -> Axis:
@@ -79,16 +77,38 @@ def find_axis(axes: Sequence[Axis], name: str, option: str = "") -> Axis:
     Args:
         axes: The axes of a sweep.
         name: The name, such as "controller".
-        option: Option that gave the name, such as "--by: "; a message begins with it.
+        option: Option that gave the name, such as "--by"; a message begins with it.
 
     Raises:
         RunnerError: If there is no such axis; the message lists the axes.
     """
     names = [axis.name for axis in axes]
     if name not in names:
-        known = ", ".join(names) or "nothing"
-        raise RunnerError(f"{option}{quoted(name)} was not swept{nearest(name, names)}; the sweep is over: {known}")
+        raise RunnerError(unknown("axis", name, names, option))
     return axes[names.index(name)]
+
+
+def find_cells(axes: Sequence[Axis], where: Sequence[str], count: int) -> NDArray[np.intp]:
+    """Return the cells of a sweep that have some values.
+
+    Args:
+        axes: The axes of the sweep.
+        where: The values, each as KEY=VALUE.
+        count: Number of cells.
+
+    Raises:
+        RunnerError: If there is no such axis or value, or no cell with all of them.
+    """
+    kept = np.ones(count, dtype=bool)
+    for text in where:
+        name, given, value = text.partition("=")
+        axis = find_axis(axes, name, "--where")
+        if not given:
+            raise RunnerError(f"--where {text}: no value. Allowed: KEY=VALUE.")
+        kept &= axis.level == axis.find_level(value, f"--where {name}")
+    if not kept.any():
+        raise RunnerError(f"--where: no cell of the sweep has {' and '.join(where)}.")
+    return np.flatnonzero(kept)
 
 
 def group_cells(axes: Sequence[Axis], cells: NDArray[np.intp]) -> list[tuple[list[int], NDArray[np.intp]]]:
@@ -337,9 +357,18 @@ def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:
     stored = {name: finished.outcome(name) is not None for name in set(sweep.hashes)}
     if all(stored.values()):
         return sweep, finished.damage
-    kept = [cell for cell, name in enumerate(sweep.hashes) if stored[name]]
-    hashes = [sweep.hashes[cell] for cell in kept]
-    return replace(sweep, overrides=[sweep.overrides[cell] for cell in kept], hashes=hashes), finished.damage
+    return _part(sweep, [cell for cell, name in enumerate(sweep.hashes) if stored[name]]), finished.damage
+
+
+def limit_sweep(sweep: Sweep, where: Sequence[str]) -> Sweep:
+    """Return a sweep reduced to the cells that have some values; see `find_cells`."""
+    axes, _ = axes_of(sweep.overrides)
+    return _part(sweep, find_cells(axes, where, len(sweep.hashes)).tolist()) if where else sweep
+
+
+def _part(sweep: Sweep, cells: Sequence[int]) -> Sweep:
+    hashes = [sweep.hashes[cell] for cell in cells]
+    return replace(sweep, overrides=[sweep.overrides[cell] for cell in cells], hashes=hashes)
 
 
 def _with_finer(measurements: Measurements, outputs: Path) -> Measurements:
@@ -457,5 +486,4 @@ def check_metrics(wanted: Sequence[str], known: Iterable[str]) -> None:
     names = list(dict.fromkeys(known))
     for name in wanted:
         if name not in names:
-            listed = ", ".join(names) or "none, because all runs failed"
-            raise RunnerError(f"the runs have no metric '{name}'{nearest(name, names)}; known: {listed}")
+            raise RunnerError(unknown("metric", name, names or ["none, because all runs failed"], "metrics"))

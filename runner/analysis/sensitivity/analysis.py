@@ -194,7 +194,7 @@ def of_run(run: Run, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sen
     """
     count = int(run.record["repetitions"])
     if not 0 <= repetition < count:
-        raise RunnerError(f"no repetition {repetition} of {run.hash}; allowed: 0 to {count - 1}")
+        raise RunnerError(f"repetition: run {run.hash} has no repetition {repetition}. Allowed: 0 to {count - 1}.")
     try:
         composed = compose(run.overrides, run.config_dirs)
         arm = validate(composed).arm

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, unknown
 from runner.base.trace import Trace
 from runner.metrics import MetricContext
 from runner.metrics.positioning import STEADY_WINDOW
@@ -68,10 +68,9 @@ def check_smooth(name: str, known: Mapping[str, object]) -> None:
     if name in known:
         return
     why = next((reason for base, reason in WITHOUT.items() if f"_{base}_" in f"_{name}_"), None)
-    have = f"metrics with one: {', '.join(known)}"
     if why is None:
-        raise RunnerError(f"--metrics: no '{name}'{nearest(name, known)} with a derivative; {have}")
-    raise RunnerError(f"--metrics: {name} has no derivative: {why}; it is not approximated; {have}")
+        raise RunnerError(unknown("metric with a derivative", name, known, "--metrics"))
+    raise RunnerError(f"--metrics: {name} has no derivative: {why}. Allowed: {', '.join(known)}.")
 
 
 def _of_tip(trace: Trace, tip: FloatArray, context: MetricContext) -> dict[str, FloatArray]:

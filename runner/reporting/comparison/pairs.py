@@ -161,7 +161,7 @@ def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | N
     inner = [other.name for other in others if other.name != SEED] if within is None else within
     shown = [find_axis(measurements.axes, name) for name in inner]
     if chosen in shown:
-        raise RunnerError(f"{axis}: is compared, so it cannot be compared within, too")
+        raise RunnerError(f"within: {axis} is the compared axis. Allowed: other axes.")
     pooled = [other.level for other in others if other not in shown]
     place = number_rows(pooled, len(measurements.hashes))  # equal for cells with equal levels of the pooled axes
     found = []

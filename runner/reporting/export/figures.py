@@ -57,7 +57,7 @@ def choose_figures(figures: Mapping[str, Figure], only: str | None) -> dict[str,
     }
     if not found:
         known = "\n  ".join(figures)
-        raise RunnerError(f"--only: no figure '{only}'{nearest(str(only), figures)}; there are:\n  {known}")
+        raise RunnerError(f"--only: no figure '{only}'{nearest(str(only), figures)}. Allowed:\n  {known}")
     return found
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.sanitize import table_cell
-from runner.sweeps.measurements import Axis, Measurements, find_axis, group_cells
+from runner.sweeps.measurements import Axis, Measurements, find_axis, find_cells, group_cells
 from runner.sweeps.table import metric_columns, with_units
 
 if TYPE_CHECKING:
@@ -48,12 +48,12 @@ def pool(measurements: Measurements, by: Sequence[str] | None = None, where: Seq
     Raises:
         RunnerError: If there is no such axis or value, or cells of one row would differ in more than their seed.
     """
-    kept = _limited(measurements, where)
+    kept = find_cells(measurements.axes, where, len(measurements.hashes))
     axes = {axis.name: axis for axis in measurements.axes}
     varying = [axis.name for axis in measurements.axes if len(np.unique(axis.level[kept])) > 1]
     names = [name for name in varying if name != SEED] if by is None else list(dict.fromkeys(by))
     for name in names:
-        find_axis(measurements.axes, name, "--by: ")
+        find_axis(measurements.axes, name, "--by")
     _refuse_mixtures([name for name in varying if name not in names and name != SEED], names, axes, kept)
     rows = group_cells([axes[name] for name in names], kept)
     levels = np.array([levels for levels, _ in rows], dtype=np.intp)
@@ -74,18 +74,6 @@ def pool(measurements: Measurements, by: Sequence[str] | None = None, where: Seq
     )  # fmt: skip
     seeds = [len(np.unique(axes[SEED].level[cells])) if SEED in axes else 1 for cells in groups]
     return Pooled(pooled, groups, failed, seeds)
-
-
-def _limited(measurements: Measurements, where: Sequence[str]) -> NDArray[np.intp]:
-    """Return the cells that have all these values."""
-    kept = np.ones(len(measurements.hashes), dtype=bool)
-    for text in where:
-        name, _, value = text.partition("=")
-        axis = find_axis(measurements.axes, name, "--where: ")
-        kept &= axis.level == axis.find_level(value, f"--where {text}: ")
-    if not kept.any():
-        raise RunnerError(f"no cell of the sweep has {' and '.join(where)}")
-    return np.flatnonzero(kept)
 
 
 def _refuse_mixtures(

@@ -7,7 +7,7 @@ from typing import Literal
 
 import numpy as np
 
-from runner.base.errors import RunnerError, nearest
+from runner.base.errors import RunnerError, unknown
 from runner.plugins.metric_units import unit_of, units
 from runner.store import Run
 
@@ -31,10 +31,9 @@ class Objective:
 
     def __post_init__(self) -> None:
         if unit_of(self.metric) is None:
-            known = ", ".join(units())
             raise RunnerError(
-                f"--{self.direction}: no metric '{self.metric}'{nearest(self.metric, units())}; known: {known}, also "
-                "of one joint or axis (peak_torque_q1), or of a carrying stage (macro_settling_time)"
+                f"{unknown('metric', self.metric, units(), f'--{self.direction}')} Also allowed: a metric of one joint "
+                "or axis (peak_torque_q1), or of a carrying stage (macro_settling_time)."
             )
 
     @property
@@ -59,10 +58,7 @@ class Objective:
             RunnerError: If runs of this kind have no such metric.
         """
         if self.metric not in run.metrics:
-            raise RunnerError(
-                f"--{self.direction}: these runs have no '{self.metric}'{nearest(self.metric, run.metrics)}; "
-                f"they have: {', '.join(run.metrics)}"
-            )
+            raise RunnerError(unknown("metric of these runs", self.metric, run.metrics, f"--{self.direction}"))
         return run.metrics[self.metric].median
 
 

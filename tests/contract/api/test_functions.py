@@ -96,14 +96,14 @@ def test_own_parts(tmp_path):
 def test_a_folder_may_be_a_text_and_must_be_of_the_kind(name, tmp_path):
     opened = getattr(runner, name)
     for folder in ("nowhere", Path("nowhere")):
-        with pytest.raises(RunnerError, match="no folder nowhere"):
+        with pytest.raises(RunnerError, match="nowhere: no such folder"):
             opened(folder)
     made = runner.run(*SHORT)
     if name == "open_run":
         assert opened(str(made.folder)).metrics == made.metrics
     else:
         with pytest.raises(
-            RunnerError, match=f"is the folder of a run; needed: the folder of a {name.removeprefix('open_')}"
+            RunnerError, match=f"it is the folder of a run. Allowed: the folder of a {name.removeprefix('open_')}"
         ):
             opened(made.folder)
 
@@ -119,7 +119,7 @@ def test_a_report_on_a_run():
 
 @pytest.mark.parametrize(
     ("things", "options", "message"),
-    [([], {}, "nothing to report on"), (["nowhere"], {}, "no folder nowhere")],
+    [([], {}, "nothing to report on"), (["nowhere"], {}, "nowhere: no such folder")],
 )
 def test_a_report_on_nothing(things, options, message):
     with pytest.raises(runner.RunnerError, match=message):
@@ -151,7 +151,7 @@ def test_a_tuning_and_its_best_run():
     [
         ({}, "name each metric once"),
         ({"minimize": "peak_torque", "maximize": "peak_torque"}, "name each metric once"),
-        ({"minimize": "peak"}, "no metric 'peak'"),
+        ({"minimize": "peak"}, "--minimize: unknown metric 'peak'"),
         ({"minimize": "peak_torque", "trials": 0}, "trials: must be a whole number, 1 or more; found 0"),
         ({"minimize": "peak_torque", "seed": (1, 2, 3)}, "a range has two ends"),
         ({"minimize": "peak_torque"}, "nothing to tune"),

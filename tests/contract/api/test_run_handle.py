@@ -35,7 +35,7 @@ def test_metrics_are_typed_and_named(run):
     assert set(run.metrics) == set(run.record["metrics"])
     assert "peak" not in run.metrics
     assert run.metrics.get("peak") is None
-    with pytest.raises(runner.RunnerError, match=r"^the run has no metric 'peak_torqe' \(did you mean peak_torque\?\)"):
+    with pytest.raises(runner.RunnerError, match=r"^unknown metric 'peak_torqe'\. .* Did you mean 'peak_torque'\?"):
         _ = run.metrics["peak_torqe"]
 
 
@@ -123,7 +123,7 @@ def test_a_first_repetition_that_was_not_kept_is_simulated_again(tmp_path):
 
 @pytest.mark.parametrize("repetition", [-1, 3])
 def test_no_other_repetitions(run, repetition):
-    with pytest.raises(runner.RunnerError, match=rf"repetition {repetition}: .* allowed: 0 to 2"):
+    with pytest.raises(runner.RunnerError, match=rf"has no repetition {repetition}\. Allowed: 0 to 2"):
         run.trace(repetition)
 
 
@@ -171,7 +171,9 @@ def test_another_repetition_is_drawn(run):
 
 
 def test_an_unknown_signal_tells_the_known(run):
-    with pytest.raises(runner.RunnerError, match=r"no signal 'eror' \(did you mean error\?\); .* torque, tip, error"):
+    with pytest.raises(
+        runner.RunnerError, match=r"unknown signal 'eror'\. .* torque, tip, error.* Did you mean 'error'\?"
+    ):
         run.plot("eror")
 
 

@@ -111,16 +111,16 @@ def test_a_comparison_is_in_pairs_of_equal_seeds(sweep):
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        (lambda sweep: sweep.to_frame("peak"), "no metric 'peak'"),
-        (lambda sweep: sweep.to_frame("peak_torqe", "repetitions"), r"did you mean peak_torque\?"),
+        (lambda sweep: sweep.to_frame("peak"), "unknown metric 'peak'"),
+        (lambda sweep: sweep.to_frame("peak_torqe", "repetitions"), r"Did you mean 'peak_torque'\?"),
         (
             lambda sweep: sweep.to_frame(level="cell"),
-            r"level: no 'cell' \(did you mean cells\?\); allowed: cells, repet",
+            r"level: unknown name 'cell'. Allowed: cells, repetitions. Did you mean 'cells'\?",
         ),
-        (lambda sweep: sweep.compare(by="robt"), r"'robt' was not swept \(did you mean robot\?\)"),
-        (lambda sweep: sweep.compare(by="robot", metrics="peak"), "no metric 'peak'"),
-        (lambda sweep: sweep.run(robt="macro"), r"'robt' was not swept \(did you mean robot\?\)"),
-        (lambda sweep: sweep.run(robot="makro"), r"robot has no value 'makro' \(did you mean macro\?\)"),
+        (lambda sweep: sweep.compare(by="robt"), r"unknown axis 'robt'. .* Did you mean 'robot'\?"),
+        (lambda sweep: sweep.compare(by="robot", metrics="peak"), "unknown metric 'peak'"),
+        (lambda sweep: sweep.run(robt="macro"), r"unknown axis 'robt'. .* Did you mean 'robot'\?"),
+        (lambda sweep: sweep.run(robot="makro"), r"robot: unknown value 'makro'. .* Did you mean 'macro'\?"),
         (
             lambda sweep: sweep.run(robot="macro"),
             "4 runs have these values; name one value of controller: .*; seed: 0, 1",

@@ -34,7 +34,7 @@ def test_latest_of_a_copied_outputs_folder_which_verify_finds_good(cli):
 def test_nothing_to_be_the_latest_is_one_line(cli, command):
     ending = cli(command, "latest")
     assert (ending.code, ending.out) == (2, "")
-    assert "was made in outputs yet that `latest` could mean; needed: the folder of" in ending.err
+    assert "was made in outputs yet. Allowed: the folder of" in ending.err
     assert ending.err.count("\n") == 1
 
 
@@ -42,5 +42,5 @@ def test_a_run_in_place_of_a_sweep_is_one_line(cli, copy_run):
     run = copy_run("goal")
     ending = cli("status", run)
     assert (ending.code, ending.out) == (2, "")
-    assert ending.err.startswith(f"runner: {run} is the folder of a run; needed: the folder of a sweep")
+    assert ending.err.startswith(f"runner: {run}: it is the folder of a run. Allowed: the folder of a sweep")
     assert ending.err.count("\n") == 1

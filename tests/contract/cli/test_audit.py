@@ -36,9 +36,9 @@ def test_bad_input_ends_with_2_and_says_what_is_allowed(cli, tmp_path):
     (tmp_path / "own.yaml").write_text("elements: {P_x: s1*(c2}")
     for arguments, message in (
         (("--position", "own.yaml"), "'(' was never closed"),
-        ((), "nothing to compare: give one of --position, --jacobian, --mass-matrix, --gravity"),
-        (("--position", "own.yaml", "--samples", "0"), "--samples is 0; allowed: 1 to 100000"),
-        (("--position", "own.yaml", "--tolerance", "-1"), "--tolerance is -1; allowed: above 0"),
+        ((), "no formulas to compare. Add one of --position, --jacobian, --mass-matrix, --gravity"),
+        (("--position", "own.yaml", "--samples", "0"), "--samples: out of range (0). Allowed: 1 to 100000."),
+        (("--position", "own.yaml", "--tolerance", "-1"), "--tolerance: out of range (-1). Allowed: above 0."),
         (("--position", "none.yaml"), "cannot read none.yaml"),
     ):
         ending = cli("audit", "macro.urdf", "--tip", "tip", *arguments)

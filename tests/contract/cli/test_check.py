@@ -107,8 +107,8 @@ def test_a_copied_run_is_checked_elsewhere(cli, copy_run, reference, tmp_path):
 def test_folders_and_files_that_cannot_be_read(cli, copy_run, reference, tmp_path):
     run = copy_run("goal")
     cases = [
-        (("check", tmp_path / "gone"), "no folder"),
-        (("check", tmp_path), "is nothing that is stored"),
+        (("check", tmp_path / "gone"), "no such folder"),
+        (("check", tmp_path), "it is not the folder of a stored result"),
         (("check", run, "--baseline", "gone.yaml"), "cannot read the baseline gone.yaml"),
         (("check", run, "--baseline", run), "cannot read the baseline"),
         (("check", run, "--baseline", reference("schema: [\n")), "baseline.yaml, line 2, column 1"),

@@ -87,7 +87,10 @@ def test_a_reference_that_is_given_counts_and_not_the_spec(cli, tmp_path):
 def test_a_probability_lies_between_0_and_1(cli, copy_run, value):
     ending = cli("check", copy_run("rk4"), "--max-failure-probability", value)
     assert ending.code == 2
-    assert f"--max-failure-probability: must be a number above 0 and below 1; found '{value}'" in ending.err
+    assert (
+        f"--max-failure-probability: not a probability ('{value}'). Allowed: a number above 0 and below 1."
+        in ending.err
+    )
 
 
 def test_a_probability_needs_a_spec(cli, copy_run):

@@ -121,4 +121,4 @@ def test_markdown_is_for_sweeps(cli, learned):
     path.write_text("schema: 1\nmetrics: {peak_torque: {min: 0.0, reason: no sign}}\n")
     ending = cli("check", folder, "--baseline", path, "--format", "markdown")
     assert ending.code == 2
-    assert "--format markdown needs the baseline of a sweep, made by --save-baseline" in ending.err
+    assert "--format markdown: only for the baseline of a sweep" in ending.err

@@ -63,7 +63,7 @@ def test_version(cli):
 def test_unknown_command_names_the_nearest(cli):
     ending = cli("chek", "outputs")
     assert ending.code == 2
-    assert ending.err.startswith("runner: no command 'chek' (did you mean check?); commands: run, sweep,")
+    assert ending.err.startswith("runner: unknown command 'chek'. Allowed: run, sweep,")
 
 
 def test_a_bare_call_guides_and_makes_nothing(cli, tmp_path):
@@ -282,7 +282,7 @@ def test_output_and_jobs_of_runs_and_sweeps(cli, tmp_path):
     assert (sweep.code, sweep.folder.parent) == (0, tmp_path / "other" / "sweeps")
     assert "seed=0,1 -j 1 --output=" in open_sweep(sweep.folder).command
     assert cli(*SHORT, "-j", "2").err == "runner: --jobs: one run uses one process. Add -m for a sweep.\n"
-    assert "-j/--jobs: must be a whole number, 1 or more; found '0'" in cli("sweep", *SHORT, "-j", "0").err
+    assert "-j/--jobs: not a count ('0'). Allowed: a whole number, 1 or more." in cli("sweep", *SHORT, "-j", "0").err
 
 
 def test_too_little_memory_is_said(cli, monkeypatch):

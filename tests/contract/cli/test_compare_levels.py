@@ -51,14 +51,14 @@ def test_what_goes_with_an_axis_is_told_before_any_number(cli):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "is one sweep alone; compare the levels of one of its axes (it was swept over: controller, gravity)"),
+        ((), "only one sweep. Add a second one, or compare the levels of an axis (controller, gravity)"),
         (
             ("--by", "controler"),
-            "'controler' was not swept (did you mean controller?)",
+            "--by: unknown axis 'controler'. Allowed: controller, gravity. Did you mean 'controller'?",
         ),
-        (("--by", "controller", "--within", "robot"), "'robot' was not swept"),
-        (("--by", "controller", "--metrics", "torque"), "the runs have no metric 'torque'"),
-        (("--within", "controller"), "--within goes with --by AXIS"),
+        (("--by", "controller", "--within", "robot"), "--within: unknown axis 'robot'"),
+        (("--by", "controller", "--metrics", "torque"), "unknown metric 'torque'"),
+        (("--within", "controller"), "--within: needs --by AXIS"),
     ],
 )
 def test_bad_arguments_are_refused_in_a_line(cli, folder, arguments, message):
@@ -69,4 +69,21 @@ def test_bad_arguments_are_refused_in_a_line(cli, folder, arguments, message):
 
 
 def test_by_is_for_one_sweep(cli, folder):
-    assert "--by is for one sweep" in cli("compare", folder, folder, "--by", "controller").err
+    assert (
+        "--by: not for these results. Allowed: only for one sweep."
+        in cli("compare", folder, folder, "--by", "controller").err
+    )
+
+
+def test_where_limits_the_cells(cli, folder):
+    both = ("--by", "controller", "--metrics", "rms_torque")
+    ending = cli("compare", folder, *both, "--where", "gravity=9.81")
+    assert "2 cells, by controller" in ending.out
+    assert len(rows(ending.out, "rms_torque")) == 1
+    assert "--where gravity: no value. Allowed: KEY=VALUE." in cli("compare", folder, *both, "--where", "gravity").err
+
+
+def test_each_of_several_axes_is_compared(cli, folder):
+    out = cli("compare", folder, "--by", "controller,gravity", "--metrics", "rms_torque").out
+    heads = [line for line in out.splitlines() if ", by " in line]
+    assert [head.partition(", by ")[2].partition(";")[0] for head in heads] == ["controller", "gravity"]

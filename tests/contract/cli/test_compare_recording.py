@@ -79,16 +79,16 @@ def test_names_in_a_recording_cannot_become_markup(swing, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "wanted"),
     [
-        (["RUN", "recording.csv"], "say by --columns FILE which signal each column holds"),
-        (["RUN", "--columns", "columns.yaml"], "a recording is compared with one run"),
-        (["RUN", "RUN", "recording.csv", "--columns", "columns.yaml"], "a recording is compared with one run"),
-        (["recording.csv", "--columns", "columns.yaml"], "a recording is compared with one run"),
-        (["RUN", "recording.csv", "--columns", "columns.yaml", "--metrics", "energy"], "are not for recordings"),
+        (["RUN", "recording.csv"], "recording.csv: add --columns FILE"),
+        (["RUN", "--columns", "columns.yaml"], "recordings: not one run and one recording"),
+        (["RUN", "RUN", "recording.csv", "--columns", "columns.yaml"], "recordings: not one run and one recording"),
+        (["recording.csv", "--columns", "columns.yaml"], "recordings: not one run and one recording"),
+        (["RUN", "recording.csv", "--columns", "columns.yaml", "--metrics", "energy"], "not for recordings"),
         (
             ["RUN", "recording.csv", "--columns", "columns.yaml", "--fill-gaps", "20"],
-            "must be a time above 0, such as 20ms",
+            "Allowed: a time above 0, such as 20ms.",
         ),
-        (["RUN", "RUN", "--fill-gaps", "20ms"], "a recording is compared with one run"),
+        (["RUN", "RUN", "--fill-gaps", "20ms"], "recordings: not one run and one recording"),
         (["RUN", "none.csv", "--columns", "columns.yaml"], "cannot read none.csv"),
         (["RUN", "recording.csv", "--columns", "none.yaml"], "cannot read none.yaml"),
     ],

@@ -91,7 +91,7 @@ def test_a_ratio_to_zero_is_left_out(cli, copy_run):
 
 def test_folders_that_are_no_runs(cli, copy_run, tmp_path):
     run = copy_run("goal")
-    for bad, what in ((tmp_path / "gone", "no folder"), (tmp_path, "is nothing that is stored")):
+    for bad, what in ((tmp_path / "gone", "no such folder"), (tmp_path, "it is not the folder of a stored result")):
         for pair in ((run, bad), (bad, run)):
             ending = cli("compare", *pair)
             assert (ending.code, ending.out) == (2, "")
@@ -101,7 +101,7 @@ def test_folders_that_are_no_runs(cli, copy_run, tmp_path):
 def test_one_run_alone_is_refused(cli, copy_run):
     ending = cli("compare", copy_run("goal"))
     assert (ending.code, ending.out) == (2, "")
-    assert "is one run alone; give a second one" in ending.err
+    assert "only one run. Add a second one" in ending.err
 
 
 def test_what_is_compared_is_told_before_any_number(cli, copy_run):
@@ -128,7 +128,7 @@ def test_an_unknown_metric_is_refused(cli, copy_run):
     run = copy_run("goal")
     ending = cli("compare", run, run, "--metrics", "enrgy")
     assert (ending.code, ending.out) == (2, "")
-    assert "the runs have no metric 'enrgy' (did you mean energy?); known: " in ending.err
+    assert "metrics: unknown metric 'enrgy'. Allowed: " in ending.err
 
 
 def test_equal_seeds_are_compared_in_pairs(cli, copy_run):

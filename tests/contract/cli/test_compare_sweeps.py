@@ -128,13 +128,13 @@ def test_a_run_against_a_sweep_is_refused_with_what_works(cli, sweep, shared):
     cell, other = (cli(*TASK[:-1], shared, f"gravity={gravity}").folder for gravity in (9.81, 9.6))
     ending = cli("compare", cell, a)
     assert (ending.code, ending.out) == (2, "")
-    assert "this run is the sweep's cell robot=macro " in ending.err
+    assert "This run is the cell robot=macro " in ending.err
     assert f"`runner compare {a} --by AXIS`" in ending.err
-    assert "a cell of the sweep is a run as well; `runner robot=macro " in cli("compare", a, other).err
+    assert "A cell of the sweep is also a run; `runner robot=macro " in cli("compare", a, other).err
 
 
 def test_an_unknown_metric_is_refused(cli, sweep):
     a = sweep("gravity=9.81,9.7")
     ending = cli("compare", a, a, "--metrics", "enrgy")
     assert (ending.code, ending.out) == (2, "")
-    assert "the runs have no metric 'enrgy' (did you mean energy?); known: " in ending.err
+    assert "metrics: unknown metric 'enrgy'. Allowed: " in ending.err

@@ -101,10 +101,10 @@ def test_config_and_page_in_one_folder(cli):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("none.urdf",), "no file none.urdf"),
+        (("none.urdf",), "none.urdf: no such file"),
         ((), "required: FILE"),
         (("none.urdf", "--format", "html"), "--format needs --output DIR"),
-        (("none.urdf", "--format", "pdf"), "--format: no 'pdf'; allowed: config, html"),
+        (("none.urdf", "--format", "pdf"), "--format: unknown name 'pdf'. Allowed: config, html"),
     ],
 )
 def test_bad_input(cli, arguments, said):

@@ -39,7 +39,10 @@ def test_what_is_there_stays(cli, tmp_path, kind):
     else:
         taken.write_text("kept")
     ending = cli("example", "mine")
-    assert (ending.code, ending.err) == (2, "runner: mine: is there already, and not empty; name a new folder\n")
+    assert (ending.code, ending.err) == (
+        2,
+        "runner: mine: this folder is not empty. Allowed: a new folder, or an empty one.\n",
+    )
 
 
 def test_a_folder_that_cannot_be_written_is_named(cli, tmp_path):

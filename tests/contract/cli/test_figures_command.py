@@ -64,7 +64,7 @@ def test_a_study_of_which_runs_are_missing_is_told_and_none_is_made(cli, tmp_pat
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("nowhere",), "no folder nowhere"),
+        (("nowhere",), "nowhere: no such folder"),
         ((), "the following arguments are required: DIR"),
     ],
 )
@@ -78,8 +78,8 @@ def test_bad_input_is_one_line(cli, arguments, message):
 @pytest.mark.parametrize(
     ("width", "message"),
     [
-        ("triple", "--width triple: allowed are single (88 mm), double (180 mm) or 60 to 400"),
-        ("5", "--width 5: allowed are single"),
+        ("triple", "--width: not a width ('triple'). Allowed: single (88 mm), double (180 mm), or 60 to 400 in mm."),
+        ("5", "--width: not a width ('5'). Allowed: single"),
     ],
 )
 def test_a_width_that_is_none_is_one_line(cli, copy_run, width, message):

@@ -61,16 +61,16 @@ def test_own_options_are_listed(cli, tmp_path):
 
 def test_an_own_folder_that_does_not_exist_is_named(cli):
     ending = cli("list", "robots", "--config-dir", "nowhere")
-    assert (ending.code, ending.err) == (2, "runner: --config-dir: no folder nowhere\n")
+    assert (ending.code, ending.err) == (2, "runner: --config-dir: no such folder ('nowhere').\n")
 
 
 def test_an_unknown_topic_names_the_nearest(cli):
     ending = cli("list", "robot")
     assert ending.code == 2
-    assert ending.err == f"runner: list: no topic 'robot' (did you mean robots?); topics: {', '.join(TOPICS)}\n"
+    assert ending.err == f"runner: list: unknown topic 'robot'. Allowed: {', '.join(TOPICS)}. Did you mean 'robots'?\n"
 
 
 def test_unknown_arguments_show_the_usage(cli):
     ending = cli("list", "robots", "--all")
     assert ending.code == 2
-    assert ending.err.startswith("runner: unrecognized arguments: --all; usage: runner list [-h]")
+    assert ending.err.startswith("runner: unrecognized arguments: --all. Usage: runner list [-h]")

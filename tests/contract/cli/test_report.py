@@ -75,30 +75,33 @@ def test_several_sweeps_are_compared(cli):
     assert "rms torque" not in chosen.joinpath("report.html").read_text()
     refused = cli("report", *folders, "--metrics", "enrgy")
     assert (refused.code, refused.out) == (2, "")
-    assert "the runs have no metric 'enrgy' (did you mean energy?)" in refused.err
+    assert "metrics: unknown metric 'enrgy'" in refused.err
 
 
 def test_runs_and_sweeps_have_no_report_together(cli, sweep, stored):
     ending = cli("report", sweep, stored, "--format", "html")
     assert (ending.code, ending.out) == (2, "")
     assert (
-        ending.err == "runner: runs and sweeps have no report together; give runs alone, sweeps alone, or one folder\n"
+        ending.err == "runner: these results have no common report. Allowed: only runs, only sweeps, or one folder.\n"
     )
 
 
 def test_a_metric_is_asked_for_where_a_sweep_has_it(cli, sweep, stored):
     ending = cli("report", sweep, "--metrics", "peak_torq")
     assert ending.code == 2
-    assert "the runs have no metric 'peak_torq' (did you mean peak_torque?)" in ending.err
-    assert "--metrics is for the report on sweeps" in cli("report", stored, "--metrics", "peak_torque").err
+    assert "metrics: unknown metric 'peak_torq'" in ending.err
+    assert f"--metrics: {stored} is not a sweep." in cli("report", stored, "--metrics", "peak_torque").err
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "the following arguments are required: DIR; usage: runner report"),
-        (("nowhere",), "no folder nowhere"),
-        ((".",), ". is nothing that is stored; needed: the folder of a run (`runner OVERRIDES` prints it), a sweep"),
+        ((), "the following arguments are required: DIR. Usage: runner report"),
+        (("nowhere",), "nowhere: no such folder"),
+        (
+            (".",),
+            ".: it is not the folder of a stored result. Allowed: the folder of a run (`runner OVERRIDES` prints it)",
+        ),
     ],
 )
 def test_bad_input_is_told(cli, arguments, message):

@@ -47,4 +47,4 @@ def test_failed_runs_are_counted_in_shards_too(cli):
 def test_a_folder_that_is_no_sweep(cli, tmp_path):
     ending = cli("status", tmp_path)
     assert ending.code == 2
-    assert "is nothing that is stored; needed: the folder of a sweep" in ending.err
+    assert "it is not the folder of a stored result. Allowed: the folder of a sweep" in ending.err

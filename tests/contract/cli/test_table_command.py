@@ -74,12 +74,15 @@ def test_a_run_has_a_table_of_its_metrics(cli, a_run):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("--format", "latx"), "--format: no 'latx' (did you mean latex?); allowed: csv, parquet, markdown, "),
-        (("--format", "parquet"), "--format parquet is no text: write --output FILE as well"),
-        (("--output", "t.txt"), "--output t.txt: write --format, or a name that ends in .csv, .parquet, .md, .tex"),
-        (("--metrics", "peak_torq"), "the runs have no metric 'peak_torq' (did you mean peak_torque?); known: "),
-        (("--by", "robot"), "--by: 'robot' was not swept"),
-        (("--where", "controller=pid"), "controller has no value 'pid'"),
+        (
+            ("--format", "latx"),
+            "--format: unknown name 'latx'. Allowed: csv, parquet, markdown, latex. Did you mean 'latex'?",
+        ),
+        (("--format", "parquet"), "--format: Parquet cannot be printed. Add --output FILE."),
+        (("--output", "t.txt"), "--output t.txt: unknown ending '.txt'. Allowed: .csv, .parquet, .md, .tex."),
+        (("--metrics", "peak_torq"), "metrics: unknown metric 'peak_torq'. Allowed: "),
+        (("--by", "robot"), "--by: unknown axis 'robot'"),
+        (("--where", "controller=pid"), "--where controller: unknown value 'pid'"),
     ],
 )
 def test_bad_input_is_one_line(cli, sweep, arguments, message):
@@ -93,7 +96,7 @@ def test_bad_input_is_one_line(cli, sweep, arguments, message):
 def test_axes_are_for_sweeps(cli, a_run):
     ending = cli("table", a_run, "--by", "controller")
     assert ending.code == 2
-    assert f"--by and --where are for sweeps; {a_run} is a run" in ending.err
+    assert f"--by and --where: {a_run} is a run. Allowed: only for sweeps." in ending.err
 
 
 def test_a_sweep_that_is_not_whole_tells_what_is_missing(cli, tmp_path):

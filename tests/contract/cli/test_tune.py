@@ -88,17 +88,32 @@ def test_a_tuning_in_which_every_trial_failed_has_a_report_too(cli):
 @pytest.mark.parametrize(
     ("arguments", "why"),
     [
-        (["tune", *SHORT, RANGE], "name a metric to --minimize or --maximize; usage: runner tune"),
-        (["tune", *SHORT, RANGE, "--minimize", "peak_torqe"], "no metric 'peak_torqe' (did you mean peak_torque?)"),
-        (["tune", *SHORT, RANGE, "--minimize", "macro_overshoot"], "these runs have no 'macro_overshoot'"),
-        (["tune", *SHORT, RANGE, "--minimize", "energy", "--maximize", "energy"], "minimized and maximized at once"),
-        (["tune", *SHORT, RANGE, "--minimize", "energy", "--trials", "0"], "--trials: must be a whole number"),
+        (
+            ["tune", *SHORT, RANGE],
+            "no metric to tune for. Add --minimize METRIC or --maximize METRIC. Usage: runner tune",
+        ),
+        (["tune", *SHORT, RANGE, "--minimize", "peak_torqe"], "--minimize: unknown metric 'peak_torqe'"),
+        (
+            ["tune", *SHORT, RANGE, "--minimize", "macro_overshoot"],
+            "--minimize: unknown metric of these runs 'macro_overshoot'",
+        ),
+        (
+            ["tune", *SHORT, RANGE, "--minimize", "energy", "--maximize", "energy"],
+            "--minimize and --maximize: both have the same metric",
+        ),
+        (
+            ["tune", *SHORT, RANGE, "--minimize", "energy", "--trials", "0"],
+            "--trials: not a count ('0'). Allowed: a whole number",
+        ),
         (
             ["tune", *SHORT, RANGE, "--minimize", "energy", "--jobs", "x"],
-            "-j/--jobs: must be a whole number",
+            "-j/--jobs: not a count",
         ),
         (["tune", *SHORT, "--minimize", "energy"], "nothing to tune; give a key a range"),
-        (["tune", *SHORT, RANGE, "--minimize", "energy", "--config-dir", "none"], "--config-dir: no folder none"),
+        (
+            ["tune", *SHORT, RANGE, "--minimize", "energy", "--config-dir", "none"],
+            "--config-dir: no such folder ('none').",
+        ),
     ],
 )
 def test_bad_input_is_told(cli, arguments, why):

@@ -37,5 +37,5 @@ def test_an_empty_folder_and_none(cli, tmp_path):
     ending = cli("verify", "nowhere")
     assert (ending.code, ending.err) == (
         2,
-        "runner: no folder nowhere; name an outputs folder, as in `runner verify outputs`\n",
+        "runner: nowhere: no such folder. Allowed: an outputs folder, as in `runner verify outputs`.\n",
     )

@@ -87,7 +87,7 @@ metrics:
     )
     starts = [
         "schema: must be 1; found 2",
-        "metrics.setling_time: unknown metric (did you mean settling_time?); metrics: settling_time, ",
+        "metrics.setling_time: unknown metric 'setling_time'. Allowed: settling_time, ",
         "metrics.energy: min 2 is above max 1; found ",
         "metrics.overshoot: needs min, max or both; found ",
         "metrics.peak_torque.reason: missing",

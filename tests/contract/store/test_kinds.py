@@ -97,7 +97,7 @@ def test_nothing_yet_is_one_clear_line(kinds, needed):
 def test_what_is_gone_is_not_replaced_by_an_older_one():
     made("runs", "a")
     shutil.rmtree(made("runs", "b"))
-    with pytest.raises(RunnerError, match=r"outputs/runs/b was the latest and is gone"):
+    with pytest.raises(RunnerError, match=r"outputs/runs/b no longer exists"):
         find_folder("latest", ["run"])
 
 
@@ -121,15 +121,15 @@ def test_an_outputs_folder_that_cannot_be_written_is_told(capsys):
 def test_a_folder_of_another_kind_is_refused_in_a_line(kind, named):
     folder = made(kind, "x")
     assert kind_of(folder) == named
-    with pytest.raises(RunnerError, match=f"{folder} is the folder of a {named}; needed: the folder of a sweep"):
+    with pytest.raises(RunnerError, match=f"{folder}: it is the folder of a {named}. Allowed: the folder of a sweep"):
         find_folder(str(folder), ["sweep"])
 
 
 def test_a_folder_of_nothing_and_no_folder_are_refused_in_a_line():
     with pytest.raises(
         RunnerError,
-        match=r"^\. is nothing that is stored; needed: the folder of a run \(`runner OVERRIDES` prints it\), or",
+        match=r"^\.: it is not the folder of a stored result\. Allowed: the folder of a run \(`runner OVERRIDES`",
     ):
         find_folder(".", ["run"])
-    with pytest.raises(RunnerError, match=r"^no folder nowhere; needed: the folder of a run"):
+    with pytest.raises(RunnerError, match=r"^nowhere: no such folder. Allowed: the folder of a run"):
         find_folder("nowhere", ["run"])

@@ -120,9 +120,9 @@ def test_the_table_of_a_stored_sweep_holds_what_its_runs_hold(cli, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((), "the following arguments are required: DIR; usage: runner table"),
-        (("nowhere",), "no folder nowhere; needed: the folder of a sweep"),
-        ((".",), ". is nothing that is stored; needed: the folder of a sweep"),
+        ((), "the following arguments are required: DIR. Usage: runner table"),
+        (("nowhere",), "nowhere: no such folder. Allowed: the folder of a sweep"),
+        ((".",), ".: it is not the folder of a stored result. Allowed: the folder of a sweep"),
     ],
 )
 def test_bad_input_is_told(cli, arguments, message):

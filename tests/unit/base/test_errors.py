@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from runner.base.errors import ConfigError, RunnerError, SimulationError, StoreError, nearest
+from runner.base.errors import ConfigError, RunnerError, SimulationError, StoreError, nearest, unknown
 
 
 def test_what_a_user_can_mend_is_a_runner_error():
@@ -58,3 +58,16 @@ def test_of_many_problems_the_first_are_shown():
 
 def test_a_name_of_thousands_of_characters_has_no_nearest():
     assert nearest("m" * 100_000, ["m" * 99_999]) == ""
+
+
+def test_an_unknown_name_is_told_with_the_allowed_ones_and_the_nearest():
+    assert unknown("robot", "makro", ["macro"], "robot") == (
+        "robot: unknown robot 'makro'. Allowed: macro. Did you mean 'macro'?"
+    )
+    assert unknown("axis", "x", []) == "unknown axis 'x'. Allowed: none."
+
+
+def test_the_nearest_of_many_names_is_always_told():
+    names = [f"metric_{number}" for number in range(1000)]
+    text = str(RunnerError(unknown("metric", "metric_99x", names)))
+    assert " more. Did you mean 'metric_99" in text

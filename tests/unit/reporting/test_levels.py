@@ -112,11 +112,11 @@ def test_very_many_pairs_are_drawn_from_and_n_says_so():
             "controler",
             (),
             (),
-            "'controler' was not swept (did you mean controller?); the sweep is over: robot, ",
+            "unknown axis 'controler'. Allowed: robot, ",
         ),
-        ("controller", ("robt",), (), "'robt' was not swept (did you mean robot?)"),
-        ("controller", ("controller",), (), "controller: is compared"),
-        ("controller", (), ("rsm",), "the runs have no metric 'rsm' (did you mean rms?); known: rms"),
+        ("controller", ("robt",), (), "unknown axis 'robt'"),
+        ("controller", ("controller",), (), "within: controller is the compared axis"),
+        ("controller", (), ("rsm",), "unknown metric 'rsm'. Allowed: rms"),
     ],
 )
 def test_unknown_names_are_refused(axis, within, metrics, message):

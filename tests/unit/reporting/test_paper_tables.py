@@ -190,5 +190,5 @@ def test_metrics_are_those_of_the_report_where_none_is_named():
 
 
 def test_unknown_metrics_are_refused():
-    with pytest.raises(RunnerError, match=r"no metric 'peak_torq' \(did you mean peak_torque\?\); known: rms_"):
+    with pytest.raises(RunnerError, match=r"unknown metric 'peak_torq'\. Allowed: rms_"):
         table(metrics=["peak_torq"])

@@ -40,10 +40,10 @@ def test_cells_can_be_limited_to_a_value(value):
     [
         (["controller"], [], "differ in robot.payload.mass; only seeds are put together: write "
          "--by controller,robot.payload.mass for a row each, or fix a value, as in --where robot.payload.mass=0.5"),
-        (["controler"], [], "--by: 'controler' was not swept (did you mean controller?); the sweep is over: "),
-        (None, ["controller=pid"], "controller has no value 'pid'; allowed: computed_torque, operational_space"),
-        (None, ["controller"], "controller has no value ''; allowed: computed_torque, operational_space"),
-        (None, ["load=1"], "--where: 'load' was not swept"),
+        (["controler"], [], "--by: unknown axis 'controler'. Allowed: "),
+        (None, ["controller=pid"], "--where controller: unknown value 'pid'. Allowed: computed_torque"),
+        (None, ["controller"], "--where controller: no value. Allowed: KEY=VALUE."),
+        (None, ["load=1"], "--where: unknown axis 'load'"),
         (None, ["controller=computed_torque", "controller=operational_space"], "no cell of the sweep has "),
     ],
 )  # fmt: skip

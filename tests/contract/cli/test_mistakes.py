@@ -1,0 +1,35 @@
+"""Mistakes on the command line: each ends with exit code 2 and a line with what is wrong and what is allowed."""
+
+import pytest
+
+MISTAKES = [
+    ("run --jbos 2", "unrecognized arguments: --jbos (did you mean --jobs?). Usage: runner run"),
+    ("report --html x", "--html is now called --format html."),
+    ("report RUN --format pfd", "--format: unknown name 'pfd'. Allowed: html, pdf. Did you mean 'pdf'?"),
+    ("report RUN --metrics energy", "is not a sweep. Allowed: only for sweeps."),
+    ("table RUN --where a=1", "is a run. Allowed: only for sweeps."),
+    ("compare RUN RUN --where a=1", "--where: not for these results. Allowed: only for sweeps."),
+    ("compare RUN --fill-gaps 20", "--fill-gaps: not a time ('20'). Allowed: a time above 0, such as 20ms."),
+    ("sensitivity RUN --parameters gain", "--parameters: unknown name 'gain'. Allowed: gains, masses"),
+    ("sensitivity RUN --repetition 9", "has no repetition 9. Allowed: 0 to 0."),
+    ("status RUN", "RUN: it is the folder of a run. Allowed: the folder of a sweep"),
+    ("check RUN --baseline none.yaml", "cannot read the baseline none.yaml: No such file or directory"),
+    ("check RUN --format text,markdown", "--format: too many names (text,markdown). Allowed: at most 1."),
+    ("study chek x", "ACTION: unknown name 'chek'. Allowed: new, check, diff. Did you mean 'check'?"),
+    (
+        "reproduce xarm7 robot=macro",
+        "reproduce: the study decides what it simulates (robot=macro). Allowed: hydra.sweeper.*, ",
+    ),
+    ("list robts", "list: unknown topic 'robts'. Allowed: "),
+    ("audit xarm7 --tip link7", "no formulas to compare. Add one of --position, "),
+    ("-sc install=bsh", "Allowed: install= and one of bash, zsh, fish"),
+]
+
+
+@pytest.mark.parametrize(("line", "message"), MISTAKES, ids=[line for line, _ in MISTAKES])
+def test_a_mistake_is_told_in_a_line(cli, copy_run, line, message):
+    run = str(copy_run("goal")) if "RUN" in line else ""
+    ending = cli(*(word if word != "RUN" else run for word in line.split()))
+    assert (ending.code, ending.out) == (2, "")
+    assert message.replace("RUN", run) in ending.err
+    assert ending.err.count("\n") == 1
