@@ -3,8 +3,7 @@
 import sys
 from importlib import import_module
 
-from runner.base.engines import has_pybullet
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import has_pybullet, quiet_environment
 
 NAMES = (
     "tick",

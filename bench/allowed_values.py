@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from runner.config.robot import Armature
 from runner.schema.model import StrictModel
-from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, PositivePerStage, TorquePerStage
+from runner.schema.values import FinitePerStage, NonNegativePerStage, PositivePerStage, TorquePerStage
 from runner.trajectories.joint_motion import Configuration
 
 _IN_WORDS = {

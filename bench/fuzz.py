@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from bench import fuzz_configs, fuzz_lines, fuzz_stores
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 
 _BATCH = 500  # cases in a process, so that a crash ends no more than that
 

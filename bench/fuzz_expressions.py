@@ -14,7 +14,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from support.hostile_expressions import attempt, expression
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 
 SECONDS, MEGABYTES = 0.1, 50.0
 _WEIGHED = 50

@@ -19,16 +19,14 @@ from runner.base.paths import conf_dir
 from runner.calibration.procedures import CALIBRATIONS
 from runner.cli.main import COMMANDS, COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
-from runner.config.caveats import CaveatsConfig
 from runner.config.compose.options import group_options
 from runner.config.input_shaper import InputShaperConfig
+from runner.config.joints import NoiseConfig, TorqueLimitsConfig
+from runner.config.judgement import Bound, CaveatsConfig
 from runner.config.limits import SweepConfig
-from runner.config.noise import NoiseConfig
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.run import RunSettings
 from runner.config.settings import PresetConfig
-from runner.config.spec import Bound
-from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch import NotchConfig

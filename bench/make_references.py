@@ -16,7 +16,7 @@ import numpy as np
 import yaml
 from tqdm import tqdm
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.config.compose.options import group_options
 from runner.store import Run, open_run
 from runner.store.baselines import baseline_path

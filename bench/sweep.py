@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from runner import store
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation.assembly import assemble

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import settings
 from support import compiled_once
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 
 quiet_environment()
 

@@ -12,8 +12,8 @@ from typing import Any
 import yaml
 from yaml.resolver import Resolver
 
+from runner.base.dotted_keys import calls_function
 from runner.base.errors import RunnerError
-from runner.base.interpolation import calls_function
 from runner.base.limits import Limit
 from runner.base.paths import ships
 from runner.base.sanitize import quoted

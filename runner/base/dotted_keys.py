@@ -1,7 +1,11 @@
-"""Values of a nested config by their dotted keys."""
+"""Values of a nested config by their dotted keys, and references between them, such as ${robot.period}."""
 
-from collections.abc import Iterator, Mapping
+import contextlib
+import re
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
+
+from runner.base.errors import ConfigError
 
 Place = tuple[str | int, ...]
 """Keys and list indices that lead to a value, such as ("trajectory", "goal", 0)."""
@@ -15,15 +19,18 @@ def leaves(config: object, place: Place = (), lists: bool = True) -> Iterator[tu
         place: The place of the config in a larger one.
         lists: Whether to yield the items of lists instead of lists.
     """
-    inner: Mapping[Any, object] = {}
-    if isinstance(config, Mapping):
-        inner = config
-    elif lists and isinstance(config, list):
-        inner = dict(enumerate(config))
-    for key, item in inner.items():
+    inner = _items(config) if lists or not isinstance(config, list) else ()
+    for key, item in inner:
         yield from leaves(item, (*place, key), lists)
     if place and not inner:
         yield place, config
+
+
+def _items(config: object) -> Collection[tuple[Any, Any]]:
+    """Return the keys and values of a group, or the indices and values of a list; nothing for any other value."""
+    if isinstance(config, Mapping):
+        return config.items()
+    return list(enumerate(config)) if isinstance(config, list) else ()
 
 
 def dotted(place: Place) -> str:
@@ -32,8 +39,12 @@ def dotted(place: Place) -> str:
 
 
 def get(config: object, place: str | Place) -> Any:
-    """Return the value at a place or dotted key of nested groups; None if there is none."""
+    """Return the value at a place or dotted key of nested groups and lists; None if there is none."""
     for key in place.split(".") if isinstance(place, str) else place:
+        if isinstance(config, list):
+            with contextlib.suppress(ValueError, IndexError):
+                config = config[int(key)]
+                continue
         config = config.get(key) if isinstance(config, Mapping) else None
     return config
 
@@ -43,3 +54,67 @@ def put(config: Any, place: Place, value: object) -> None:
     for key in place[:-1]:
         config = config[key]
     config[place[-1]] = value
+
+
+_REFERENCE = re.compile(r"\$\{\s*(\.*[^\s.:${}'\"\\][^\s:${}'\"\\]*)\s*\}")
+_SIZE = 2_000_000  # of a config whose references are replaced by their values
+_A_VALUE = 100  # size of a value in addition to its characters: the time to compose it
+_DEPTH = 60  # of collections and references within each other
+
+
+def calls_function(text: str) -> bool:
+    """Return True if a ${...} in a text is not a reference to a key: oc.env would copy secrets into a config."""
+    return "${" in text and "${" in _REFERENCE.sub("", text)
+
+
+def check_references(config: Mapping[str, Any]) -> None:
+    """Check the references of a composed config before they are resolved.
+
+    Args:
+        config: The config as plain data, references unresolved.
+
+    Raises:
+        ConfigError: for a key that refers to itself, or expands to too much.
+    """
+    _Sizes(config).of((), config)
+
+
+class _Sizes:
+    """Sizes of values, including what they refer to, by their places; each is computed once."""
+
+    def __init__(self, config: Mapping[str, Any]) -> None:
+        self._config = config
+        self._known: dict[Place, int] = {}
+        self._open: list[Place] = []
+
+    def of(self, place: Place, value: Any) -> int:
+        if place in self._known:
+            return self._known[place]
+        if place in self._open:
+            raise ConfigError([f"{dotted(place)}: refers to itself, by way of {dotted(self._open[-1])}"])
+        if len(self._open) > _DEPTH:
+            raise ConfigError([f"{dotted(self._open[-1])}: nested or referred to deeper than {_DEPTH} levels"])
+        self._open.append(place)
+        size = _A_VALUE + (len(value) if isinstance(value, str) else 0)
+        for inner in self._within(place, value):
+            size += self.of(*inner)
+            if size > _SIZE:
+                raise ConfigError([f"{dotted(place) or 'the config'}: stands for too many values, by its references"])
+        self._open.pop()
+        self._known[place] = size
+        return size
+
+    def _within(self, place: Place, value: Any) -> Iterator[tuple[Place, Any]]:
+        if isinstance(value, str):
+            targets = (_target(place, reference) for reference in _REFERENCE.findall(value))
+            yield from ((target, found) for target in targets if (found := get(self._config, target)) is not None)
+        else:
+            yield from (((*place, key), item) for key, item in _items(value))
+
+
+def _target(place: Place, reference: str) -> Place:
+    """Return the place that a reference names; each leading dot is a collection, the first the one that contains it."""
+    keys = reference.lstrip(".")
+    dots = len(reference) - len(keys)
+    path = [key for key in re.split(r"[.\[\]]", keys) if key]
+    return (*(place[: len(place) - dots] if dots else ()), *path)

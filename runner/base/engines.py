@@ -1,9 +1,8 @@
-"""PyBullet availability, installed library versions and the default plant.
-
-PyBullet is optional: Python 3.11 is the newest version with PyBullet wheels.
-"""
+"""Numerical engines: PyBullet availability, installed versions, the default plant, and settings of the environment."""
 
 import contextlib
+import logging
+import os
 import platform
 from collections.abc import Iterable
 from importlib.util import find_spec
@@ -19,7 +18,7 @@ def has_pybullet() -> bool:
 
 
 def installed_versions(names: Iterable[str]) -> dict[str, str]:
-    """Return the versions of libraries by name; one that is not installed is left out."""
+    """Return the versions of installed libraries by name."""
     from importlib.metadata import PackageNotFoundError, version  # half of the time in which a word is completed
 
     found = {}
@@ -47,3 +46,14 @@ def bullet_missing() -> str:
         "plant.kind: bullet needs PyBullet, which is not installed; take plant=mujoco, or install it by "
         f"`pip install pybullet`{built}"
     )
+
+
+def quiet_environment() -> None:
+    """Keep numerical libraries to one thread, and let Hydra's exceptions through; call before importing numpy.
+
+    Matplotlib says its errors alone: in a home that cannot be written it warns of each folder that it makes elsewhere.
+    """
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")
+    os.environ["HYDRA_FULL_ERROR"] = "1"
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)

@@ -4,7 +4,7 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.quantities import plain_number
 from runner.base.sanitize import align_columns, one_line
 from runner.cli.arguments import Parser

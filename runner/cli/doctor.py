@@ -12,7 +12,7 @@ import shlex
 from argparse import Namespace
 from pathlib import Path
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser

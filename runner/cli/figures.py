@@ -9,7 +9,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser, Stored
 from runner.config.compose.user_settings import outputs_dir

@@ -2,7 +2,7 @@
 
 from argparse import Namespace
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.cli.arguments import Parser, Stored
 
 FORMATS = ("html", "pdf")

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.paths import conf_dir
 from runner.cli.arguments import Parser

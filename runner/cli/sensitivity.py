@@ -11,7 +11,7 @@ from math import isnan
 from typing import TYPE_CHECKING
 
 from runner.base import progress
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.quantities import plain_number
 from runner.base.sanitize import align_columns
 from runner.cli.arguments import Names, Parser, Stored

@@ -3,7 +3,7 @@
 import sys
 from argparse import Namespace
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.cli.arguments import Parser, Stored
 
 

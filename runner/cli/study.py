@@ -14,7 +14,7 @@ from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir

@@ -8,7 +8,7 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError, unknown
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored

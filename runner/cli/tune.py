@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from runner.base import progress
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.cli import report
 from runner.cli.arguments import Parser, count

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Literal
 
 from runner.base import progress
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir

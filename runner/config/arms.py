@@ -13,18 +13,15 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
-from runner.robots.armature import armature_file
 from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf, with_payloads
-from runner.robots.inertials import Payload, set_file
+from runner.robots.inertials import Payload, armature_file, set_file
 from runner.robots.joint_dynamics import dynamics_of
-from runner.robots.mjcf_files import is_mjcf
 from runner.robots.model import RobotModel
 from runner.robots.mounting import Mount, mount
 from runner.robots.robot import Robot, Stage
 from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool
-from runner.robots.tree import check_tip, tree_of
-from runner.robots.urdf_values import limit_of
-from runner.schema.per_joint import expand
+from runner.robots.tree import check_tip, is_mjcf, limit_of, tree_of
+from runner.schema.values import expand
 from runner.sensing.force_torque import ForceTorqueConfig
 
 _KEPT = 8

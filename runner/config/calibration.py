@@ -12,9 +12,8 @@ from runner.base.sanitize import quoted
 from runner.calibration import Tool
 from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
 from runner.config.arms import build_robot, read_outline
-from runner.config.compose.problems import Problems, require
 from runner.config.composed import Composed
-from runner.config.parsing import group_of, parse, parse_kind, parse_robot
+from runner.config.parsing import Problems, group_of, parse, parse_kind, parse_robot, require
 from runner.config.robot import RobotConfig
 from runner.plugins.registry import KindConfig
 from runner.robots import RobotModel

@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.errors import ConfigError, nearest
-from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
 from runner.controllers import Loop
 from runner.controllers.force.hybrid_force import HybridForceConfig
@@ -13,23 +12,7 @@ from runner.plants import PLANTS, PlantConfig
 from runner.plants.computation import EXACT, ComputationConfig
 from runner.plants.decoupled import TorquePlantConfig
 from runner.plants.kinds import ComputesLate
-from runner.robots.mismatch import MismatchConfig
 from runner.sensing.endpoint import EndpointTicks
-
-
-def check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
-    """Check that the payload in the controllers' model is not negative.
-
-    Raises:
-        ConfigError: if it is.
-    """
-    if mismatch.payload < -robot.payload.mass:
-        raise ConfigError(
-            [
-                f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
-                f"robot.payload.mass with {robot.payload.mass:g} kg; allowed: {-robot.payload.mass:g} or more"
-            ]
-        )
 
 
 def check_schedule(config: RunConfig) -> None:

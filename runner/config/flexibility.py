@@ -12,9 +12,8 @@ from runner.plants.kinds import HasFlexibleJoints
 from runner.plants.motors import MotorSide
 from runner.plants.plant import unwrapped
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
-from runner.robots.armature import with_armature
 from runner.robots.chain import stiffen_robot
-from runner.robots.robot import Robot
+from runner.robots.robot import Robot, with_armature
 
 _FASTEST = 0.5  # step h times largest rate: numerical damping ratio, (rate h)^5/144, is 2.2e-4 there
 

@@ -3,16 +3,13 @@
 from collections.abc import Mapping
 
 from runner.base.errors import ConfigError, nearest
-from runner.config.caveats import CaveatsConfig
-from runner.config.compose.problems import Problems
 from runner.config.input_shaper import InputShaperConfig
+from runner.config.joints import NoiseConfig, TorqueLimitsConfig
+from runner.config.judgement import CaveatsConfig, SpecConfig
 from runner.config.limits import LimitsConfig, SweepConfig
-from runner.config.noise import NoiseConfig
-from runner.config.parsing import Parts, group_of, parse, parse_kind, parse_robot
+from runner.config.parsing import Parts, Problems, group_of, parse, parse_kind, parse_robot
 from runner.config.robot import OneArmConfig
 from runner.config.settings import PresetConfig, RunSettings
-from runner.config.spec import SpecConfig
-from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch import NotchConfig

@@ -1,19 +1,77 @@
-"""Validation of one config group against its model."""
+"""Validation of one config group against its model, and collection of the problems found."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
+from runner.base.cache import Memory
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
 from runner.config.compose.messages import describe
 from runner.config.robot import OneArmConfig, RobotConfig, StagedRobotConfig
 from runner.plugins.registry import Kinds
-from runner.schema.model import StrictModel
-from runner.schema.plausibility import absurd
+from runner.schema.model import StrictModel, absurd
 
 M = TypeVar("M", bound=StrictModel)
+T = TypeVar("T")
+
+
+class Problems:
+    """Problems that checks have found so far.
+
+    Args:
+        memory: Cache of earlier results of checks for the same parts; None to run every check.
+
+    Attributes:
+        found: A message for each problem.
+    """
+
+    def __init__(self, memory: Memory | None = None) -> None:
+        self.found: list[str] = []
+        self._memory = memory
+
+    def attempt(self, check: Callable[..., T], /, *parts: Any) -> T | None:
+        """Return the result of a check of parts; None if one of the parts is None, or if the check finds a problem."""
+        return self._collect(_made, check, *parts)
+
+    def recall(self, check: Callable[..., T], /, *parts: Any) -> T | None:
+        """Return the result of `attempt`, cached for equal parts; see Memory.recall."""
+        return self._collect(_made if self._memory is None else partial(self._memory.recall, _made), check, *parts)
+
+    def _collect(self, make: Callable[..., tuple[T | None, Sequence[str]]], check: object, *parts: Any) -> T | None:
+        for part in parts:
+            if part is None:
+                return None
+        value, problems = make(check, *parts)
+        self.found += problems
+        return value
+
+    def report(self) -> None:
+        """End the checks.
+
+        Raises:
+            ConfigError: if one of them has found a problem.
+        """
+        if self.found:
+            raise ConfigError(self.found)
+
+
+def _made(check: Callable[..., T], *parts: object) -> tuple[T | None, Sequence[str]]:
+    """Return the result of a check of parts, and the problems that it finds."""
+    try:
+        return check(*parts), ()
+    except ConfigError as error:
+        return None, error.problems
+
+
+def require(value: T | None) -> T:
+    """Return the result of a check that found no problem."""
+    assert value is not None  # noqa: S101 - a check without result has found a problem
+    return value
+
+
 Parts = dict[str, Any]
 """Valid groups of a config, and what is built from them, by name."""
 

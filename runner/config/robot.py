@@ -8,8 +8,6 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from runner.schema.model import StrictModel
-from runner.schema.per_joint import FrictionConfig
-from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, TorquePerStage
 from runner.schema.units import (
     JointInertia,
     JointPosition,
@@ -22,6 +20,7 @@ from runner.schema.units import (
     RadiansPerSecond,
     Seconds,
 )
+from runner.schema.values import FrictionConfig, NonNegativePerStage, PositivePerStage, TorquePerStage
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 _LONGEST_NAME = 200

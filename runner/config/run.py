@@ -4,12 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from runner.base.arrays import FloatArray
-from runner.config.caveats import CaveatsConfig
 from runner.config.composed import Composed
+from runner.config.judgement import CaveatsConfig, SpecConfig
 from runner.config.limits import LimitsConfig, SweepConfig
 from runner.config.robot import RobotConfig
 from runner.config.settings import RunSettings
-from runner.config.spec import SpecConfig
 from runner.config.timing import Timing
 from runner.controllers import ControllerConfig, Loop
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig

@@ -11,7 +11,7 @@ from runner.config.settings import RunSettings
 from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo
-from runner.schema.per_stage import by_stage
+from runner.schema.values import by_stage
 from runner.trajectories import Trajectory
 
 _MAX_STEPS = 100_000  # of the plant in a tick

@@ -9,13 +9,11 @@ from runner.base.cache import Memory
 from runner.base.errors import ConfigError
 from runner.base.sanitize import few
 from runner.config.arms import build_loaded, build_robot, read_outline
-from runner.config.compose.problems import Problems, require
 from runner.config.composed import Composed
 from runner.config.cross_checks import (
     check_computation,
     check_notch,
     check_observer,
-    check_payload,
     check_reading,
     check_schedule,
     computation_of,
@@ -26,16 +24,17 @@ from runner.config.desired_motion import check_path, check_points, check_repeats
 from runner.config.flexibility import check_flexible_joints, check_flexible_links
 from runner.config.groups import read_groups
 from runner.config.input_shaper import shape
+from runner.config.joints import NoiseConfig, TorqueLimitsConfig, exact_encoders
 from runner.config.limits import check_memory
-from runner.config.noise import NoiseConfig, exact_encoders
-from runner.config.parsing import Parts
+from runner.config.parsing import Parts, Problems, require
+from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
 from runner.config.timing import Steps, Timing, count_steps, count_ticks
-from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import HasServo, RotatesMountedBase
 from runner.plugins.registry import KindConfig
+from runner.robots.mismatch import MismatchConfig
 from runner.robots.robot import Robot, end_points
 from runner.trajectories import TRAJECTORIES, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
@@ -60,7 +59,7 @@ def validate(composed: Composed) -> RunConfig:
     groups = read_groups(composed.resolved, problems)
     settings, robot, sensor = (groups.get(name) for name in ("settings", "robot", "wrist_sensor"))
     plant, controller = groups.get("plant"), groups.get("controller")
-    problems.recall(check_payload, robot, groups.get("mismatch"))
+    problems.recall(_check_payload, robot, groups.get("mismatch"))
     outline = problems.recall(read_outline, robot, composed.config_dirs)
     noise = problems.recall(NoiseConfig.by_joint, groups.get("noise"), outline)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), outline)
@@ -132,6 +131,17 @@ _CHECKS: Sequence[Callable[[RunConfig], object]] = (
     check_schedule, check_computation, check_observer, check_notch, check_flexible_joints, check_flexible_links,
     check_reading, endpoint_ticks, check_repeats,
 )  # fmt: skip
+
+
+def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
+    least = -robot.payload.mass
+    if mismatch.payload < least:
+        raise ConfigError(
+            [
+                f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
+                f"robot.payload.mass with {-least:g} kg; allowed: {least:g} or more"
+            ]
+        )
 
 
 def _check_commands(plant: PlantConfig, controller: ControllerConfig) -> None:

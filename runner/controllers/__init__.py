@@ -1,9 +1,10 @@
 """Controllers: joint torques or positions from time, measurement and reference."""
 
 from runner.controllers.controller import Controller, Loop, PositionController
-from runner.controllers.kinds import ControllerConfig, Controllers
+from runner.controllers.kinds import ControllerConfig, Controllers, guard_loops
 
 CONTROLLERS = Controllers(
+    "controller",
     {
         "adaptive": "runner.controllers.joint_space.adaptive",
         "admittance": "runner.controllers.force.admittance",
@@ -20,7 +21,8 @@ CONTROLLERS = Controllers(
         "passivity": "runner.controllers.joint_space.passivity",
         "sliding_mode": "runner.controllers.joint_space.sliding_mode",
         "whole_body": "runner.controllers.operational_space.whole_body",
-    }
+    },
+    guard_loops,
 )
 
 __all__ = ["CONTROLLERS", "Controller", "ControllerConfig", "Loop", "PositionController"]

@@ -127,7 +127,7 @@ def guard_law(law: Any, joints: int) -> Any:
     )(law)
 
 
-def _guard_loops(loops: Any, _: object, robot: Robot) -> tuple[Loop, ...]:
+def guard_loops(loops: Any, _: object, robot: Robot) -> tuple[Loop, ...]:
     """Return the loops of a user-supplied module with guarded laws.
 
     Raises:
@@ -167,9 +167,6 @@ def tell_limits(loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
 
 class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
     """The kinds of controllers."""
-
-    def __init__(self, modules: Mapping[str, str]) -> None:
-        super().__init__("controller", modules, _guard_loops)
 
     def build_for(self, config: ControllerConfig, robot: Robot, joints: bool) -> tuple[Loop, ...]:
         """Make the loops of a config, of a law of ours that follows joints where the desired motion is one of joints.

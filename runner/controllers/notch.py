@@ -14,8 +14,8 @@ from runner.controllers.torque_filter import TorqueFilter, with_filter
 from runner.controllers.torque_law import Arm
 from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
-from runner.schema.per_stage import NotchPerStage
 from runner.schema.units import Hertz
+from runner.schema.values import NotchPerStage
 from runner.symbolic.maths import Array, Scalar
 
 

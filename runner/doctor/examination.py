@@ -27,9 +27,8 @@ from runner.doctor.tip import choose_tip, name_tips
 from runner.robots.description import drop_shapes, read_arm
 from runner.robots.joint_dynamics import FileDynamics, by_value, dynamics_of
 from runner.robots.mjcf import Mjcf, read_mjcf
-from runner.robots.mjcf_files import is_mjcf
 from runner.robots.model import STANDARD_GRAVITY, RobotModel
-from runner.robots.tree import UrdfTree
+from runner.robots.tree import UrdfTree, is_mjcf
 
 _POSTURES = 300
 

@@ -6,8 +6,7 @@ from collections.abc import Collection
 
 from runner.doctor.finding import Finding
 from runner.robots.joint_dynamics import hold
-from runner.robots.tree import UrdfTree, moves
-from runner.robots.urdf_values import number
+from runner.robots.tree import UrdfTree, moves, number
 
 _NO_LIMIT = "1e6"  # what the runner takes for none
 

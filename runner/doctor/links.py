@@ -9,8 +9,7 @@ from pathlib import Path
 from runner.base.sanitize import few, quoted
 from runner.doctor.finding import Finding
 from runner.robots.inertials import fix_inertia, impossible_inertia, make_massless, principal_moments
-from runner.robots.tree import UrdfTree
-from runner.robots.urdf_values import TENSOR, absurd_inertial, number, wrong_places
+from runner.robots.tree import TENSOR, UrdfTree, absurd_inertial, number, wrong_places
 
 
 def check_links(tree: UrdfTree) -> list[Finding]:

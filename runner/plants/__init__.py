@@ -1,6 +1,6 @@
 """Plants (simulated arms): true motion from joint torques or commanded joint positions."""
 
-from runner.plants.kinds import PlantConfig, Plants
+from runner.plants.kinds import GUARD, PlantConfig, Plants
 from runner.plants.plant import (
     ContactPlant,
     Plant,
@@ -11,7 +11,17 @@ from runner.plants.plant import (
     unwrapped,
 )
 
-PLANTS = Plants({name: f"{__name__}.{name}" for name in ("bullet", "kinematic", "mujoco", "rk4", "rk4_flexible_links")})
+PLANTS = Plants(
+    "plant",
+    {
+        "bullet": "runner.plants.bullet",
+        "kinematic": "runner.plants.kinematic",
+        "mujoco": "runner.plants.mujoco",
+        "rk4": "runner.plants.rk4",
+        "rk4_flexible_links": "runner.plants.rk4_flexible_links",
+    },
+    GUARD,
+)
 
 __all__ = [
     "PLANTS",

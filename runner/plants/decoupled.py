@@ -17,8 +17,8 @@ from runner.plants.servo import ServoConfig
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
 from runner.schema.model import StrictModel
-from runner.schema.per_joint import FrictionConfig, expand
 from runner.schema.units import Seconds
+from runner.schema.values import FrictionConfig, expand
 
 
 class TorquePlantConfig(StrictModel):

@@ -12,8 +12,8 @@ from runner.plants.flexible_joints import Flexibility, links_of
 from runner.robots.modes import Mode, find_modes
 from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
-from runner.schema.per_stage import SpringPerStage
 from runner.schema.units import MomentOfInertia, RotaryStiffness, Seconds
+from runner.schema.values import SpringPerStage
 
 
 class FlexibleJointsConfig(StrictModel):

@@ -12,7 +12,7 @@ from runner.plants.motors import MotorFriction
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
-from runner.schema.per_joint import FrictionConfig
+from runner.schema.values import FrictionConfig
 
 
 class SeriesElastic(FlexibleJoints):

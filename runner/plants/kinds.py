@@ -1,6 +1,5 @@
 """Optional features of plant modules and configs, beyond `CONFIG` and `build`; registry of plants."""
 
-from collections.abc import Mapping
 from types import ModuleType
 from typing import Any, Literal, Protocol, runtime_checkable
 
@@ -120,7 +119,7 @@ def _check_reaction(answer: Any, asked: Asked) -> FloatArray | None:
     return None if answer is None else checked(answer, (6,), asked)
 
 
-_GUARD = Guard(
+GUARD = Guard(
     "plant",
     q=Attribute(),
     dq=Attribute(),
@@ -134,6 +133,7 @@ _GUARD = Guard(
     contact_wrench=Method(array(6), optional=True, owner=unwrapped),
     tool_reaction=Method(_check_reaction, optional=True, owner=unwrapped),
 )
+"""Checks of a user-supplied plant."""
 
 
 class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
@@ -142,9 +142,6 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
     `build` gives each the robot and two numbers. Plants that take torques get their step, in s, and the steps in a
     tick; those that follow joint positions the tick, in s, and the ticks from one command to the next.
     """
-
-    def __init__(self, modules: Mapping[str, str]) -> None:
-        super().__init__("plant", modules, _GUARD)
 
     def names(self) -> list[str]:
         """Return the known kinds; see Kinds. Without PyBullet bullet is none of them."""

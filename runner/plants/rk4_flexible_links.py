@@ -14,8 +14,8 @@ from runner.robots.chain import Beam, Chain, cut, moving_links, span
 from runner.robots.modes import Mode, find_modes, largest_rate
 from runner.robots.robot import Robot, by_joint
 from runner.schema.model import StrictModel
-from runner.schema.per_stage import MotorPerStage
 from runner.schema.units import Kilograms, MomentOfInertia, Newtons, Seconds
+from runner.schema.values import MotorPerStage
 
 _MOST_SEGMENTS = 32
 _LIGHTEST = 1e-10  # smallest inertia of a bend over the largest

@@ -8,8 +8,8 @@ from runner.base.lazy_modules import lapack, pin
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel
-from runner.schema.per_joint import PositivePerJoint, expand
 from runner.schema.units import JointStiffness, Seconds
+from runner.schema.values import PositivePerJoint, expand
 
 
 class SetPoints:

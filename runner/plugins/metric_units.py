@@ -8,7 +8,13 @@ from types import ModuleType
 from runner.base.errors import ConfigError
 from runner.plugins.discovery import added_parts, load
 
-FAMILIES = tuple(f"runner.metrics.{name}" for name in ("positioning", "tracking", "effort", "reaching", "contact"))
+FAMILIES = (
+    "runner.metrics.positioning",
+    "runner.metrics.tracking",
+    "runner.metrics.effort",
+    "runner.metrics.reaching",
+    "runner.metrics.contact",
+)
 """Modules of the built-in families of metrics, in the order in which reports list them."""
 
 

@@ -11,8 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.base.sanitize import quoted
-from runner.schema.model import StrictModel
-from runner.schema.plausibility import absurd
+from runner.schema.model import StrictModel, absurd
 from runner.schema.units import WRITTEN
 
 AMPERE = "A"

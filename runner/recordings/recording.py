@@ -14,7 +14,7 @@ from runner.recordings.columns_map import ColumnsMap, Factor, Signal
 from runner.recordings.csv_columns import read_csv_columns
 from runner.recordings.ros_bag import read_bag_columns
 from runner.recordings.smoothing import CUTOFF, evenly
-from runner.schema.plausibility import LARGEST
+from runner.schema.model import LARGEST
 
 FEWEST_ROWS = 50
 LONGEST_FILLED = 1.0 / CUTOFF

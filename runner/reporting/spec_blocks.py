@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import nearest
 from runner.base.quantities import format_range, number, quantity
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 from runner.plugins.metric_units import unit_of
 from runner.reporting.document import Block, Notice, Table
 from runner.reporting.markup import literal, literals

@@ -10,18 +10,28 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.paths import check_inside, robots_dir
-from runner.robots.armature import armature_by_joint, write_armature
 from runner.robots.inertials import (
     Payload,
     add_payload,
+    armature_by_joint,
     impossible_inertia,
     make_massless,
     replace_inertials,
     scale_inertial,
+    write_armature,
 )
-from runner.robots.mjcf_files import is_mjcf
-from runner.robots.tree import UrdfTree, moves, read_tree, tree_of
-from runner.robots.urdf_values import TENSOR, absurd_inertial, number, wrong_limits, wrong_places
+from runner.robots.tree import (
+    TENSOR,
+    UrdfTree,
+    absurd_inertial,
+    is_mjcf,
+    moves,
+    number,
+    read_tree,
+    tree_of,
+    wrong_limits,
+    wrong_places,
+)
 
 if TYPE_CHECKING:
     from runner.robots.mjcf import Mjcf

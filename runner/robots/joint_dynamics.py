@@ -10,8 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.base.sanitize import few
 from runner.robots.inertials import place_of
-from runner.robots.tree import UrdfTree
-from runner.robots.urdf_values import number, wrong_places
+from runner.robots.tree import UrdfTree, number, wrong_places
 
 _LONGEST = 300  # characters, of what a file says is left out
 

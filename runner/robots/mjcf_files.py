@@ -23,15 +23,6 @@ _MAKES_MORE = {  # elements that stand for many bodies, or for code; `model` bri
 }
 
 
-def is_mjcf(path: Path) -> bool:
-    """Tell whether an XML file is an MJCF, by its root element.
-
-    Raises:
-        ConfigError: if it is no XML, or cannot be read.
-    """
-    return parse_xml(path).tag == "mujoco"
-
-
 def follow_includes(path: Path) -> list[Path]:
     """Return an MJCF file and those that it includes, each of which MuJoCo may read.
 

@@ -9,8 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.robots.joint_dynamics import FileDynamics
 from runner.robots.model import RobotModel
-from runner.schema.per_joint import expand
-from runner.schema.per_stage import OptionalPerStage, by_stage
+from runner.schema.values import OptionalPerStage, by_stage, expand
 
 
 @dataclass(frozen=True)
@@ -83,6 +82,14 @@ def with_models(robot: Robot, change: Callable[[RobotModel, slice, bool], RobotM
     stages = tuple(replace(stage, model=change(stage.model, stage.joints, stage is last)) for stage in robot.stages)
     whole = stages[0].model if len(stages) == 1 else change(robot.model, slice(0, robot.model.nq), True)
     return replace(robot, model=whole, stages=stages)
+
+
+def with_armature(robot: Robot, armature: FloatArray) -> Robot:
+    """Return a robot with other armatures, shape (nq,), in kg m^2, in its models; its URDF's text stays.
+
+    With those of springy motors it is the limit of flexible joints with stiff springs, M + diag(B).
+    """
+    return with_models(robot, lambda model, joints, _: model.with_armature(armature[joints]))
 
 
 class StageBase:

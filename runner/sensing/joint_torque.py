@@ -6,8 +6,8 @@ from pydantic import FiniteFloat, NonNegativeFloat
 from runner.base.arrays import FloatArray
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
-from runner.schema.per_joint import expand
 from runner.schema.units import JointTorque
+from runner.schema.values import expand
 
 
 class JointTorqueConfig(StrictModel):

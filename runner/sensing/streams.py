@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 Words = NDArray[np.uint32]
 
-MISMATCH, JOINT_TORQUES, TIP, COMPUTATION = (2**32 - n for n in (1, 2, 3, 4))
+MISMATCH, JOINT_TORQUES, TIP, COMPUTATION = 2**32 - 1, 2**32 - 2, 2**32 - 3, 2**32 - 4
 """Places of these draws in `[seed, repetition, place]`; the places of control loops and wrist sensor count from 0."""
 
 _POOL = 4  # words of 32 bits

@@ -22,7 +22,7 @@ from runner.base.paths import studies_dir
 from runner.base.sanitize import escaped
 from runner.config.compose.messages import describe
 from runner.config.compose.options import described_files
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 from runner.plugins.metric_units import unit_of, units
 from runner.schema.model import StrictModel
 from runner.store import Run, Sweep

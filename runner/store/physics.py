@@ -26,8 +26,8 @@ _TABLE = """
         uncertainty=repeatability
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
-    config: arms calibration cross_checks desired_motion feasibility flexibility groups input_shaper noise parsing
-        robot=config.robot run settings timing torque_limits validation
+    config: arms calibration cross_checks desired_motion feasibility flexibility groups input_shaper joints parsing
+        robot=config.robot run settings timing validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer graph kinds=controllers.kinds notch=controllers.notch
         sampled_stability torque_filter torque_law
@@ -49,10 +49,10 @@ _TABLE = """
         friction kinds=plants.kinds kinematic motors=sensing.motors mujoco mujoco_model payload_changes
         plant=plants.plant rk4 rk4_flexible_links servo
     plugins: guard metric_units registry
-    robots: __init__=robots.__init__ armature=robots.armature cantilever chain denavit_hartenberg description
+    robots: __init__=robots.__init__ cantilever chain denavit_hartenberg description
         inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses mjcf_urdf model
-        modes mounting robot=robots.robot task_space tool_link tree urdf_values workspace
-    schema: per_joint per_stage
+        modes mounting robot=robots.robot task_space tool_link tree workspace
+    schema: values
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds streams velocity wrench
     simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop command compiled_loop

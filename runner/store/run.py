@@ -23,7 +23,7 @@ from runner.store.values import VALUES_FILE, open_parquet, read_column, read_tab
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.config.spec import Bound
+    from runner.config.judgement import Bound
     from runner.statistics.spec import Spec
     from runner.statistics.spec.history import Histories
 

@@ -21,7 +21,7 @@ from runner.store.run import Run, open_run
 from runner.store.seal import DamagedError, digest, head, read_file, read_json, seal_text
 
 if TYPE_CHECKING:
-    from runner.config.spec import Bound
+    from runner.config.judgement import Bound
     from runner.statistics.spec.history import Histories
 
 _FILE = "sweep.json"
@@ -218,7 +218,7 @@ def open_sweep(folder: Path) -> Sweep:
 def _read_spec(path: Path, content: Mapping[str, Any]) -> "tuple[dict[str, Bound], Histories]":
     if not content.keys() & {"spec", "history"}:
         return {}, {}
-    from runner.config.spec import Bound
+    from runner.config.judgement import Bound
     from runner.statistics.spec.history import merge_histories
 
     try:

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.config.caveats import THRESHOLDS
+from runner.config.judgement import THRESHOLDS
 from runner.metrics.caveats.plant_error import DEFAULT_PLANT
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.markup import literal

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError
+from runner.config.judgement import Bound
 from runner.config.limits import LimitsConfig, SweepConfig, memory_of_run
 from runner.config.run import RunConfig
-from runner.config.spec import Bound
 from runner.simulation.assembly import assemble
 from runner.store.identity import json_text
 from runner.store.names import Names, Texts

@@ -12,7 +12,7 @@ from runner.config.compose.composer import Composer
 from runner.config.compose.options import groups
 from runner.config.compose.overrides import prepare
 from runner.config.composed import Composed
-from runner.schema.plausibility import LARGEST_WHOLE
+from runner.schema.model import LARGEST_WHOLE
 from runner.store.axes import Axes, digits, is_simulated
 from runner.sweeps.swept import SweptKey, parse_sweep
 from runner.sweeps.template import Template

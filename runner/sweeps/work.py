@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from runner import store
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 from runner.base.errors import DISK_FULL, RunnerError, StoreError, describe_write_error, user_place
 from runner.base.ticks import report_ticks
 from runner.config.composed import CALIBRATION, Composed

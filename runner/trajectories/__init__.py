@@ -1,9 +1,10 @@
 """Trajectories: desired motions of the tip or of the joints."""
 
-from runner.trajectories.kinds import Trajectories
+from runner.trajectories.kinds import Trajectories, guard_trajectory
 from runner.trajectories.trajectory import Trajectory
 
 TRAJECTORIES = Trajectories(
+    "trajectory",
     {
         "circle": "runner.trajectories.circle",
         "from_file": "runner.trajectories.from_file",
@@ -17,6 +18,7 @@ TRAJECTORIES = Trajectories(
         "square": "runner.trajectories.square",
         "waypoints": "runner.trajectories.waypoints",
     },
+    guard_trajectory,
 )
 
 __all__ = ["TRAJECTORIES", "Trajectory"]

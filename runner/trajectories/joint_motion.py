@@ -12,7 +12,7 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
-from runner.schema.per_joint import expand
+from runner.schema.values import expand
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.sampled_curve import SampledCurve
 from runner.trajectories.trajectory import TrackedMotion

@@ -10,8 +10,8 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
-from runner.schema.per_joint import NonNegativePerJoint, expand
 from runner.schema.units import Hertz, JointPosition, Seconds
+from runner.schema.values import NonNegativePerJoint, expand
 from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import Configuration, JointMotion, start_of
 

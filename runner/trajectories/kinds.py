@@ -1,6 +1,5 @@
 """Optional features of trajectory configs and modules, and the registry of trajectories."""
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -61,7 +60,7 @@ _GUARD = Guard(
 )
 
 
-def _guard_trajectory(trajectory: Any, *_: object) -> Any:
+def guard_trajectory(trajectory: Any, *_: object) -> Any:
     """Return a user-supplied trajectory behind its checks, with copies of its points and times.
 
     Raises:
@@ -97,9 +96,6 @@ def _guard_trajectory(trajectory: Any, *_: object) -> Any:
 
 class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):
     """The kinds of trajectories; `build` gives each the tip position at t = 0, shape (3,), in m."""
-
-    def __init__(self, modules: Mapping[str, str]) -> None:
-        super().__init__("trajectory", modules, _guard_trajectory)
 
     def joint_motion(self, config: KindConfig, robot: "Robot") -> "JointMotion | None":
         """Return the motion of a robot's joints, where a kind of ours has one; see MovesJoints.

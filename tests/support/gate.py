@@ -38,7 +38,7 @@ import importlib
 import itertools
 import sys
 
-from runner.base.environment_variables import quiet_environment
+from runner.base.engines import quiet_environment
 
 quiet_environment()
 module, _, path = sys.argv.pop(1).partition(":")

@@ -15,10 +15,9 @@ from runner.base.dotted_keys import Place, leaves, put
 from runner.config.compose.units import unit_at
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS
-from runner.robots.armature import with_armature
 from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
-from runner.robots.robot import Robot, with_models
+from runner.robots.robot import Robot, with_armature, with_models
 from runner.store import simulated_part
 from runner.trajectories.joint_motion import TipOfJoints
 

@@ -21,9 +21,9 @@ from hydra.core.override_parser.types import Override
 from hydra.types import RunMode
 from omegaconf import DictConfig, OmegaConf
 
+from runner.base.dotted_keys import check_references
 from runner.base.engines import default_plant
 from runner.base.errors import ConfigError
-from runner.base.interpolation import check_references
 from runner.base.paths import conf_dir
 from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain

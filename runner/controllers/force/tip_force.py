@@ -16,8 +16,8 @@ from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
-from runner.schema.per_stage import PositivePerStage, by_stage
 from runner.schema.units import RadiansPerSecond, Seconds
+from runner.schema.values import PositivePerStage, by_stage
 from runner.symbolic.maths import NUMPY
 
 

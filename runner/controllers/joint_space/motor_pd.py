@@ -11,8 +11,8 @@ from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMoti
 from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
-from runner.schema.per_joint import PositivePerJoint, expand
 from runner.schema.units import RotaryStiffness
+from runner.schema.values import PositivePerJoint, expand
 from runner.symbolic.maths import Array, Scalar
 
 

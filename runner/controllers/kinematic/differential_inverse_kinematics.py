@@ -16,8 +16,8 @@ from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_basis
 from runner.schema.model import StrictModel
-from runner.schema.per_joint import PositivePerJoint, expand
 from runner.schema.units import PerSecond, Seconds
+from runner.schema.values import PositivePerJoint, expand
 
 COMMANDS = "position"
 FOLLOWS_PATHS = True

@@ -15,8 +15,8 @@ from runner.controllers.macro_mini.stage_loops import Aim, HeldController, Macro
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.robots.robot import Robot, end_points
 from runner.schema.model import StrictModel
-from runner.schema.per_stage import PositivePerStage, by_stage
 from runner.schema.units import Metres, PerSecond, RadiansPerSecond, Seconds
+from runner.schema.values import PositivePerStage, by_stage
 
 
 class MacroMiniConfig(StrictModel):

@@ -17,8 +17,8 @@ from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_basis
 from runner.schema.model import StrictModel
-from runner.schema.per_stage import NonNegativePerStage, PositivePerStage, by_stage
 from runner.schema.units import RadiansPerSecond, Seconds
+from runner.schema.values import NonNegativePerStage, PositivePerStage, by_stage
 from runner.symbolic.maths import Array, Scalar
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.cache import Memory
-from runner.config.caveats import THRESHOLDS, CaveatsConfig
+from runner.config.judgement import THRESHOLDS, CaveatsConfig
 from runner.metrics.caveats import plant_error
 from runner.metrics.caveats.plant_error import PlantStep, caveat_of
 from runner.metrics.caveats.registry import SETTING_RULES, TRACE_RULES, rules_digest

@@ -13,7 +13,7 @@ class TraceRule:
     """A rule on the signals of every repetition; what it measures springs it above its threshold.
 
     Attributes:
-        name: Its name; its threshold is in runner/config/caveats.py.
+        name: Its name; its threshold is in runner/config/judgement.py.
         measure: Gives what it measures of runs, shape (..., n): a value for each joint, or one (n = 1).
         tell: Says in words what a value means, of a joint by its index.
     """

@@ -27,7 +27,7 @@ from runner.controllers.operational_space.operational_space import OperationalSp
 from runner.controllers.operational_space.whole_body import WholeBodyConfig
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.task_space import mass_along, tip_mobility
-from runner.schema.per_stage import by_stage
+from runner.schema.values import by_stage
 from runner.trajectories.trajectory import joint_reference
 
 _POSTURES = 32  # of the desired motion

@@ -7,7 +7,7 @@ from typing import Any
 import yaml
 
 from runner.base.paths import conf_dir
-from runner.config.caveats import CaveatsConfig
+from runner.config.judgement import CaveatsConfig
 from runner.metrics.caveats.registry import rules_digest
 
 Thresholds = Mapping[str, Mapping[str, float]]

@@ -7,7 +7,7 @@ import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 
 History = Sequence[Sequence[Any]]
 """Dates on which bounds or claims were first set, each with its value; the first stood when the result was made."""

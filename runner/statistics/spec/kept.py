@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 from runner.statistics.spec.history import History
 
 if TYPE_CHECKING:

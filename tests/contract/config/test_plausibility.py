@@ -6,7 +6,7 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.compose.options import group_options
 from runner.config.validation import validate
-from runner.schema.plausibility import absurd
+from runner.schema.model import absurd
 
 
 @pytest.mark.parametrize("robot", group_options("robot"))

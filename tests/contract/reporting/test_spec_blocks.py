@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 from runner.reporting import outline
 from runner.reporting.document import Notice, Table
 from runner.reporting.formulas import faulty

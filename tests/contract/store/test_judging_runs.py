@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 from runner.reporting.document import Notice
 from runner.reporting.outline import blocks
 from runner.reporting.spec_blocks import spec_rows

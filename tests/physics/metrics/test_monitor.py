@@ -11,7 +11,7 @@ from support.caveat_runs import signals, stacked
 from support.engines import ASKED
 
 from runner.base.trace import Traces
-from runner.config.caveats import THRESHOLDS, CaveatsConfig
+from runner.config.judgement import THRESHOLDS, CaveatsConfig
 from runner.metrics.caveats import (
     Signals,
     Watch,

@@ -10,7 +10,7 @@ from runner.config.compose.compose import compose
 from runner.config.flexibility import with_nominal_motors
 from runner.config.validation import validate
 from runner.plants.flexible_joints import links_of
-from runner.robots.armature import with_armature
+from runner.robots.robot import with_armature
 from runner.store import simulated_part
 
 MACRO = ("robot=macro", "plant=rk4_flexible", "noise=none", "torque_limits=none")

@@ -3,8 +3,8 @@
 import pytest
 
 from runner.base.bounded_yaml import YamlError, check_yaml
+from runner.base.dotted_keys import check_references
 from runner.base.errors import ConfigError
-from runner.base.interpolation import check_references
 from runner.base.paths import conf_dir
 from runner.config.compose.overrides import force
 

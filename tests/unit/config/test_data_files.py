@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.config.compose.data_files import has_data_file, take_data_file, without_file_name
+from runner.config.compose.compose import take_data_file
 
 ROWS = "t,x,y,z\n0,0.1,0.2,0.3\n0.5,0.1,0.2,0.4\n1.5,0.1,0.2,0.5\n"
 
@@ -15,7 +15,6 @@ def _config(name="path.csv", duration=None):
 @pytest.mark.parametrize("group", [{}, {"kind": "goal", "file": "a.csv"}, {"kind": "from_file", "file": None}, None])
 def test_other_trajectories_have_none(group):
     resolved = {"trajectory": group}
-    assert not has_data_file(resolved)
     take_data_file(resolved, [])
     assert resolved == {"trajectory": group}
 
@@ -37,10 +36,3 @@ def test_the_content_is_taken_and_its_end_is_the_duration_unless_one_is_given(tm
 def test_files_elsewhere_are_refused(tmp_path, name, problem):
     with pytest.raises(ConfigError, match=f"trajectory.file: .*{problem}"):
         take_data_file(_config(name), [tmp_path])
-
-
-def test_only_the_name_is_left_out():
-    assert without_file_name({"kind": "from_file", "file": "a.csv", "duration": 1.0}) == {
-        "kind": "from_file",
-        "duration": 1.0,
-    }

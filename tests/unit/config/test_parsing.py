@@ -3,10 +3,9 @@
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.config.compose.problems import Problems
 from runner.config.groups import GROUPS, read_groups
 from runner.config.limits import SweepConfig
-from runner.config.parsing import group_of, parse, parse_kind
+from runner.config.parsing import Problems, group_of, parse, parse_kind
 from runner.controllers import CONTROLLERS
 from runner.sensing.force_torque import IDEAL
 

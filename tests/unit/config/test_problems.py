@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.config.compose.problems import Problems, require
+from runner.config.parsing import Problems, require
 
 
 def _fail(*problems):

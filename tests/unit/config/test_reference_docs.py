@@ -7,8 +7,8 @@ from pydantic import Field, NonNegativeInt, PositiveFloat
 
 from bench.allowed_values import describe
 from bench.make_reference_docs import PAGE, meanings, reference_text
-from runner.config.noise import NoiseConfig
-from runner.schema.per_stage import TorquePerStage
+from runner.config.joints import NoiseConfig
+from runner.schema.values import TorquePerStage
 
 
 @pytest.mark.costs(3)

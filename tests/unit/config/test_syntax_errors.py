@@ -3,7 +3,7 @@
 import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
 
-from runner.config.compose.syntax_errors import explain_parser, find_syntax_error
+from runner.config.compose.overrides import explain_parser, find_syntax_error
 
 GOOD = (
     "robot=macro", "robot=macro,mini", "robot.home=[0,1,2]", "robot.name='a, b]'", 'robot.name="it\'s"', "robot.name=",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.sample_sweep import measurements, two_axes
 
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 from runner.reporting.document import Curves, Maps, Table, Text
 from runner.reporting.sweep import spec
 from runner.reporting.sweep.subject import choose

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.schema.per_joint import expand
+from runner.schema.values import expand
 
 JOINTS = ["shoulder", "elbow"]
 

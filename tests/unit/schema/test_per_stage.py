@@ -4,7 +4,7 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from runner.base.errors import ConfigError
-from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, PositivePerStage, SpringPerStage, by_stage
+from runner.schema.values import FinitePerStage, NonNegativePerStage, PositivePerStage, SpringPerStage, by_stage
 
 STAGES = ["macro", "mini"]
 

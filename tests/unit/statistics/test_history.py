@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 from runner.statistics.spec.history import ends_of, merge_histories, set_after, settings, today
 
 LOW, HIGH = Bound(max=1.0), Bound(min=0.5, max=2.0)

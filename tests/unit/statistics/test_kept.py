@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 from runner.statistics.spec import bounds_of, judge, read_spec
 
 VALUES = {

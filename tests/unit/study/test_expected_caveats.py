@@ -8,7 +8,7 @@ import pytest
 from support.made_up_runs import made_up_run
 
 from runner.base.errors import RunnerError
-from runner.config.caveats import THRESHOLDS
+from runner.config.judgement import THRESHOLDS
 from runner.reporting.document import Notice, Table
 from runner.study.expected_caveats import (
     ExpectedCaveat,

@@ -9,8 +9,8 @@ from runner.base.arrays import FloatArray
 from runner.controllers.controller import Loop
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
-from runner.schema.per_joint import expand
 from runner.schema.units import JointTorque, Seconds
+from runner.schema.values import expand
 
 
 class HeldTorquesConfig(StrictModel):

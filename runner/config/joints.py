@@ -1,18 +1,18 @@
-"""Config of the joint encoders: noise, bias and resolution."""
+"""Config of each joint: noise, bias and resolution of its encoder, and its torque limit."""
 
 import math
-from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 from pydantic import PositiveFloat
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.config.arms import RobotOutline
-from runner.config.compose.problems import Problems
+from runner.config.parsing import Problems, require
 from runner.schema.model import StrictModel
-from runner.schema.per_stage import FinitePerStage, NonNegativePerStage, by_stage
-from runner.schema.units import JointPosition, RadiansPerSecond
+from runner.schema.units import JointPosition, JointTorque, RadiansPerSecond
+from runner.schema.values import FinitePerStage, NonNegativePerStage, TorquePerStage, by_stage, expand
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import DEFAULT_BANDWIDTH, Velocity
 
@@ -46,42 +46,61 @@ class NoiseConfig(StrictModel):
         Raises:
             ConfigError: for values that do not fit the robot's stages.
         """
-        names, joints = arm.stage_names, [len(stage.joint_names) for stage in arm.stages]
         # An omitted key is zero, also for a robot of several stages.
-        zero: float | dict[str, float] = dict.fromkeys(names, 0.0) if len(names) > 1 else 0.0
+        zero: float | dict[str, float] = dict.fromkeys(arm.stage_names, 0.0) if len(arm.stages) > 1 else 0.0
         biases = self.bias if "bias" in self.model_fields_set else zero
         steps = self.resolution if "resolution" in self.model_fields_set else zero
         problems = Problems()
-        position = problems.attempt(lambda: by_stage("noise.position", self.position, names))
-        bias = problems.attempt(lambda: by_stage("noise.bias", biases, names))
-        resolution = problems.attempt(lambda: by_stage("noise.resolution", steps, names))
-        if position is None or bias is None or resolution is None:
-            raise ConfigError(problems.found)
-        for key, values in (("position", position), ("bias", bias), ("resolution", resolution)):
-            problems.found += _no_angles(f"noise.{key}", values, arm)
+        position = problems.attempt(_by_joint, "noise.position", self.position, arm)
+        bias = problems.attempt(_by_joint, "noise.bias", biases, arm)
+        resolution = problems.attempt(_by_joint, "noise.resolution", steps, arm)
         problems.report()
-        return EncoderNoise(
-            np.repeat(position, joints),
-            np.repeat(bias, joints),
-            np.repeat(resolution, joints),
-            self.distribution,
-            self.velocity,
-            self.velocity_bandwidth,
-        )
+        values = require(position), require(bias), require(resolution)
+        return EncoderNoise(*values, self.distribution, self.velocity, self.velocity_bandwidth)
 
 
-def _no_angles(key: str, values: Sequence[float], arm: RobotOutline) -> list[str]:
-    """Return a problem for each stage whose revolute joints have an error of more than half a turn."""
-    several = len(arm.stages) > 1
-    return [
-        f"{key}{f'.{stage.name}' if several else ''}: {value:g} rad is more than half a turn, and no measurement of an "
-        f"angle; degrees? write {value:g}deg"
+def _by_joint(key: str, value: float | dict[str, float], arm: RobotOutline) -> FloatArray:
+    """Return the value of each joint; reject an error of more than half a turn of a revolute joint."""
+    values: list[float] = by_stage(key, value, arm.stage_names)
+    problems = [
+        f"{key}{f'.{stage.name}' if len(arm.stages) > 1 else ''}: {value:g} rad is more than half a turn, and no "
+        f"measurement of an angle; degrees? write {value:g}deg"
         for stage, value in zip(arm.stages, values, strict=True)
         if abs(value) > math.pi and "rad" in stage.joint_units
     ]
+    if problems:
+        raise ConfigError(problems)
+    return np.repeat(values, [len(stage.joint_names) for stage in arm.stages])
 
 
 def exact_encoders(joints: int) -> EncoderNoise:
     """Return zero noise, for a robot whose encoders are a plug-in, by the number of joints."""
     zero = np.zeros(joints)
     return EncoderNoise(zero, zero, zero, "none", "exact")
+
+
+class TorqueLimitsConfig(StrictModel):
+    """Limits of the joint torques.
+
+    Attributes:
+        max: Largest magnitude of the torque, in N m; N for prismatic joints. One value for all joints, or a list with
+            one for each; by stage if the robot has several. None for no limit.
+    """
+
+    max: JointTorque[TorquePerStage | None]
+
+    def by_joint(self, arm: RobotOutline) -> FloatArray:
+        """Return the limit of each joint of a robot, shape (nq,), in N m: the effort in the URDF if it is smaller.
+
+        Raises:
+            ConfigError: for values that do not fit the robot's stages and joints.
+        """
+        efforts = arm.effort_limits
+        if self.max is None:
+            return efforts
+        limits: list[float] = []
+        values: list[float | list[float]] = by_stage("torque_limits.max", self.max, arm.stage_names)
+        for stage, value in zip(arm.stages, values, strict=True):
+            key = f"torque_limits.max.{stage.name}" if len(arm.stages) > 1 else "torque_limits.max"
+            limits += expand(key, value, stage.joint_names)
+        return np.minimum(limits, efforts)

@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.spec import Bound
+from runner.config.judgement import Bound
 from runner.config.validation import validate
 from runner.store import run_hash
 
