@@ -14,7 +14,7 @@ from runner.config.compose.overrides import prepare
 from runner.config.composed import Composed
 from runner.schema.model import LARGEST_WHOLE
 from runner.store.axes import Axes, digits, is_simulated
-from runner.sweeps.swept import SweptKey, parse_sweep
+from runner.sweeps.swept import SweptKey, parse_sweep, read_keys
 from runner.sweeps.template import Template
 
 _SEED = "seed"
@@ -240,12 +240,17 @@ class Listed(Plan):
     def __init__(self, items: Mapping[str, Item], shared: Sequence[str], loader: Composer) -> None:
         super().__init__(loader)
         self._items = tuple(items.values())
-        known = groups(loader.config_dirs)
+        texts = list(dict.fromkeys(text for item in self._items for text in (*item.overrides, *shared)))
+        read = dict(zip(texts, read_keys(prepare(texts), groups(loader.config_dirs), loader.hydra), strict=True))
+        if several := [text for text, key in read.items() if len(key.values) > 1]:
+            raise ConfigError(
+                [f"{text}: has several values; a run of a list has one value for each key" for text in several]
+            )
         self._cells: dict[Hashable, list[list[SweptKey]]] = {}  # value keys of each cell, by template
         self._places: list[tuple[Hashable, int]] = []
         for item in self._items:
             taken = [text for text in shared if item.root == "config" or text.startswith("outputs=")]
-            keys = parse_sweep(prepare([*item.overrides, *taken]), known, loader.hydra)
+            keys = {read[text].start: read[text] for text in (*item.overrides, *taken)}.values()
             options, values = [[key for key in keys if key.option is which] for which in (True, False)]
             group = item.root, tuple(key.override(0) for key in options), tuple(key.start for key in values)
             together = self._cells.setdefault(group, [])

@@ -57,17 +57,22 @@ def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigL
     Raises:
         ConfigError: if an override is not valid, a key is swept over no value, or there are too many cells.
     """
+    keys = {key.start: key for key in read_keys(arguments, groups, loader)}
+    _check_cells(math.prod(len(key.values) for key in keys.values()))
+    return list(keys.values())
+
+
+def read_keys(arguments: Sequence[str], groups: Sequence[str], loader: ConfigLoader) -> list[SweptKey]:
+    """Return the key of each override with its values; see `parse_sweep`."""
     try:
         overrides = OverridesParser.create(config_loader=loader).parse_overrides(list(arguments))
         _check_ranges(overrides)
-        keys = {override.get_key_element(): _read(override, groups) for override in overrides}
+        keys = [_read(override, groups) for override in overrides]
     except COMPOSITION_ERRORS as error:
         raise explain(error) from None
-    empty = [f"{key.name}: is swept over no value; give one or more" for key in keys.values() if not key.values]
-    if empty:
+    if empty := [f"{key.name}: is swept over no value; give one or more" for key in keys if not key.values]:
         raise ConfigError(empty)
-    _check_cells(math.prod(len(key.values) for key in keys.values()))
-    return list(keys.values())
+    return keys
 
 
 def _check_ranges(overrides: Sequence[Override]) -> None:
