@@ -17,7 +17,7 @@ from runner.cli.arguments import Parser
 from runner.plugins.discovery import in_use, use_plugins
 
 if TYPE_CHECKING:
-    from runner.study.plugins import UserPlugin
+    from runner.study.code import UserPlugin
 
 STUDY = "benchmark"
 
@@ -35,7 +35,7 @@ def run(options: Namespace) -> int:
     quiet_environment()
     use_plugins([f"controller={options.law}"])
     from runner.config.compose.composer import Composer
-    from runner.study.plugins import read_user_plugins
+    from runner.study.code import read_user_plugins
 
     (part,) = read_user_plugins(in_use()[-1:])
     workers = Composer().sweeper([]).workers

@@ -28,8 +28,8 @@ from runner.study.names import find_study, study_names
 if TYPE_CHECKING:
     from runner.reporting.document import Document
     from runner.store import Calibration, Run
+    from runner.study.code import UserPlugin
     from runner.study.expected_caveats import ExpectedCaveat
-    from runner.study.plugins import UserPlugin
     from runner.study.study import Study
 
 AUDIT = "audit"
@@ -106,7 +106,7 @@ def run(options: Namespace) -> int:
 
 def _parts(study: str) -> "tuple[UserPlugin, ...]":
     """Return the parts that --plugin names, for one study that may take them."""
-    from runner.study.plugins import read_user_plugins
+    from runner.study.code import read_user_plugins
 
     if in_use() and study in (AUDIT, "all"):
         raise RunnerError(f"--plugin: not for several studies ({study}). Allowed: one study.")
@@ -135,7 +135,7 @@ def _reproduce(study: "Study | None", way: _Way) -> "tuple[str, _Reproduced]":
     from runner import store
     from runner.reporting.render import write_report
     from runner.store.atomic import write_atomically
-    from runner.study.gains import write_gains
+    from runner.study.tunings import write_gains
 
     name = AUDIT if study is None else study.name
     progress.set_title(name)

@@ -20,11 +20,10 @@ from runner.reporting.published_claims import CLAIMS, FACTOR, Verdict, load_clai
 from runner.store import Calibration, Run
 from runner.study.claims import judged_claims, legend
 from runner.study.code import Code, public_functions
-from runner.study.findings import Finding
 from runner.study.grids import Grids
 from runner.study.job import Results
 from runner.study.manifest import Manifest, Part
-from runner.study.measured import Measured
+from runner.study.measured import Finding, Measured
 from runner.study.prose import blocks, plots, read_chapter, signals, tables
 from runner.study.prose.reader import Reading
 from runner.study.report import parts

@@ -6,7 +6,7 @@ from runner.reporting.document import Claim, Document, Equations, Verdicts
 from runner.reporting.outline import blocks
 from runner.store import Calibration, Run
 from runner.study.expected_caveats import ExpectedCaveat, caveats_as_data
-from runner.study.findings import findings
+from runner.study.measured import findings
 
 
 def list_failed_findings(document: Document) -> list[str]:

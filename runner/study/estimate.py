@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.config.compose.composer import Composer
-from runner.study.gains import named, without_gains
 from runner.study.grid import Overrides
 from runner.study.items import Way, listed
 from runner.study.study import Study
 from runner.study.tune import ROUNDS
-from runner.study.tunings import Tuning
+from runner.study.tunings import Tuning, named, without_gains
 from runner.sweeps.check import check
 from runner.sweeps.estimate import START_UP, Estimate, estimate
 from runner.sweeps.plan import Item, Listed, Plan

@@ -18,14 +18,13 @@ from runner.simulation.assembly import assemble
 from runner.simulation.run import simulate_repetition
 from runner.simulation.tick_time import PROBED_TICKS
 from runner.store import simulated_part
+from runner.study.code import UserPlugin
 from runner.study.estimate import Amount, counted, estimate_all, planned
-from runner.study.gains import without_gains
 from runner.study.grid import Overrides
 from runner.study.items import Way
-from runner.study.plugins import UserPlugin
 from runner.study.study import Study
 from runner.study.tune import read_number
-from runner.study.tunings import Tuning, key_of
+from runner.study.tunings import Tuning, key_of, without_gains
 from runner.sweeps.differing import entries
 
 

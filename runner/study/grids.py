@@ -36,12 +36,10 @@ from runner.base.limits import read_text
 from runner.config.compose.messages import describe
 from runner.config.compose.user_settings import refuse_settings
 from runner.schema.model import StrictModel
-from runner.study.arithmetic import Level
-from runner.study.gains import check_named
-from runner.study.grid import Grid, Overrides
+from runner.study.code import UserPlugin
+from runner.study.grid import Grid, Level, Overrides
 from runner.study.manifest import Profile
-from runner.study.plugins import UserPlugin
-from runner.study.tunings import TunedGrid, Tuning, all_tunings
+from runner.study.tunings import TunedGrid, Tuning, all_tunings, check_named
 
 FILE = "runs.yaml"
 L = TypeVar("L", str, int, float)

@@ -10,8 +10,7 @@ from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.base.paths import STUDY_FILE
 from runner.schema.model import StrictModel
-from runner.study.arithmetic import Level
-from runner.study.grid import Grid, Overrides
+from runner.study.grid import Grid, Level, Overrides
 
 _SUFFIXES = (".md", ".py")
 

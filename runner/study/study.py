@@ -11,17 +11,15 @@ from runner.base.paths import check_inside
 from runner.plugins.discovery import use_plugins
 from runner.reporting.published_claims import CLAIMS, load_claims
 from runner.store import Calibration, Run
-from runner.study.code import Code
+from runner.study.code import Code, UserPlugin
 from runner.study.expected_caveats import ExpectedCaveat, read_expected
-from runner.study.gains import Gains, named, put_in, read_gains
 from runner.study.grid import Overrides
 from runner.study.grids import FILE as RUNS
 from runner.study.grids import Grids
 from runner.study.job import Job, Jobs, distinct
 from runner.study.manifest import Profile, read_manifest
 from runner.study.names import Location, find_study
-from runner.study.plugins import UserPlugin
-from runner.study.tunings import Tuning
+from runner.study.tunings import Gains, Tuning, named, put_in, read_gains
 
 if TYPE_CHECKING:  # drawing comes with these
     from runner.reporting.document import Cover, Document, Section
@@ -170,8 +168,7 @@ class Study:
             calibrations: Its stored calibrations by name.
             chapters: What makes its chapters from these, if some have been read.
         """
-        from runner.study.checklist import load_checklist
-        from runner.study.report import study_document
+        from runner.study.report import load_checklist, study_document
 
         made = study_document(
             title=self.manifest.title,

@@ -11,10 +11,9 @@ from runner.base.dotted_keys import get
 from runner.base.errors import RunnerError
 from runner.config.compose.composer import Composer
 from runner.store import Run
-from runner.study.gains import Gains
 from runner.study.grid import Overrides
 from runner.study.items import Way, make_items
-from runner.study.tunings import Tuning, key_of
+from runner.study.tunings import Gains, Tuning, key_of
 from runner.sweeps.plan import Grid, Item
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective, Trial, best

@@ -7,8 +7,7 @@ from typing import Any
 
 from runner.base.errors import nearest
 from runner.reporting.document import Block, Section, Text
-from runner.study.findings import Finding, finding
-from runner.study.measured import Condition
+from runner.study.measured import Condition, Finding, finding
 from runner.study.prose.expressions import ProseError, Values
 from runner.study.prose.paragraphs import Heading, Paragraphs, Piece, filled
 

@@ -9,7 +9,7 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.cli.benchmark import check_law
-from runner.study.plugins import read_user_plugins
+from runner.study.code import read_user_plugins
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "own_robot"
 LAW = "gravity_pd"

@@ -12,8 +12,7 @@ from runner.cli import reproduce
 from runner.reporting.document import Document, Section
 from runner.study.execute import make_all
 from runner.study.expected_caveats import ExpectedCaveat
-from runner.study.findings import finding
-from runner.study.measured import Measured
+from runner.study.measured import Measured, finding
 from runner.study.study import load_study
 from runner.sweeps import job as workers
 from runner.sweeps.status import at_work

@@ -21,8 +21,8 @@ from runner.studies.benchmark.horizon import grown
 from runner.studies.benchmark.how_tuned import ends_of
 from runner.studies.benchmark.late_and_limited import bearable
 from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
-from runner.study.findings import findings
-from runner.study.prose.condition_tests import never_failing
+from runner.study.check import never_failing
+from runner.study.measured import findings
 from runner.study.study import load_study
 
 STUDY = load_study("benchmark")

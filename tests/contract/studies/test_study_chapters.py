@@ -12,7 +12,7 @@ from runner.reporting import outline
 from runner.reporting.document import Document, Section
 from runner.reporting.formulas import faulty
 from runner.store import Run
-from runner.study.prose.condition_tests import never_failing
+from runner.study.check import never_failing
 from runner.study.study import load_study
 
 FILES = {study: [file for file in chapter_files(study) if file not in FULL_ALONE] for study in STUDIES}

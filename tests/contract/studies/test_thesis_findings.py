@@ -9,8 +9,7 @@ from support.study_sections import every_run
 from runner.reporting.document import Document, Section
 from runner.reporting.formulas import faulty
 from runner.studies.thesis import dynamics_cost, figures, stage_sampling
-from runner.study.findings import findings
-from runner.study.measured import Measured
+from runner.study.measured import Measured, findings
 
 
 @pytest.mark.parametrize(("claim", "ends"), [(3, (0.1, 0.15)), (4, (0.007, 0.044))])

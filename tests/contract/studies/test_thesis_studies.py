@@ -13,8 +13,8 @@ from runner.reporting.document import Document, Section, Table
 from runner.reporting.figures import torque_and_error
 from runner.store import Run
 from runner.studies.thesis import measure
-from runner.study.checklist import load_checklist
 from runner.study.job import MissingError
+from runner.study.report import load_checklist
 from runner.study.study import load_study
 
 STUDIES = ("coupling", "mass_ratio", "stage_sampling", "folding", "stretch", "reference_velocity", "bandwidth", "turns",

@@ -11,8 +11,8 @@ from support.thin_plans import make_calibrations, make_runs
 
 from runner.reporting.formulas import faulty
 from runner.store import Run
-from runner.study.findings import findings
-from runner.study.prose.condition_tests import never_failing
+from runner.study.check import never_failing
+from runner.study.measured import findings
 from runner.study.study import load_study
 
 # True of real numbers, which take minutes; from runs cut to a moment findings do not hold.

@@ -10,8 +10,8 @@ from runner.reporting.document import Curves, Notice, Picture, Playback, Section
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
 from runner.study.chapters import Chapters
-from runner.study.findings import findings
 from runner.study.job import PRESETS
+from runner.study.measured import findings
 from runner.study.study import load_study
 
 STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")

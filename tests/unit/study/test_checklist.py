@@ -5,7 +5,7 @@ from pydantic import ValidationError
 
 from runner.base.paths import studies_with
 from runner.reporting.document import Curves, Origin, Section
-from runner.study.checklist import Checklist, load_checklist
+from runner.study.report import Checklist, load_checklist
 
 CONTENT = {
     "title": "Checklist",

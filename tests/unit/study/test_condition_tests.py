@@ -2,10 +2,9 @@
 
 import pytest
 
-from runner.study.check import typed_numbers
+from runner.study.check import never_failing, typed_numbers
 from runner.study.measured import Measured
 from runner.study.prose import ProseError, read_chapter
-from runner.study.prose.condition_tests import never_failing
 
 NAMES = {
     "number": lambda value: Measured("number", value, "m"),

@@ -5,8 +5,8 @@ import pytest
 from support.made_up_runs import made_up_run
 
 from runner.base.errors import RunnerError
+from runner.study import check as trying
 from runner.study.measured import Measured
-from runner.study.prose import condition_tests as trying
 from runner.study.prose import read_chapter
 from runner.study.prose.blocks import config, count, each
 from runner.study.prose.plots import over, panel

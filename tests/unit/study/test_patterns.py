@@ -4,10 +4,10 @@ import pytest
 from support.made_up_runs import made_up_metric, made_up_run
 
 from runner.base.errors import RunnerError
+from runner.study.check import never_failing
 from runner.study.measured import Measured
 from runner.study.prose import read_chapter
 from runner.study.prose.blocks import each, named
-from runner.study.prose.condition_tests import never_failing
 from runner.study.prose.patterns import found
 from runner.study.prose.plots import line
 from runner.study.prose.tables import listing
