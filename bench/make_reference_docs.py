@@ -20,27 +20,17 @@ from runner.calibration.procedures import CALIBRATIONS
 from runner.cli.main import COMMANDS, COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
 from runner.config.compose.options import group_options
-from runner.config.input_shaper import InputShaperConfig
-from runner.config.joints import NoiseConfig, TorqueLimitsConfig
+from runner.config.groups import GROUPS
 from runner.config.judgement import Bound, CaveatsConfig
 from runner.config.limits import SweepConfig
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.run import RunSettings
-from runner.config.settings import PresetConfig
-from runner.controllers import CONTROLLERS
-from runner.controllers.disturbance_observer import DisturbanceObserverConfig
-from runner.controllers.notch import NotchConfig
-from runner.environments import ENVIRONMENTS
-from runner.plants import PLANTS
 from runner.plugins.metric_units import families
-from runner.plugins.registry import Registry
-from runner.robots.mismatch import MismatchConfig
+from runner.plugins.registry import Kinds
 from runner.schema.model import StrictModel, nested_model
 from runner.schema.units import WRITTEN
-from runner.sensing import EndpointSensorConfig, ForceTorqueConfig, JointTorqueConfig
 from runner.study.chapters import SHARED
 from runner.study.code import public_functions
-from runner.trajectories import TRAJECTORIES
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "reference.md"
 _HEAD = """\
@@ -66,25 +56,10 @@ config, as in `reach: Metres[PositiveFloat]`; `runner.schema.units` has these ty
 | A key in | may be written in |
 |---|---|
 """
-_KINDS: Mapping[str, Registry] = {
-    "controller": CONTROLLERS,
-    "trajectory": TRAJECTORIES,
-    "plant": PLANTS,
-    "environment": ENVIRONMENTS,
-    "calibration": CALIBRATIONS,
-}
-_PLAIN: Mapping[str, tuple[type[StrictModel], str]] = {
-    "noise": (NoiseConfig, "none"),
-    "torque_limits": (TorqueLimitsConfig, "none"),
-    "wrist_sensor": (ForceTorqueConfig, "ideal"),
-    "mismatch": (MismatchConfig, "none"),
-    "joint_torque_sensor": (JointTorqueConfig, "none"),
-    "endpoint_sensor": (EndpointSensorConfig, "none"),
-    "disturbance_observer": (DisturbanceObserverConfig, "none"),
-    "input_shaper": (InputShaperConfig, "zv"),
-    "notch": (NotchConfig, "torques"),
-    "preset": (PresetConfig, "full_equations"),
-}
+_OPTION = {"input_shaper": "zv", "notch": "torques", "preset": "full_equations", "wrist_sensor": "ideal"}
+"""Option of a group whose values are the defaults on the page, if it is not "none"."""
+_ELSEWHERE = ("robot", "sweep", "limits", "caveats", "spec")
+"""Groups with a section of another form."""
 
 
 def reference_text() -> str:
@@ -127,12 +102,16 @@ def _keys() -> Iterator[str]:
     yield _table("robot", OneArmConfig, defaults)
     yield "A robot of arms that ride on each other has `robot.stages.NAME` for each in place of an arm's own keys:\n\n"
     yield _table("robot.stages.NAME", StageConfig, {**defaults, "mount": None})
-    for group, registry in _KINDS.items():
+    kinds = {group: known for group, known in GROUPS.items() if isinstance(known, Kinds)}
+    for group, registry in {**kinds, "calibration": CALIBRATIONS}.items():
         yield f"### {group}\n\n" + _options(group)
         for kind in (kind for kind in registry.names() if registry.is_ours(kind)):
             yield f"#### {group}.kind: {kind}\n\n"
             yield _table(group, registry.config_model(kind), _of_kind(group, kind))
-    for group, (model, option) in _PLAIN.items():
+    for group, model in GROUPS.items():
+        if isinstance(model, Kinds) or group in _ELSEWHERE:
+            continue
+        option = _OPTION.get(group, "none")
         yield f"### {group}\n\n{_options(group)}Defaults are those of `{group}={option}`.\n\n"
         yield _table(group, model, _read(f"{group}/{option}"))
     yield "### spec\n\n" + _options("spec")

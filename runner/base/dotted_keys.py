@@ -56,6 +56,12 @@ def put(config: Any, place: Place, value: object) -> None:
     config[place[-1]] = value
 
 
+def split_override(text: str) -> tuple[str, str]:
+    """Return the key and the value of an override KEY=VALUE; the key without Hydra's signs before it."""
+    key, _, value = text.lstrip("+~").partition("=")
+    return key, value
+
+
 _REFERENCE = re.compile(r"\$\{\s*(\.*[^\s.:${}'\"\\][^\s:${}'\"\\]*)\s*\}")
 _SIZE = 2_000_000  # of a config whose references are replaced by their values
 _A_VALUE = 100  # size of a value in addition to its characters: the time to compose it

@@ -7,6 +7,7 @@ from typing import Annotated, cast
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 
+from runner.base.dotted_keys import split_override
 from runner.base.errors import ConfigError, nearest
 from runner.base.sanitize import quoted
 from runner.calibration import Tool
@@ -89,7 +90,7 @@ def validate_calibration(composed: Composed) -> CalibrationConfig:
 
 def _check_keys(composed: Composed) -> None:
     """Reject overrides without effect: of keys that do not exist, or that only runs have."""
-    given = [override.lstrip("+~").partition("=")[0] for override in composed.overrides]
+    given = [split_override(override)[0] for override in composed.overrides]
     unread = [key for key in given if key.partition(".")[0] not in _KEYS]
     if unread:
         raise ConfigError(

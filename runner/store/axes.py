@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from runner.base.dotted_keys import split_override
 from runner.base.errors import StoreError
 
 _PLAIN = re.compile(r"[\w./+-]+|\$\{[\w.]+\}")
@@ -83,7 +84,7 @@ def digits(number: int, sizes: Sequence[int]) -> list[int]:
 
 def is_simulated(override: str) -> bool:
     """Return True if a key, or an override of it, affects the simulation, not only how and where it runs."""
-    key = override.lstrip("+~").partition("=")[0].partition(".")[0]
+    key = split_override(override)[0].partition(".")[0]
     return key not in ("caveats", "hydra", "limits", "outputs", "spec", "sweep")
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.cache import Memory
-from runner.base.dotted_keys import dotted, leaves
+from runner.base.dotted_keys import dotted, leaves, split_override
 from runner.store import Run, simulated_part
 
 if TYPE_CHECKING:
@@ -159,7 +159,7 @@ class Resolved:
         """
         cells = range(self._cells, self._cells + 1) if cells is None else cells
         part = simulated_part(config)
-        self._given.update(text.lstrip("+").partition("=")[0] for text in overrides if "${" not in text)
+        self._given.update(split_override(text)[0] for text in overrides if "${" not in text)
         self._first = self._first or part
         # Most groups are the same in all cells and need no comparison.
         changed = [name for name in {**self._first, **part} if not _is_same(self._first.get(name), part.get(name))]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from runner.base import progress
 from runner.base.arrays import FloatArray
-from runner.base.dotted_keys import get
+from runner.base.dotted_keys import get, split_override
 from runner.base.errors import RunnerError, StoreError, unknown
 from runner.store import DamagedError, Finished, Run, Sweep
 from runner.store.axes import Axes, is_simulated, override_value
@@ -391,7 +391,7 @@ def _with_finer(measurements: Measurements, outputs: Path) -> Measurements:
 
 def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measurements:
     axes, fixed = axes_of(overrides)
-    keys = [axis.name for axis in axes] + [text.partition("=")[0] for text in fixed]
+    keys = [axis.name for axis in axes] + [split_override(text)[0] for text in fixed]
     resolved = Resolved()
     for config, members in gathered.configs:
         cells = np.concatenate(members)
@@ -439,7 +439,7 @@ def _of_grid(overrides: Axes) -> Iterator[tuple[str, Sequence[Any], int]]:
     """Yield keys, their values in turn (a string if all cells share it), and the number of cells for each value."""
     for entry, times in overrides.runs_of_levels():
         if isinstance(entry, str) or all(value == entry.values[0] for value in entry.values):
-            key, _, text = (entry if isinstance(entry, str) else entry.text(0)).lstrip("+").partition("=")
+            key, text = split_override(entry if isinstance(entry, str) else entry.text(0))
             yield key, text, times
         else:
             yield entry.key.lstrip("+"), entry.values, times
@@ -447,7 +447,7 @@ def _of_grid(overrides: Axes) -> Iterator[tuple[str, Sequence[Any], int]]:
 
 def _of_jobs(overrides: Sequence[Sequence[str]]) -> Iterator[tuple[str, Sequence[Any], int]]:
     """Yield keys, their values by job (a string if all jobs share it), and 1."""
-    given = [dict(override.lstrip("+").partition("=")[::2] for override in job) for job in overrides]
+    given = [dict(map(split_override, job)) for job in overrides]
     for key in dict.fromkeys(key for job in given for key in job if is_simulated(key)):
         texts = [job.get(key, "") for job in given]
         numbers = [_number(text) for text in texts]

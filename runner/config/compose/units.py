@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from runner.base.dotted_keys import Place, leaves, put
+from runner.base.dotted_keys import Place, leaves, put, split_override
 from runner.base.errors import ConfigError
 from runner.schema.model import StrictModel
 from runner.schema.units import Unit, explain_quantity, read_quantity
@@ -68,27 +68,19 @@ def key_unit(key: str) -> str:
 
     The unit is "1" for a key without unit, an unknown key, and a key whose unit differs between kinds of its group.
     """
-    return _unit_of_key(key).first or "1"
+    return _find_unit(key.split(".")).first or "1"
 
 
 def unit_at(resolved: Mapping[str, Any], place: Sequence[str | int]) -> Unit:
     """Return the unit at a path in a config (keys, and indices in lists), for the kinds that the config chooses."""
+    options = resolved.get(str(place[0]))
+    return _find_unit(place, options.get("kind") if len(place) > 1 and isinstance(options, Mapping) else None)
+
+
+def _find_unit(place: Sequence[str | int], kind: str | None = None) -> Unit:
+    """Return the unit at a path for a kind of its group, or for all kinds; an empty one if it differs between them."""
     group, *rest = [str(part) for part in place]
-    options = resolved.get(group)
-    kind = options.get("kind") if rest and isinstance(options, Mapping) else None
-    for model in _models(group if rest else "", rest, kind):
-        return model.find_unit(rest or [group]) or Unit()
-    return Unit()
-
-
-def _units_of_key(key: str) -> Sequence[str]:
-    return _unit_of_key(key).at(key.split("."))
-
-
-def _unit_of_key(key: str) -> Unit:
-    """Return the unit of a dotted key; an empty one if the unit differs between the kinds of its group."""
-    group, *rest = key.split(".")
-    found = {model.find_unit(rest or [group]) for model in _models(group if rest else "", rest)} - {None}
+    found = {model.find_unit(rest or [group]) for model in _models(group if rest else "", rest, kind)} - {None}
     return found.pop() or Unit() if len(found) == 1 else Unit()
 
 
@@ -108,7 +100,7 @@ def as_numbers(values: Sequence[object], key: str) -> list[float] | None:
         return None
     if not all(quantity or isinstance(value, int | float) for value, quantity in read):
         return None
-    for unit in _units_of_key(key):
+    for unit in _find_unit(key.split(".")).at(key.split(".")):
         found: list[Any] = [value if quantity is None else quantity.in_unit(unit) for value, quantity in read]
         if None not in found:
             return found
@@ -121,23 +113,24 @@ def with_numbers(override: str) -> str:
     Raises:
         ConfigError: for a quantity whose unit does not fit the key.
     """
-    key, _, value = override.partition("=")
+    key, value = split_override(override)
+    place = key.split(".")
 
     def number(text: str) -> str:
         name, equals, given = text.rpartition("=")
         quantity = read_quantity(given)
         if quantity is None:
             return text
-        units = _units_of_key(key.lstrip("+~"))
+        units = _find_unit(place).at(place)
         found = next((found for unit in units if (found := quantity.in_unit(unit)) is not None), None)
         if found is None:
-            raise ConfigError([f"{key.lstrip('+~')}: {explain_quantity(given, units)}"])
+            raise ConfigError([f"{key}: {explain_quantity(given, units)}"])
         return f"{name}{equals}{found!r}"
 
     def numbers(match: re.Match[str]) -> str:
         return f"{match[1]}({','.join(map(number, match[2].split(',')))})"
 
-    return f"{key}={_RANGE.sub(numbers, value)}" if "(" in value else override
+    return f"{override.removesuffix(value)}{_RANGE.sub(numbers, value)}" if "(" in value else override
 
 
 def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Iterator[type[StrictModel]]:

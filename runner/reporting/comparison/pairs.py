@@ -10,6 +10,7 @@ import yaml
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.base.dotted_keys import split_override
 from runner.base.errors import RunnerError
 from runner.statistics import Comparison, subtract
 from runner.sweeps.differing import value_text
@@ -263,7 +264,7 @@ def _typed(key: str, side: Measurements) -> Sequence[str] | None:
             levels = [_canonical(str(value)) for value in axis.values]
             return [levels[level] for level in axis.level.tolist()]
     for text in side.fixed:
-        name, _, value = text.partition("=")
+        name, value = split_override(text)
         if name == key:
             return [_canonical(value)] * len(side.hashes)
     return None

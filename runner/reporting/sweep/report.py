@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.base.dotted_keys import split_override
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.markup import literal
 from runner.reporting.sweep import (
@@ -155,4 +156,4 @@ def _some(values: Sequence[str]) -> Sequence[str]:
 
 
 def _command(overrides: Sequence[str]) -> str:
-    return shlex.join(["runner", *(text for text in overrides if text.partition("=")[0] != "outputs")])
+    return shlex.join(["runner", *(text for text in overrides if split_override(text)[0] != "outputs")])
