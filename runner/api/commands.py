@@ -78,11 +78,12 @@ def sweep(
     from runner.sweeps.run import Engine, run_sweep
 
     use_plugins(plugins)
-    folders, texts = config_folders(config_dirs), sweep_overrides(overrides, values)
+    folders, entries = config_folders(config_dirs), sweep_overrides(overrides, values)
+    texts = [each if isinstance(each, str) else each.typed for each in entries]
     _reject_hydra(texts)
     engine, loader = Engine(workers, address), Composer(folders)
     brought = loader.sweeper(texts).params or {}  # axes that an experiment brings along
-    plan = Grid([*(f"{key}={value}" for key, value in brought.items()), *texts], loader)
+    plan = Grid([*(f"{key}={value}" for key, value in brought.items()), *entries], loader)
     with workers_only_work():
         ended = run_sweep(plan, engine, _command(["-m"], folders, texts))
     sweep = store.open_sweep(ended.folder)

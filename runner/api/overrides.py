@@ -3,14 +3,16 @@
 import re
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path, PurePath
+from typing import TypeVar
 
 import numpy as np
 from hydra.core.override_parser.types import Quote, QuotedString
 
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
-from runner.store.axes import override_value
+from runner.store.axes import SweepAxis, override_value
 
+T = TypeVar("T", bound="str | SweepAxis")
 _KEY = re.compile(r"[A-Za-z_][\w.@/]*")
 _BARE = re.compile(r"[\w./+-]+")
 _ALLOWED = "a number, text, bool, None, Path, list, tuple, dict or NumPy array"
@@ -32,16 +34,16 @@ def run_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[st
     Raises:
         ConfigError: if a key or value cannot be written as an override; lists all such keys and values.
     """
-    return _overrides(given, values, _text)
+    return _overrides(given, values, _one)
 
 
-def sweep_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[str]:
-    """Return the overrides of a sweep: as for a run, but a list, tuple, range or array is an axis.
+def sweep_overrides(given: Sequence[str], values: Mapping[str, object]) -> list[str | SweepAxis]:
+    """Return the overrides of a sweep: as for a run, but a list, tuple, range or array is an axis of typed values.
 
     A single value that is itself a list must be wrapped in another list.
 
-        >>> sweep_overrides([], {"robot": ["macro", "mini"], "seed": range(20), "torque_limits__max": [[1, 2, 3]]})
-        ['robot=macro,mini', 'seed=range(0,20)', 'torque_limits.max=[1,2,3]']
+        >>> sweep_overrides([], {"robot": "macro", "seed": range(20), "torque_limits__max": [[1, 2, 3]]})[1:]
+        [SweepAxis(key='seed', values=range(0, 20)), SweepAxis(key='torque_limits.max', values=[[1, 2, 3]])]
     """
     return _overrides(given, values, _axis)
 
@@ -55,13 +57,13 @@ def tuning_overrides(given: Sequence[str], values: Mapping[str, object]) -> list
     return _overrides(given, values, _interval)
 
 
-def _overrides(given: Sequence[str], values: Mapping[str, object], text: Callable[[object], str]) -> list[str]:
+def _overrides(given: Sequence[str], values: Mapping[str, object], entry: Callable[[str, object], T]) -> list[str | T]:
     problems = [
         f"{quoted(each)} is not a valid override; write KEY=VALUE as a string"
         for each in given
         if type(each) is not str
     ]
-    found = list(given)
+    found: list[str | T] = list(given)
     for name, value in values.items():
         key = name.replace("__", ".")
         if not _KEY.fullmatch(key):
@@ -70,7 +72,7 @@ def _overrides(given: Sequence[str], values: Mapping[str, object], text: Callabl
             )
             continue
         try:
-            found.append(f"{key}={text(value)}")
+            found.append(entry(key, value))
         except _WrittenError as error:
             problems.append(f"{key}: {error}")
     if problems:
@@ -78,45 +80,41 @@ def _overrides(given: Sequence[str], values: Mapping[str, object], text: Callabl
     return found
 
 
-def _axis(value: object) -> str:
-    if isinstance(value, range):
-        step = "" if value.step == 1 else f",{value.step}"
-        return f"range({value.start},{value.stop}{step})"
+def _one(key: str, value: object) -> str:
+    return f"{key}={_text(value)}"
+
+
+def _axis(key: str, value: object) -> str | SweepAxis:
     if isinstance(value, np.ndarray) and value.ndim:
         value = list(value)
-    if isinstance(value, list | tuple):
-        if not value:
-            raise _WrittenError("is swept over no value; give one or more")
-        return ",".join(map(_item, value))
-    return _text(value)
+    if not isinstance(value, list | tuple | range):
+        return _one(key, value)
+    if not value:
+        raise _WrittenError("is swept over no value; give one or more")
+    return SweepAxis(key, value if isinstance(value, range) else [_plain(each) for each in value])
 
 
-def _interval(value: object) -> str:
-    if isinstance(value, tuple):
-        if len(value) != 2:
-            raise _WrittenError(f"a range has two ends, (low, high); found {quoted(value)}")
-        return f"interval({_text(value[0])},{_text(value[1])})"
-    return _text(value)
+def _interval(key: str, value: object) -> str:
+    if not isinstance(value, tuple):
+        return _one(key, value)
+    if len(value) != 2:
+        raise _WrittenError(f"a range has two ends, (low, high); found {quoted(value)}")
+    return f"{key}=interval({_text(value[0])},{_text(value[1])})"
 
 
 def _text(value: object) -> str:
-    """Return a value as written after `KEY=`; a string is returned unchanged."""
-    return value if type(value) is str else _item(value)
-
-
-def _item(value: object) -> str:
-    """Return a value as written in a list, in which a string is always one value."""
-    return override_value(_plain(value), _letters)
+    """Return a value as written after `KEY=`; a string is returned unchanged, in a list it is always one value."""
+    return value if type(value) is str else override_value(_plain(value), _letters)
 
 
 def _plain(value: object) -> object:
-    """Return a value without NumPy and paths; lists and mappings in it too."""
+    """Return a value without NumPy and paths, with strings that Hydra reads literally; lists and mappings in it too."""
     if isinstance(value, np.generic | np.ndarray):
         value = value.tolist()
-    if value is None or isinstance(value, bool | int | float | str):
+    if value is None or isinstance(value, bool | int | float):
         return value
-    if isinstance(value, PurePath):
-        return str(value)
+    if isinstance(value, PurePath | str):
+        return str(value).replace("${", r"\${")
     if isinstance(value, list | tuple | range):
         return [_plain(each) for each in value]
     if isinstance(value, Mapping):
@@ -134,7 +132,7 @@ def _letters(text: str) -> str:
     """Return a string as one Hydra value, quoted if it contains more than a name or a number."""
     if _BARE.fullmatch(text):
         return text
-    return QuotedString(text.replace("${", r"\${"), Quote.single).with_quotes()
+    return QuotedString(text, Quote.single).with_quotes()
 
 
 def config_folders(given: "Sequence[str | Path] | str | Path") -> list[Path]:

@@ -30,6 +30,14 @@ class SweepAxis:
         """Return the override for the value with a given index."""
         return f"{self.key}={override_value(self.values[number])}"
 
+    @property
+    def typed(self) -> str:
+        """The override with all values, as on the command line of a sweep."""
+        if isinstance(self.values, range):
+            ends = [self.values.start, self.values.stop, *([] if self.values.step == 1 else [self.values.step])]
+            return f"{self.key}=range({','.join(map(str, ends))})"
+        return f"{self.key}={','.join(map(override_value, self.values))}"
+
 
 class Axes(Sequence[tuple[str, ...]]):
     """The overrides of each cell of a grid, created on access; the last axis changes fastest.

@@ -13,7 +13,7 @@ from runner.config.compose.options import groups
 from runner.config.compose.overrides import prepare
 from runner.config.composed import Composed
 from runner.schema.model import LARGEST_WHOLE
-from runner.store.axes import Axes, digits, is_simulated
+from runner.store.axes import Axes, SweepAxis, digits, is_simulated
 from runner.sweeps.swept import SweptKey, parse_sweep, read_keys
 from runner.sweeps.template import Template
 
@@ -129,16 +129,16 @@ class Grid(Plan):
     """Every combination of the values of a sweep's keys; the last key changes fastest.
 
     Args:
-        arguments: Overrides, such as "robot=macro,mini" and "noise.position=1e-4,1e-3".
+        arguments: Overrides, such as "robot=macro,mini" and "noise.position=1e-4,1e-3", and axes with typed values.
         source: Composer of the configs.
 
     Raises:
         ConfigError: if an override is not valid, or a key is swept over no value.
     """
 
-    def __init__(self, arguments: Sequence[str], source: Composer) -> None:
+    def __init__(self, arguments: Sequence[str | SweepAxis], source: Composer) -> None:
         super().__init__(source)
-        self._keys = parse_sweep(prepare(arguments), groups(source.config_dirs), source.hydra)
+        self._keys = parse_sweep(arguments, groups(source.config_dirs), source.hydra)
         self._sizes = [len(key.values) for key in self._keys]
         self._axes = Axes([key.entry() for key in self._keys if len(key.values) > 1 or is_simulated(key.name)])
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from hydra.core.config_loader import ConfigLoader
@@ -12,6 +12,7 @@ from hydra.core.override_parser.types import Override, RangeSweep, Transformer
 from runner.base.errors import ConfigError
 from runner.base.limits import CELLS
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
+from runner.config.compose.overrides import prepare
 from runner.config.compose.units import as_numbers
 from runner.store.axes import SweepAxis
 
@@ -46,24 +47,32 @@ class SweptKey:
         return SweepAxis(self.start, self.values)
 
 
-def parse_sweep(arguments: Sequence[str], groups: Sequence[str], loader: ConfigLoader) -> list[SweptKey]:
+def parse_sweep(arguments: Sequence[str | SweepAxis], groups: Sequence[str], loader: ConfigLoader) -> list[SweptKey]:
     """Return the keys of a sweep in order. A repeated key has its last values at its first position.
 
     Args:
-        arguments: Overrides, such as "robot=macro,mini" and "noise.position=1e-4,1e-3".
+        arguments: Overrides, such as "robot=macro,mini" and "noise.position=1e-4,1e-3", and axes with typed values.
         groups: Names of the config groups.
         loader: Hydra's loader, which expands `glob(*)`.
 
     Raises:
         ConfigError: if an override is not valid, a key is swept over no value, or there are too many cells.
     """
-    keys = {key.start: key for key in read_keys(arguments, groups, loader)}
+    texts = [each for each in arguments if isinstance(each, str)]
+    axes = [each for each in arguments if isinstance(each, SweepAxis)]
+    numbers = [axis.values[:1] if isinstance(axis.values, range) else axis.values for axis in axes]  # these are alike
+    checked = [axis.text(number) for axis, values in zip(axes, numbers, strict=True) for number in range(len(values))]
+    read = iter(read_keys(prepare([*texts, *checked])[: len(texts)], groups, loader))
+    entries = [
+        next(read) if isinstance(each, str) else _key(each.key, each.key, each.values, groups) for each in arguments
+    ]
+    keys = {key.start: key for key in entries}
     _check_cells(math.prod(len(key.values) for key in keys.values()))
     return list(keys.values())
 
 
 def read_keys(arguments: Sequence[str], groups: Sequence[str], loader: ConfigLoader) -> list[SweptKey]:
-    """Return the key of each override with its values; see `parse_sweep`."""
+    """Return the key of each prepared override with its values; see `parse_sweep`."""
     try:
         overrides = OverridesParser.create(config_loader=loader).parse_overrides(list(arguments))
         _check_ranges(overrides)
@@ -89,18 +98,23 @@ def _check_cells(cells: float) -> None:
 
 
 def _read(override: Override, groups: Sequence[str]) -> SweptKey:
-    name, start = override.key_or_group, override.get_key_element()
-    is_group = name in groups or "/" in name or override.package is not None
     values: Sequence[Any] | None = _counted(override)
     if values is None and override.is_sweep_override():
         values = [Override._convert_value(value) for value in override.sweep_iterator(Transformer.identity)]
     typed = "" if values is not None else override.input_line or ""
     values = [override.value()] if values is None else values
-    numbers = None if is_group or isinstance(values, range) else as_numbers(values, name)
+    key = _key(override.key_or_group, override.get_key_element(), values, groups, typed)
+    return replace(key, option=True) if override.is_delete() else key
+
+
+def _key(name: str, start: str, values: Sequence[Any], groups: Sequence[str], typed: str = "") -> SweptKey:
+    is_group = name in groups or "/" in name or "@" in start
+    if isinstance(values, range):
+        return SweptKey(name, values, is_group, start, typed)
+    numbers = None if is_group else as_numbers(values, name)
     if numbers is not None:
         return SweptKey(name, numbers, option=False, start=start)
-    mapping = not isinstance(values, range) and any(isinstance(value, dict) for value in values)
-    return SweptKey(name, values, (is_group and not mapping) or override.is_delete(), start, typed)
+    return SweptKey(name, values, is_group and not any(isinstance(value, dict) for value in values), start, typed)
 
 
 def _counted(override: Override) -> range | None:

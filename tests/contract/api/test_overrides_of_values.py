@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser
+from support.grids import plan_sweep
 
 from runner.api.overrides import run_overrides, sweep_overrides, tuning_overrides
 from runner.base.errors import ConfigError
@@ -79,10 +80,31 @@ def test_axes_of_a_sweep():
         "f": 3,
         "g": ["x y", "z"],
     }
-    assert sweep_overrides([], values) == [
+    entries = sweep_overrides([], values)
+    assert [each if isinstance(each, str) else each.typed for each in entries] == [
         "robot=macro,mini", "noise.position=0.0001,0.001", "seed=range(0,20)", "a=range(0,10,2)", "b=0.5,1.0",
         "c=[1,2],[3,4]", "d=null,true", "e=1,2", "f=3", "g='x y',z",
     ]  # fmt: skip
+    assert [each.values for each in entries if not isinstance(each, str)] == [
+        ["macro", "mini"], [1e-4, 1e-3], range(20), range(0, 10, 2), [0.5, 1.0], [[1, 2], [3, 4]], [None, True],
+        ["x y", "z"],
+    ]  # fmt: skip
+
+
+def test_an_axis_of_typed_values_gives_the_cells_of_the_same_axis_as_text():
+    values = {"robot": ["macro", "mini"], "noise.position": ["1mrad", 0.002], "seed": range(3), "f": [Path("a b")]}
+    typed = sweep_overrides([], values)
+    texts = [each if isinstance(each, str) else each.typed for each in typed]
+    plans = [plan_sweep(each) for each in (typed, texts)]
+    assert list(plans[0].axes()) == list(plans[1].axes())
+    assert [plan.overrides(11) for plan in plans] == [("robot=mini", "noise.position=0.002", "seed=2", "f='a b'")] * 2
+
+
+def test_a_text_in_an_axis_is_no_interpolation():
+    (axis,) = sweep_overrides([], {"a": ["${oc.env:HOME}"]})
+    assert axis.typed == r"a='\${oc.env:HOME}'"
+    with pytest.raises(ConfigError, match="calls a function"):
+        plan_sweep([axis])
 
 
 def test_ranges_of_a_tuning():
