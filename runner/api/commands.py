@@ -136,7 +136,7 @@ def tune(
     objectives = [Objective(metric, "minimize") for metric in _several(minimize)]
     objectives += [Objective(metric, "maximize") for metric in _several(maximize)]
     if not objectives or len({objective.metric for objective in objectives}) < len(objectives):
-        raise ConfigError(["name each metric once, in minimize=... or maximize=..."])
+        raise ConfigError("name each metric once, in minimize=... or maximize=...")
     words = [f"--{objective.direction}={objective.metric}" for objective in objectives]
     words += [f"--trials={trials}", f"--jobs={jobs}"]
     _check_counts(trials=trials, jobs=jobs)

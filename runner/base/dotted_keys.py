@@ -97,15 +97,15 @@ class _Sizes:
         if place in self._known:
             return self._known[place]
         if place in self._open:
-            raise ConfigError([f"{dotted(place)}: refers to itself, by way of {dotted(self._open[-1])}"])
+            raise ConfigError(f"{dotted(place)}: refers to itself, by way of {dotted(self._open[-1])}")
         if len(self._open) > _DEPTH:
-            raise ConfigError([f"{dotted(self._open[-1])}: nested or referred to deeper than {_DEPTH} levels"])
+            raise ConfigError(f"{dotted(self._open[-1])}: nested or referred to deeper than {_DEPTH} levels")
         self._open.append(place)
         size = _A_VALUE + (len(value) if isinstance(value, str) else 0)
         for inner in self._within(place, value):
             size += self.of(*inner)
             if size > _SIZE:
-                raise ConfigError([f"{dotted(place) or 'the config'}: stands for too many values, by its references"])
+                raise ConfigError(f"{dotted(place) or 'the config'}: stands for too many values, by its references")
         self._open.pop()
         self._known[place] = size
         return size

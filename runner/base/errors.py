@@ -40,8 +40,8 @@ class ConfigError(RunnerError):
         problems: One text per problem: dotted key, value found, values allowed; the message shows the first 20.
     """
 
-    def __init__(self, problems: Iterable[str], hint: str = "") -> None:
-        self.problems = tuple(problems)
+    def __init__(self, problems: str | Iterable[str], hint: str = "") -> None:
+        self.problems = (problems,) if isinstance(problems, str) else tuple(problems)
         self.hint = hint
         count = len(self.problems)
         head = "1 problem in the config:" if count == 1 else f"{count} problems in the config:"

@@ -78,4 +78,4 @@ def check_inside(path: Path, folders: Sequence[Path]) -> None:
         own = [*folders, robots_dir()]
     place = Path(os.path.realpath(path))
     if own and not any(place.is_relative_to(os.path.realpath(folder)) for folder in own):
-        raise ConfigError([f"{path}: is {place}, outside of the folder {own[0]}; put the file itself there"])
+        raise ConfigError(f"{path}: is {place}, outside of the folder {own[0]}; put the file itself there")

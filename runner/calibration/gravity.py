@@ -94,10 +94,8 @@ def identify_gravity(
     G_c, G_s, G, *offsets = B_inverse @ forces.reshape(-1)
     if G <= 0.0 or np.hypot(G_c, G_s) == 0.0:
         raise ConfigError(
-            [
-                f"calibration.readings: they show a weight of {G:.3g} N, turning with the flange as no tool's would; "
-                f"check that a tool is mounted and that readings and orientations belong together"
-            ]
+            f"calibration.readings: they show a weight of {G:.3g} N, turning with the flange as no tool's would; "
+            f"check that a tool is mounted and that readings and orientations belong together"
         )
     A_inverse = np.linalg.pinv(moment_matrix(forces))
     r, k = np.split(A_inverse @ moments.reshape(-1), 2)

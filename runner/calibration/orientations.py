@@ -56,17 +56,15 @@ def check_orientations(orientations: FloatArray) -> tuple[float, float]:
         ConfigError: if they are too few or too much alike; names the condition numbers.
     """
     if len(orientations) < 3:
-        raise ConfigError([f"calibration.orientations: {len(orientations)}; weighing a tool needs 3 or more"])
+        raise ConfigError(f"calibration.orientations: {len(orientations)}; weighing a tool needs 3 or more")
     force, moment = condition_numbers(orientations)
     if max(force, moment) <= MAX_CONDITION_NUMBER:
         return force, moment
     spread = np.degrees(np.arccos(np.clip(orientations[:, 2] @ orientations[0, 2], -1.0, 1.0)).max())
     raise ConfigError(
-        [
-            f"calibration.orientations: condition numbers {force:.3g} (force) and {moment:.3g} (moment); allowed: "
-            f"up to {MAX_CONDITION_NUMBER:g}. Gravity turns by {spread:.3g} deg in the flange's frame; it must come "
-            f"from directions that share no cone about the flange's z axis"
-        ]
+        f"calibration.orientations: condition numbers {force:.3g} (force) and {moment:.3g} (moment); allowed: "
+        f"up to {MAX_CONDITION_NUMBER:g}. Gravity turns by {spread:.3g} deg in the flange's frame; it must come "
+        f"from directions that share no cone about the flange's z axis"
     )
 
 
@@ -85,7 +83,7 @@ def choose_orientations(candidates: FloatArray, count: int) -> list[int]:
     """
     if count > len(candidates):
         raise ConfigError(
-            [f"calibration.orientations: {count} wanted of {len(candidates)} candidates; offer more, or take fewer"]
+            f"calibration.orientations: {count} wanted of {len(candidates)} candidates; offer more, or take fewer"
         )
     rows = np.hstack([np.ones((len(candidates), 1)), candidates[:, 2]])
     information = 1e-6 * np.eye(4)

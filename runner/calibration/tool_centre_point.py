@@ -54,13 +54,13 @@ def identify_tool_centre_point(poses: FloatArray, pose_covariances: FloatArray) 
     """
     R, P = poses[:, :3, :3], poses[:, :3, 3]
     if len(poses) < 3:
-        raise ConfigError([f"calibration.poses: {len(poses)} poses; a tool centre point needs 3 or more"])
+        raise ConfigError(f"calibration.poses: {len(poses)} poses; a tool centre point needs 3 or more")
     A = (R[0] - R[1:]).reshape(-1, 3)
     rows = len(poses) - 1
     singular_values = np.linalg.svd(A, compute_uv=False)
     smallest = float(singular_values[-1]) / np.sqrt(rows)
     if smallest < MIN_SINGULAR_VALUE:
-        raise ConfigError([_refusal(R, singular_values, smallest)])
+        raise ConfigError(_refusal(R, singular_values, smallest))
     inverse = np.linalg.pinv(A)
     b = (P[1:] - P[0]).reshape(-1)
     p = inverse @ b

@@ -68,10 +68,8 @@ def identify_tool_direction(long: ToolCentrePoint, short: ToolCentrePoint) -> To
     length, deviation = float(np.linalg.norm(offset)), float(np.sqrt(np.trace(covariance)))
     if length <= _MIN_RATIO * deviation:
         raise ConfigError(
-            [
-                f"calibration.shorter: the tips are {length:.3g} m apart, known to {deviation:.3g} m; a direction "
-                f"needs {_MIN_RATIO:g} times that. Take tools whose lengths differ more"
-            ]
+            f"calibration.shorter: the tips are {length:.3g} m apart, known to {deviation:.3g} m; a direction "
+            f"needs {_MIN_RATIO:g} times that. Take tools whose lengths differ more"
         )
     direction = offset / length
     alpha, beta = alignment_angles(direction)

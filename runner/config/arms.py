@@ -1,11 +1,11 @@
 """Outline and rigid-body model from a robot's config: URDF and MJCF files, and arms mounted on each other."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 
@@ -28,8 +28,6 @@ _KEPT = 8
 _AT_LIMIT = 1e-9  # rad or m
 _TURN = 2.0 * np.pi
 _outlines: dict[tuple[object, ...], "RobotOutline"] = {}
-_built: dict[tuple[object, ...], Robot] = {}
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -61,24 +59,27 @@ class ArmOutline:
     home: tuple[float, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RobotOutline:
     """A robot as its config and its files describe it.
 
     Attributes:
         config: The robot's config.
         stages: The arms, from the base outwards.
-        files: The files read, each with its time of change and size.
     """
 
     config: RobotConfig
     stages: tuple[ArmOutline, ...]
-    files: tuple[object, ...]
 
     @property
     def stage_names(self) -> tuple[str, ...]:
         """Names of the stages."""
         return tuple(stage.name for stage in self.stages)
+
+    @property
+    def stage_joints(self) -> dict[str, tuple[str, ...]]:
+        """Joint names of each stage."""
+        return {stage.name: stage.joint_names for stage in self.stages}
 
     @property
     def effort_limits(self) -> FloatArray:
@@ -105,11 +106,16 @@ def read_outline(config: RobotConfig, config_dirs: Sequence[Path] = ()) -> Robot
         for file in (*(mjcf_of(path).files if arm.mjcf else [path]), set_file(path), armature_file(path))
         if file.exists()
     )
-    return _kept(_outlines, (config.model_dump_json(), files), lambda: _read(config, paths, files))
+    key = (config.model_dump_json(), files)
+    if key not in _outlines:
+        if len(_outlines) == _KEPT:
+            _outlines.clear()
+        _outlines[key] = _read(config, paths)
+    return _outlines[key]
 
 
 def build_robot(outline: RobotOutline, gravity: float, sensor: ForceTorqueConfig | None = None) -> Robot:
-    """Return the robot of an outline; runs with equal files and values share it.
+    """Return the robot of an outline; runs of the outline share it.
 
     Args:
         outline: The outline.
@@ -119,9 +125,7 @@ def build_robot(outline: RobotOutline, gravity: float, sensor: ForceTorqueConfig
     Raises:
         ConfigError: for an arm that cannot be built, or a tool or payload on a frame that is not a link.
     """
-    load = None if sensor is None else (sensor.mass, sensor.height)
-    key = (outline.config.model_dump_json(), outline.files, gravity, load)
-    return _kept(_built, key, lambda: _build(outline, gravity, sensor))
+    return _build(outline, gravity, None if sensor is None else (sensor.mass, sensor.height))
 
 
 def build_loaded(
@@ -137,15 +141,7 @@ def build_loaded(
     return tuple(found)
 
 
-def _kept(known: dict[tuple[object, ...], T], key: tuple[object, ...], make: Callable[[], T]) -> T:
-    if key not in known:
-        if len(known) == _KEPT:
-            known.clear()
-        known[key] = make()
-    return known[key]
-
-
-def _read(config: RobotConfig, paths: Sequence[Path], files: tuple[object, ...]) -> RobotOutline:
+def _read(config: RobotConfig, paths: Sequence[Path]) -> RobotOutline:
     stages: list[ArmOutline] = []
     joints: list[str] = []
     whole = below = ""
@@ -167,10 +163,11 @@ def _read(config: RobotConfig, paths: Sequence[Path], files: tuple[object, ...])
         below = prefix
     for kind, value in (("viscous", config.friction.viscous), ("coulomb", config.friction.coulomb)):
         expand(f"robot.friction.{kind}", value, joints)
-    return RobotOutline(config, tuple(stages), files)
+    return RobotOutline(config, tuple(stages))
 
 
-def _build(outline: RobotOutline, gravity: float, sensor: ForceTorqueConfig | None) -> Robot:
+@lru_cache(maxsize=_KEPT)
+def _build(outline: RobotOutline, gravity: float, sensor: tuple[float, float] | None) -> Robot:
     config, last = outline.config, outline.stages[-1]
     stages: list[Stage] = []
     whole, tip, first = "", "", 0
@@ -205,10 +202,10 @@ def find_arm(key: str, arm: ArmConfig, config_dirs: Sequence[Path]) -> Path:
     """
     if (arm.urdf is None) == (arm.mjcf is None):
         found = "neither" if arm.urdf is None else f"both, '{arm.urdf}' and '{arm.mjcf}'"
-        raise ConfigError([f"{key}.urdf, {key}.mjcf: found {found}; give one file, and null for the other"])
+        raise ConfigError(f"{key}.urdf, {key}.mjcf: found {found}; give one file, and null for the other")
     path = find_urdf(arm.urdf, config_dirs) if arm.urdf else find_file("robot.mjcf", str(arm.mjcf), config_dirs)
     if arm.urdf and is_mjcf(path):
-        raise ConfigError([f"{key}.urdf: {path} is an MJCF; name it at {key}.mjcf"])
+        raise ConfigError(f"{key}.urdf: {path} is an MJCF; name it at {key}.mjcf")
     return path
 
 
@@ -278,12 +275,13 @@ def _check_home(
         raise ConfigError(problems)
 
 
-def _payloads(config: RobotConfig, flange: str, sensor: ForceTorqueConfig | None) -> list[Payload]:
-    """Return the masses on the flange except the tool: the payload at the tip, and the force/torque sensor."""
+def _payloads(config: RobotConfig, flange: str, sensor: tuple[float, float] | None) -> list[Payload]:
+    """Return the payload at the tip, and the force/torque sensor on the flange from its mass and height."""
     tip = np.zeros(3) if config.tool is None else np.array(config.tool.tip)
     payloads = [Payload(flange, config.payload.mass, (tip + config.payload.position).tolist())]
     if sensor is not None:
-        payloads.append(Payload(flange, sensor.mass, (0.0, 0.0, 0.5 * sensor.height)))
+        mass, height = sensor
+        payloads.append(Payload(flange, mass, (0.0, 0.0, 0.5 * height)))
     return payloads
 
 
@@ -291,7 +289,7 @@ def _find_mount(key: str, arm: ArmConfig, below: str, first: bool) -> Mount | No
     """Return the mount of an arm on the arm below, whose names have a prefix; None for the first arm."""
     place = arm.mount if isinstance(arm, StageConfig) else None
     if first and place is not None:
-        raise ConfigError([f"{key}.mount: the first stage is fixed to the ground; allowed: null"])
+        raise ConfigError(f"{key}.mount: the first stage is fixed to the ground; allowed: null")
     if not first and place is None:
-        raise ConfigError([f"{key}.mount: missing; a stage above the first needs frame, translation and rotation"])
+        raise ConfigError(f"{key}.mount: missing; a stage above the first needs frame, translation and rotation")
     return None if place is None else Mount(below + place.frame, place.translation, place.rotation)

@@ -101,10 +101,8 @@ def _check_keys(composed: Composed) -> None:
 def _parse_sensor(keys: Mapping[str, object]) -> ForceTorqueConfig:
     if "kind" in keys:
         raise ConfigError(
-            [
-                "wrist_sensor.kind: a calibration supports only the built-in force/torque sensor; found the plug-in "
-                f"{quoted(keys['kind'])}; take wrist_sensor=ideal or wrist_sensor=mini40"
-            ]
+            "wrist_sensor.kind: a calibration supports only the built-in force/torque sensor; found the plug-in "
+            f"{quoted(keys['kind'])}; take wrist_sensor=ideal or wrist_sensor=mini40"
         )
     return parse("wrist_sensor", ForceTorqueConfig, keys)
 
@@ -112,9 +110,7 @@ def _parse_sensor(keys: Mapping[str, object]) -> ForceTorqueConfig:
 def _make_bench(robot: RobotConfig, arm: Robot, sensor: ForceTorqueConfig) -> Bench:
     tool = robot.tool
     if tool is None:
-        raise ConfigError(
-            ["robot.tool: found null; a calibration needs a tool: mass, centre_of_mass, inertia, tip, ..."]
-        )
+        raise ConfigError("robot.tool: found null; a calibration needs a tool: mass, centre_of_mass, inertia, tip, ...")
     return Bench(
         flange=RobotModel(arm.urdf, arm.flange, -float(arm.model.gravity[2])),
         home=arm.home,

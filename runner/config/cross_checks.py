@@ -26,13 +26,11 @@ def check_schedule(config: RunConfig) -> None:
     key = "robot.payload.schedule: the payload cannot change on the way"
     if PLANTS.commands(config.plant.kind) == "position":
         fit = " or plant=".join(kind for kind in PLANTS.names() if PLANTS.commands(kind) == "torque")
-        raise ConfigError([f"{key} of plant={config.plant.kind}, whose joints no mass moves; take plant={fit}, or []"])
+        raise ConfigError(f"{key} of plant={config.plant.kind}, whose joints no mass moves; take plant={fit}, or []")
     if config.has_contact:
         raise ConfigError(
-            [
-                f"{key} where the tip touches something or its sensor is read, which would have to tell the payload "
-                "from the touch; take environment=free and a controller that feels nothing, or []"
-            ]
+            f"{key} where the tip touches something or its sensor is read, which would have to tell the payload "
+            "from the touch; take environment=free and a controller that feels nothing, or []"
         )
 
 
@@ -52,7 +50,7 @@ def count_late(plant: PlantConfig, loops: Sequence[Loop]) -> tuple[int, ...]:
     """
     late = computation_of(plant).by_loop([loop.name for loop in loops])
     if max(late) > _MAX_TICKS:
-        raise ConfigError([f"plant.computation.delay: {max(late)} ticks found; allowed: up to {_MAX_TICKS}"])
+        raise ConfigError(f"plant.computation.delay: {max(late)} ticks found; allowed: up to {_MAX_TICKS}")
     return tuple(late)
 
 
@@ -110,15 +108,13 @@ def check_observer(config: RunConfig) -> None:
         if config.joint_torques is not None or "joint_torque_sensor" in config.plugged:
             return
         raise ConfigError(
-            [
-                "disturbance_observer.torque: measured needs torque sensors in the joints, and joint_torque_sensor."
-                "noise is null; take joint_torque_sensor=ideal, or disturbance_observer.torque=commanded"
-            ]
+            "disturbance_observer.torque: measured needs torque sensors in the joints, and joint_torque_sensor."
+            "noise is null; take joint_torque_sensor=ideal, or disturbance_observer.torque=commanded"
         )
     else:
         problem = _late(config)
     if problem is not None:
-        raise ConfigError([f"disturbance_observer.bandwidth: {problem}, or disturbance_observer=none"])
+        raise ConfigError(f"disturbance_observer.bandwidth: {problem}, or disturbance_observer=none")
 
 
 def _parted(config: RunConfig) -> bool:
@@ -155,7 +151,7 @@ def check_notch(config: RunConfig) -> None:
     if config.commands != "torque" or any(loop.uses_wrench for loop in config.loops):
         kind, what = config.controller.kind, "commands joint positions" if config.commands != "torque" else "feels"
         raise ConfigError(
-            [f"notch: {kind} {what}; take a controller that gives torques and feels nothing, or notch=none"]
+            f"notch: {kind} {what}; take a controller that gives torques and feels nothing, or notch=none"
         )
     frequency, problems = config.notch.by_joint(config.arm), []
     for loop in config.loops:
@@ -226,8 +222,6 @@ def check_reading(config: RunConfig) -> None:
     law = config.controller
     if isinstance(law, HybridForceConfig) and law.force_source == "joint_torque" and config.joint_torques is None:
         raise ConfigError(
-            [
-                "controller.force_source: joint_torque needs torque sensors in the joints, and "
-                "joint_torque_sensor.noise is null; take joint_torque_sensor=ideal, or controller.force_source=wrist"
-            ]
+            "controller.force_source: joint_torque needs torque sensors in the joints, and "
+            "joint_torque_sensor.noise is null; take joint_torque_sensor=ideal, or controller.force_source=wrist"
         )

@@ -59,20 +59,16 @@ def check_path(arm: Robot, path: Trajectory) -> None:
     row = int(distance.argmax())
     if distance[row] > model.reach * (1.0 + _ROUNDING):
         raise ConfigError(
-            [
-                f"trajectory: at t = {times[row]:.4g} s the path lies {distance[row]:.4g} m from the shoulder, and the "
-                f"arm reaches {model.reach:.4g} m: {distance[row] - model.reach:.4g} m too far; make it smaller, or "
-                "start elsewhere"
-            ]
+            f"trajectory: at t = {times[row]:.4g} s the path lies {distance[row]:.4g} m from the shoulder, and the "
+            f"arm reaches {model.reach:.4g} m: {distance[row] - model.reach:.4g} m too far; make it smaller, or "
+            "start elsewhere"
         )
     beside = distance_beside(model, points)
     row = int(beside.argmax())
     if beside[row] > _BESIDE * model.reach:
         raise ConfigError(
-            [
-                f"trajectory: at t = {times[row]:.4g} s the path lies {beside[row]:.4g} m outside the plane or line in "
-                "which the joints can move the tip; take a path within it"
-            ]
+            f"trajectory: at t = {times[row]:.4g} s the path lies {beside[row]:.4g} m outside the plane or line in "
+            "which the joints can move the tip; take a path within it"
         )
 
 
@@ -90,7 +86,7 @@ def check_joints(arm: Robot, path: Trajectory) -> None:
     if not isinstance(path, TipOfJoints):
         return
     if excess := SAMPLES.excess(path.joints.samples):
-        raise ConfigError([f"trajectory.duration: a motion of {path.duration:g} s {excess}; make it shorter or slower"])
+        raise ConfigError(f"trajectory.duration: a motion of {path.duration:g} s {excess}; make it shorter or slower")
     times = np.linspace(0.0, path.duration, max(_JOINT_SAMPLES, path.joints.samples + 1))
     motion, model = path.sample_joints(times), arm.model
     lower, upper = model.position_limits
@@ -142,10 +138,8 @@ def check_repeats(config: RunConfig) -> None:
     late = round(every / timing.tick)
     if timing.ticks <= 2 * late:
         raise ConfigError(
-            [
-                f"duration: {end:g} s is no longer than two of controller.repeats_every, {every:g} s; the first period "
-                f"teaches nothing, and what the second teaches acts in the third; allowed: above {2.0 * every:g} s"
-            ]
+            f"duration: {end:g} s is no longer than two of controller.repeats_every, {every:g} s; the first period "
+            f"teaches nothing, and what the second teaches acts in the third; allowed: above {2.0 * every:g} s"
         )
     ticks = np.unique(np.linspace(0, timing.ticks - late, _TICKS).astype(int))
     now, then = (_positions(config, (ticks + shift) * timing.tick) for shift in (0, late))
@@ -154,7 +148,7 @@ def check_repeats(config: RunConfig) -> None:
     if extent > 0.0 and unlike.max() <= _SAME * extent:
         return
     what = _first_difference(config, ticks * timing.tick, unlike, _SAME * extent) if extent > 0.0 else "rests"
-    raise ConfigError([f"controller.repeats_every: {every:g} s, but the desired motion {what}; {_REPEATING}"])
+    raise ConfigError(f"controller.repeats_every: {every:g} s, but the desired motion {what}; {_REPEATING}")
 
 
 def _first_difference(config: RunConfig, times: FloatArray, unlike: FloatArray, same: float) -> str:
@@ -183,7 +177,7 @@ def start_posture(
     try:
         wanted = CONTROLLERS.start_posture(controller, arm, start)
     except np.linalg.LinAlgError as error:
-        raise ConfigError([f"trajectory.start: {error}"]) from error
+        raise ConfigError(f"trajectory.start: {error}") from error
     if wanted is not None:
         return np.array(wanted, dtype=np.float64)
     home = end_points(arm, arm.home[None], ignore_base_rotation)[:, 0]

@@ -41,7 +41,7 @@ def check_path(
     (loop,) = CONTROLLERS.build(controller, _without_speed_limits(arm))
     if trajectory.duration < loop.period:
         raise ConfigError(
-            [f"trajectory.duration: {trajectory.duration:g} s is shorter than one controller period, {loop.period:g} s"]
+            f"trajectory.duration: {trajectory.duration:g} s is shorter than one controller period, {loop.period:g} s"
         )
     lasts = min(trajectory.duration, max(end, loop.period))
     times: FloatArray = np.arange(math.floor(lasts / loop.period) + 1, dtype=np.float64) * loop.period
@@ -56,7 +56,7 @@ def check_path(
         or _find_departure(arm.model, trajectory, times, q, tolerance)
     )
     if problem:
-        raise ConfigError([problem])
+        raise ConfigError(problem)
 
 
 def _roll_out(loop: Loop, desired: FloatArray, q_start: FloatArray) -> tuple[FloatArray, str]:

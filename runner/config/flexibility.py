@@ -57,7 +57,7 @@ def check_flexible_joints(config: RunConfig) -> None:
     flexibility, by_motors = find_flexibility(config), isinstance(config.controller, MotorPdConfig)
     if by_motors and flexibility is None:
         raise ConfigError(
-            ["controller.kind: motor_pd turns motors behind springs; take plant=rk4_flexible, or controller=joint_pd"]
+            "controller.kind: motor_pd turns motors behind springs; take plant=rk4_flexible, or controller=joint_pd"
         )
     if flexibility is None or not isinstance(config.plant, TorquePlantConfig):
         return

@@ -86,7 +86,7 @@ def shape(
             slowest loop.
     """
     if path.goal is None:
-        raise ConfigError(["input_shaper: the trajectory never ends; take one that comes to rest, or none"])
+        raise ConfigError("input_shaper: the trajectory never ends; take one that comes to rest, or none")
     found, slowest = config.find(PLANTS.modes(plant, arm, q_start)), max(loop.period for loop in loops)
     unseen = [
         f"{_KEY}: {mode.frequency:.4g} Hz found; a loop of {slowest:g} s sees motions below {0.5 / slowest:.4g} Hz"
@@ -110,7 +110,7 @@ def _find(wanted: float | str, modes: Sequence[Mode]) -> Mode:
         return modes[number - 1]
     if not modes:
         raise ConfigError(
-            [f"{_KEY}: {wanted} is a mode of a flexible plant, and this one is rigid; take plant=rk4_flexible, or Hz"]
+            f"{_KEY}: {wanted} is a mode of a flexible plant, and this one is rigid; take plant=rk4_flexible, or Hz"
         )
     told = ", ".join(f"mode_{i} ({mode.frequency:.4g} Hz)" for i, mode in enumerate(modes, start=1))
-    raise ConfigError([f"{_KEY}: {wanted} found; the plant has {told}, with its motors held where the arm starts"])
+    raise ConfigError(f"{_KEY}: {wanted} found; the plant has {told}, with its motors held where the arm starts")

@@ -10,9 +10,10 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.config.arms import RobotOutline
 from runner.config.parsing import Problems, require
+from runner.robots.robot import by_joint
 from runner.schema.model import StrictModel
 from runner.schema.units import JointPosition, JointTorque, RadiansPerSecond
-from runner.schema.values import FinitePerStage, NonNegativePerStage, TorquePerStage, by_stage, expand
+from runner.schema.values import FinitePerStage, NonNegativePerStage, TorquePerStage, by_stage
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import DEFAULT_BANDWIDTH, Velocity
 
@@ -95,12 +96,4 @@ class TorqueLimitsConfig(StrictModel):
         Raises:
             ConfigError: for values that do not fit the robot's stages and joints.
         """
-        efforts = arm.effort_limits
-        if self.max is None:
-            return efforts
-        limits: list[float] = []
-        values: list[float | list[float]] = by_stage("torque_limits.max", self.max, arm.stage_names)
-        for stage, value in zip(arm.stages, values, strict=True):
-            key = f"torque_limits.max.{stage.name}" if len(arm.stages) > 1 else "torque_limits.max"
-            limits += expand(key, value, stage.joint_names)
-        return np.minimum(limits, efforts)
+        return np.minimum(by_joint("torque_limits.max", self.max, arm.stage_joints), arm.effort_limits)

@@ -89,11 +89,9 @@ def check_memory(limits: LimitsConfig, arm: Robot, timing: Timing, repetitions: 
         length = f"{timing.ticks * timing.tick:.3g} s ({timing.ticks:.3g} ticks of {timing.tick:g} s"
         allowed, more = (f"{own / _GB:g} GB", ", or set limits.memory") if own < half else (_told(half), "")
         raise ConfigError(
-            [
-                f"limits.memory: a run of {length}, repetitions: {repetitions}) would take about {needed / _GB:.3g} "
-                f"GB; allowed: {allowed}{fitting}; shorten duration or trajectory.duration, ask for fewer "
-                f"repetitions{more}"
-            ]
+            f"limits.memory: a run of {length}, repetitions: {repetitions}) would take about {needed / _GB:.3g} "
+            f"GB; allowed: {allowed}{fitting}; shorten duration or trajectory.duration, ask for fewer "
+            f"repetitions{more}"
         )
 
 
@@ -114,10 +112,8 @@ def check_memory_together(needed: float, runs: int) -> None:
     half = half_of_memory()
     if runs * needed > half:
         raise ConfigError(
-            [
-                f"hydra.sweeper.workers: {runs} runs at a time, of {needed / _GB:.3g} GB each, would take about "
-                f"{runs * needed / _GB:.3g} GB; allowed: {_told(half)}, in which {int(half // needed)} fit"
-            ]
+            f"hydra.sweeper.workers: {runs} runs at a time, of {needed / _GB:.3g} GB each, would take about "
+            f"{runs * needed / _GB:.3g} GB; allowed: {_told(half)}, in which {int(half // needed)} fit"
         )
 
 
@@ -137,8 +133,6 @@ def check_cpu_time(limits: LimitsConfig, seconds: float, runs: int, known: str =
     if limits.cpu_hours is not None and hours > limits.cpu_hours:
         what = f"{runs} runs" if runs > 1 else "the run"
         raise ConfigError(
-            [
-                f"limits.cpu_hours: {what} would take {known} {hours:.3g} hours of CPU time; allowed: "
-                f"{limits.cpu_hours:g}; ask for less, or set limits.cpu_hours"
-            ]
+            f"limits.cpu_hours: {what} would take {known} {hours:.3g} hours of CPU time; allowed: "
+            f"{limits.cpu_hours:g}; ask for less, or set limits.cpu_hours"
         )

@@ -84,7 +84,7 @@ def group_of(group: str, resolved: Mapping[str, object]) -> Mapping[str, object]
     """
     value = resolved.get(group)
     if not isinstance(value, Mapping):
-        raise ConfigError([f"{group}: must be a group of keys; found {quoted(value)}"])
+        raise ConfigError(f"{group}: must be a group of keys; found {quoted(value)}")
     return value
 
 
@@ -99,7 +99,7 @@ def parse_kind(kinds: Kinds, value: Mapping[str, object]) -> StrictModel:
         ConfigError: with every problem of the group.
     """
     if "kind" not in value:
-        raise ConfigError([f"{kinds.group}.kind: missing; known: {', '.join(kinds.names())}"])
+        raise ConfigError(f"{kinds.group}.kind: missing; known: {', '.join(kinds.names())}")
     return parse(kinds.group, kinds.config_model(str(value["kind"])), value)
 
 

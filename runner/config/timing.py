@@ -106,7 +106,7 @@ def count_ticks(settings: RunSettings, steps: Steps, path: Trajectory) -> int:
     """
     tick = steps.tick
     if settings.duration is not None and settings.duration < tick:
-        raise ConfigError([f"duration: {settings.duration:g} s is shorter than one controller period, {tick:g} s"])
+        raise ConfigError(f"duration: {settings.duration:g} s is shorter than one controller period, {tick:g} s")
     duration = path.run_duration if settings.duration is None else settings.duration
     return math.ceil(duration / tick - 1e-9)
 

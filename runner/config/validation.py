@@ -137,10 +137,8 @@ def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
     least = -robot.payload.mass
     if mismatch.payload < least:
         raise ConfigError(
-            [
-                f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
-                f"robot.payload.mass with {-least:g} kg; allowed: {least:g} or more"
-            ]
+            f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
+            f"robot.payload.mass with {-least:g} kg; allowed: {least:g} or more"
         )
 
 
@@ -149,17 +147,13 @@ def _check_commands(plant: PlantConfig, controller: ControllerConfig) -> None:
     if given == "torque" and taken == "position":
         fit = [kind for kind in PLANTS.names() if PLANTS.commands(kind) == "torque"]
         raise ConfigError(
-            [
-                f"plant.kind: {plant.kind} follows joint positions, and {controller.kind} gives torques; take plant="
-                f"{' or plant='.join(fit)}, or a controller that commands joint positions"
-            ]
+            f"plant.kind: {plant.kind} follows joint positions, and {controller.kind} gives torques; take plant="
+            f"{' or plant='.join(fit)}, or a controller that commands joint positions"
         )
     if given == "position" and taken == "torque" and not isinstance(plant, HasServo):
         raise ConfigError(
-            [
-                f"plant.kind: {plant.kind} takes torques and has no servo, and {controller.kind} commands joint "
-                "positions; take another plant or controller"
-            ]
+            f"plant.kind: {plant.kind} takes torques and has no servo, and {controller.kind} commands joint "
+            "positions; take another plant or controller"
         )
 
 
@@ -171,7 +165,7 @@ def _check_mass(arm: Robot, plant: PlantConfig) -> None:
     free = model.joint_names[model.joint_names.index(moved[-1]) + 1 :] if moved else model.joint_names
     if free and PLANTS.commands(plant.kind) == "torque":
         told = f"robot: no mass behind {few(free)}, so torques cannot move it; give the links there <inertial>"
-        raise ConfigError([f"{told}, or take plant=kinematic controller=differential_inverse_kinematics"])
+        raise ConfigError(f"{told}, or take plant=kinematic controller=differential_inverse_kinematics")
 
 
 def _ignores_base_rotation(arm: Robot, plant: PlantConfig) -> bool:

@@ -45,10 +45,8 @@ class DisturbanceObserverConfig(StrictModel):
             return [self.bandwidth] * len(loops)
         if set(self.bandwidth) != set(names):
             raise ConfigError(
-                [
-                    f"disturbance_observer.bandwidth: values for {', '.join(self.bandwidth)} found; allowed: one "
-                    f"number, or one for each control loop ({', '.join(names)})"
-                ]
+                f"disturbance_observer.bandwidth: values for {', '.join(self.bandwidth)} found; allowed: one "
+                f"number, or one for each control loop ({', '.join(names)})"
             )
         return [self.bandwidth[name] for name in names]
 

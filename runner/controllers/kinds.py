@@ -134,14 +134,12 @@ def guard_loops(loops: Any, _: object, robot: Robot) -> tuple[Loop, ...]:
         ConfigError: if they are no loops, or do not command every joint once.
     """
     if not (isinstance(loops, Sequence) and loops and all(isinstance(loop, Loop) for loop in loops)):
-        raise ConfigError([f"controller.kind: build gave {loops!r:.200}; it must give a tuple of Loop"])
+        raise ConfigError(f"controller.kind: build gave {loops!r:.200}; it must give a tuple of Loop")
     commanded = [range(robot.model.nq)[loop.joints] for loop in loops]
     if sorted(joints := [index for own in commanded for index in own]) != list(range(robot.model.nq)):
         raise ConfigError(
-            [
-                f"controller.kind: its loops command the joints {sorted(joints)}; together they must command each of "
-                f"the {robot.model.nq} once"
-            ]
+            f"controller.kind: its loops command the joints {sorted(joints)}; together they must command each of "
+            f"the {robot.model.nq} once"
         )
     pairs = zip(loops, commanded, strict=True)
     return tuple(replace(loop, controller=guard_law(loop.controller, len(own))) for loop, own in pairs)
@@ -202,5 +200,5 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
         wanted = self.ask(config, module.start_posture, robot, start)
         fault = None if wanted is None else find_fault(wanted, robot.home.shape)
         if fault:
-            raise ConfigError([f"controller.kind: start_posture of '{config.kind}' gave {fault}"])
+            raise ConfigError(f"controller.kind: start_posture of '{config.kind}' gave {fault}")
         return wanted

@@ -37,10 +37,10 @@ class NotchConfig(StrictModel):
         Raises:
             ConfigError: for values that do not fit the robot's stages and joints, or no notch at all.
         """
-        frequency = by_joint("notch.frequency", self.frequency, arm)
+        frequency = by_joint("notch.frequency", self.frequency, arm.stage_joints)
         if not np.isfinite(frequency).any():
             raise ConfigError(
-                ["notch.frequency: null for every joint; take notch=none for torques as the laws ask for them"]
+                "notch.frequency: null for every joint; take notch=none for torques as the laws ask for them"
             )
         return frequency
 

@@ -17,7 +17,7 @@ def _check_points(points: Any, _: Asked) -> dict[str, FloatArray]:
     found = dict(points)
     for link, point in found.items():
         if fault := find_fault(point, (3,)):
-            raise ConfigError([f"environment.kind: its point on {quoted(link)} is {fault}"])
+            raise ConfigError(f"environment.kind: its point on {quoted(link)} is {fault}")
     return {str(link): np.array(point, dtype=np.float64) for link, point in found.items()}
 
 

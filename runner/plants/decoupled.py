@@ -94,10 +94,8 @@ def find_motion(robot: Robot, config: TorquePlantConfig) -> Motion:
     if len(robot.stages) == 1 or config.dynamics == "coupled":
         if ignore_base_rotation and len(robot.stages) > 1:
             raise ConfigError(
-                [
-                    "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
-                    "cannot; set plant.dynamics=decoupled, or plant.wrist_rotation=real"
-                ]
+                "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
+                "cannot; set plant.dynamics=decoupled, or plant.wrist_rotation=real"
             )
         arms = [ArmMotion(robot.urdf, robot.model, slice(0, robot.model.nq), viscous, coulomb)]
     else:

@@ -48,8 +48,8 @@ class FlexibleJointsConfig(StrictModel):
             ConfigError: for values that do not fit the robot's stages and joints, no spring at all, one without motor
                 or with both a motor and an armature, a motor without spring, or a spring in a joint that slides.
         """
-        springs = by_joint("plant.flexible_joints.stiffness", self.stiffness, arm)
-        motors = by_joint("plant.flexible_joints.motor_inertia", self.motor_inertia, arm)
+        springs = by_joint("plant.flexible_joints.stiffness", self.stiffness, arm.stage_joints)
+        motors = by_joint("plant.flexible_joints.motor_inertia", self.motor_inertia, arm.stage_joints)
         key, flexible, given = "plant.flexible_joints", np.isfinite(springs), np.isfinite(motors)
         problems = []
         if not flexible.any():

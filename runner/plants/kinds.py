@@ -154,7 +154,7 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
             ConfigError: see Kinds; and for bullet where PyBullet is missing.
         """
         if kind == "bullet" and not engines.has_pybullet():
-            raise ConfigError([engines.bullet_missing()])
+            raise ConfigError(engines.bullet_missing())
         return super().module(kind)
 
     def default_step(self, kind: str, tick: float, stages: int) -> float:

@@ -93,7 +93,7 @@ class Mujoco:
     def _set_names(self, names: tuple[str, ...]) -> None:
         found = tuple(self._model.joint(index).name for index in range(self._model.njnt))
         if found != names:
-            raise ConfigError([f"robot.urdf: MuJoCo has the joints {', '.join(found)}, not {', '.join(names)}"])
+            raise ConfigError(f"robot.urdf: MuJoCo has the joints {', '.join(found)}, not {', '.join(names)}")
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state; see Plant."""

@@ -86,13 +86,13 @@ class Rk4FlexibleLinksConfig(StrictModel):
         Raises:
             ConfigError: for values that do not fit its stages and joints, and a joint with both it and an armature.
         """
-        given, own = by_joint("plant.motor_inertia", self.motor_inertia, robot), robot.model.armature
+        given, own = by_joint("plant.motor_inertia", self.motor_inertia, robot.stage_joints), robot.model.armature
         twice = np.isfinite(given) & (own > 0.0)
         if twice.any():
             name, armature = robot.model.joint_names[twice.argmax()], own[twice][0]
             raise ConfigError(
-                [f"plant.motor_inertia: {name} has robot.armature={armature:g}, too, and both are its motor; give null "
-                 "here, or robot.armature=0"]
+                f"plant.motor_inertia: {name} has robot.armature={armature:g}, too, and both are its motor; give null "
+                 "here, or robot.armature=0"
             )  # fmt: skip
         return np.where(np.isfinite(given), given, own)
 
@@ -107,10 +107,8 @@ class Rk4FlexibleLinksConfig(StrictModel):
         least, *_, most = np.linalg.eigvalsh(M)
         if least < _LIGHTEST * most:
             raise ConfigError(
-                [
-                    "plant.links: parts between springs have next to no inertia, and no step follows them; take "
-                    "more mass along the links, or plant.segments=1"
-                ]
+                "plant.links: parts between springs have next to no inertia, and no step follows them; take "
+                "more mass along the links, or plant.segments=1"
             )
         return chain
 

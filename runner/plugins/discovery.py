@@ -105,7 +105,7 @@ def load(group: str, name: str, module: str) -> ModuleType:
         if module.startswith("runner."):
             raise
         raise ConfigError(
-            [f"{group} {name}: module {module} cannot be imported: {describe_part_error(error)}"]
+            f"{group} {name}: module {module} cannot be imported: {describe_part_error(error)}"
         ) from error
 
 

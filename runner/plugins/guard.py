@@ -38,7 +38,7 @@ def fail_run(asked: Asked, fault: str) -> NoReturn:
 
 def refuse(asked: Asked, fault: str) -> NoReturn:
     """Refuse the config of the part because of a fault."""
-    raise ConfigError([f"{asked.guard.group}.kind: its {asked.name}: {fault}"])
+    raise ConfigError(f"{asked.guard.group}.kind: its {asked.name}: {fault}")
 
 
 def unchecked(answer: Any, *_: object) -> Any:

@@ -35,7 +35,7 @@ def added_families() -> list[ModuleType]:
 def _load(name: str, place: str) -> ModuleType:
     module = load("metric", name, place)
     if not (isinstance(getattr(module, "UNITS", None), Mapping) and callable(getattr(module, "evaluate", None))):
-        raise ConfigError([f"metric {name}: module {place} needs UNITS, a unit for each name, and evaluate"])
+        raise ConfigError(f"metric {name}: module {place} needs UNITS, a unit for each name, and evaluate")
     return module
 
 

@@ -82,10 +82,8 @@ class Kinds:
         model = module.CONFIG if isinstance(module, HasConfig) else None
         if not (isinstance(model, type) and issubclass(model, StrictModel)):
             raise ConfigError(
-                [
-                    f"{self.group}.kind: module {module.__name__} of '{kind}' needs CONFIG, a class derived from "
-                    f"runner.schema.model.StrictModel; found {model!r}"
-                ]
+                f"{self.group}.kind: module {module.__name__} of '{kind}' needs CONFIG, a class derived from "
+                f"runner.schema.model.StrictModel; found {model!r}"
             )
         return model
 
@@ -106,9 +104,9 @@ class Kinds:
         modules = self._modules if kind in self._modules else self._plugins()
         if kind not in modules:
             if former := explain_value(self.group, kind):
-                raise ConfigError([f"{self.group}.kind: {former}"])
+                raise ConfigError(f"{self.group}.kind: {former}")
             known = ", ".join(self.names()) or f"none, until a plug-in is named: --plugin {self.group}=FILE.py"
-            raise ConfigError([f"{self.group}.kind: '{kind}' is unknown{nearest(kind, self.names())}; known: {known}"])
+            raise ConfigError(f"{self.group}.kind: '{kind}' is unknown{nearest(kind, self.names())}; known: {known}")
         return load(self.group, kind, modules[kind])
 
     def _plugins(self) -> dict[str, str]:
@@ -157,5 +155,5 @@ class Registry(Kinds, Generic[C, P, T]):
             raise
         except Exception as error:
             raise ConfigError(
-                [f"{self.group}.kind: '{config.kind}' cannot be built: {describe_part_error(error)}"]
+                f"{self.group}.kind: '{config.kind}' cannot be built: {describe_part_error(error)}"
             ) from error

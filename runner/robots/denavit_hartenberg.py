@@ -115,14 +115,12 @@ def denavit_hartenberg(model: RobotModel) -> tuple[DenavitHartenbergRow, ...]:
     origins = model.frame_poses(home, model.joint_names)[:, :3, 3]
     still = [name for name, axis in zip(model.joint_names, axes, strict=True) if np.linalg.norm(axis) < 0.5]
     if still:
-        raise ConfigError([f"robot.tip: joint {', '.join(still)} does not move the tip; D-H needs a chain up to it"])
+        raise ConfigError(f"robot.tip: joint {', '.join(still)} does not move the tip; D-H needs a chain up to it")
     size = max(1.0, float(np.abs(origins).max()))
     if np.linalg.norm(axes[0] - [0.0, 0.0, 1.0]) > _TOLERANCE or np.hypot(*origins[0][:2]) > _TOLERANCE * size:
         raise ConfigError(
-            [
-                f"robot.urdf: joint '{model.joint_names[0]}' turns about {np.round(axes[0], 6).tolist()} through "
-                f"{np.round(origins[0], 6).tolist()} m; D-H parameters need the z axis of the base"
-            ]
+            f"robot.urdf: joint '{model.joint_names[0]}' turns about {np.round(axes[0], 6).tolist()} through "
+            f"{np.round(origins[0], 6).tolist()} m; D-H parameters need the z axis of the base"
         )
     poses = [np.eye(4)]
     for axis, origin in zip(axes[1:], origins[1:], strict=True):
@@ -132,10 +130,8 @@ def denavit_hartenberg(model: RobotModel) -> tuple[DenavitHartenbergRow, ...]:
     missing = float(np.abs(frames(rows, home)[-1] - poses[-1]).max())
     if missing > _TOLERANCE * size:
         raise ConfigError(
-            [
-                f"robot.tip: the tip frame is off by {missing:.3g} from the nearest D-H frame; its x axis must meet "
-                f"the axis of joint '{model.joint_names[-1]}' at a right angle. Turn the tip frame in the URDF"
-            ]
+            f"robot.tip: the tip frame is off by {missing:.3g} from the nearest D-H frame; its x axis must meet "
+            f"the axis of joint '{model.joint_names[-1]}' at a right angle. Turn the tip frame in the URDF"
         )
     return rows
 

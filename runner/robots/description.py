@@ -54,7 +54,7 @@ def find_file(key: str, name: str, config_dirs: Sequence[Path] = ()) -> Path:
         ConfigError: if no such file exists, which names the places searched, or a name or link leads out of these.
     """
     if ".." in Path(name).parts:
-        raise ConfigError([f"{key}: '{name}' leads out of its folder; put the file there, or give its whole path"])
+        raise ConfigError(f"{key}: '{name}' leads out of its folder; put the file there, or give its whole path")
     places = [place for folder in config_dirs for place in (folder / "robots", folder)] + [robots_dir()]
     candidates = [Path(name)] if Path(name).is_absolute() else [place / name for place in places]
     for candidate in candidates:
@@ -65,7 +65,7 @@ def find_file(key: str, name: str, config_dirs: Sequence[Path] = ()) -> Path:
     own = sorted(path.name for path in robots_dir().glob("*.urdf" if key == "robot.urdf" else "*.xml"))
     ours = f"; ours: {', '.join(own)}" if own else ""
     raise ConfigError(
-        [f"{key}: no file '{name}'{nearest(name, own)}; looked in {', '.join(str(c.parent) for c in candidates)}{ours}"]
+        f"{key}: no file '{name}'{nearest(name, own)}; looked in {', '.join(str(c.parent) for c in candidates)}{ours}"
     )
 
 

@@ -83,7 +83,7 @@ def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) ->
     sets = read_sets("robot.inertials", set_file(urdf), _InertialSet)
     if name not in sets:
         there = f"sets: {', '.join(sets)}" if sets else f"there is no {set_file(urdf).name}; allowed: null"
-        raise ConfigError([f"robot.inertials: no set '{name}'{nearest(name, sets)}; {there}"])
+        raise ConfigError(f"robot.inertials: no set '{name}'{nearest(name, sets)}; {there}")
     strange = [link for link in sets[name].links if link not in links]
     if strange:
         raise ConfigError(
@@ -107,7 +107,7 @@ def read_sets(key: str, path: Path, kind: type[T]) -> dict[str, T]:
     try:
         return TypeAdapter(dict[str, kind]).validate_python(read_yaml(read_text(path, STORED.size), path))  # type: ignore[valid-type]
     except (YamlError, ExcessError, UnicodeDecodeError) as error:
-        raise ConfigError([f"{key}: {path} cannot be read: {error}"]) from error
+        raise ConfigError(f"{key}: {path} cannot be read: {error}") from error
     except ValidationError as error:
         raise ConfigError(
             f"{key}: {path}: {'.'.join(map(str, problem['loc']))}: {problem['msg']}; found {quoted(problem['input'])}"
@@ -135,10 +135,8 @@ def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
     """
     if payload.link not in links:
         raise ConfigError(
-            [
-                f"robot.payload: the tip frame '{payload.link}' is no link{nearest(payload.link, links)}; a payload "
-                f"needs one: add a massless link there, fixed. Links: {', '.join(links)}"
-            ]
+            f"robot.payload: the tip frame '{payload.link}' is no link{nearest(payload.link, links)}; a payload "
+            f"needs one: add a massless link there, fixed. Links: {', '.join(links)}"
         )
     link = links[payload.link]
     frame, own = place_of(link.find("inertial")), _own_inertia(link)
@@ -292,10 +290,8 @@ def _of_set(tree: UrdfTree, path: Path, name: str) -> dict[str, float]:
     if name not in sets:
         there = f"sets: {', '.join(sets)}" if sets else f"there is no {armature_file(path).name}"
         raise ConfigError(
-            [
-                f"robot.armature: no set '{name}'{nearest(name, sets)}; {there}. Allowed: a number of 0 or more, in "
-                "kg m^2, a list with one for each joint, or the name of a set"
-            ]
+            f"robot.armature: no set '{name}'{nearest(name, sets)}; {there}. Allowed: a number of 0 or more, in "
+            "kg m^2, a list with one for each joint, or the name of a set"
         )
     values, joints = sets[name].joints, tree.chain
     strange = [joint for joint in values if joint not in joints]

@@ -82,10 +82,8 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
     if distance <= _REACHED:
         return q
     raise ConfigError(
-        [
-            f"trajectory.start: no posture found that brings the tip to {np.round(target, 6).tolist()} m; "
-            f"{distance:.3g} m are left{_where(model, target, q)}. Choose another start"
-        ]
+        f"trajectory.start: no posture found that brings the tip to {np.round(target, 6).tolist()} m; "
+        f"{distance:.3g} m are left{_where(model, target, q)}. Choose another start"
     )
 
 
@@ -124,11 +122,9 @@ def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> Flo
         return q
     turn = pin.log3(pose[:3, :3])
     raise ConfigError(
-        [
-            f"trajectory.start: no posture found that brings the tip to {np.round(pose[:3, 3], 6).tolist()} m with "
-            f"the rotation vector {np.round(turn, 4).tolist()} rad; {np.linalg.norm(error[:3]):.3g} m and "
-            f"{np.linalg.norm(error[3:]):.3g} rad are left{_where(model, pose[:3, 3], q)}. Choose another start"
-        ]
+        f"trajectory.start: no posture found that brings the tip to {np.round(pose[:3, 3], 6).tolist()} m with "
+        f"the rotation vector {np.round(turn, 4).tolist()} rad; {np.linalg.norm(error[:3]):.3g} m and "
+        f"{np.linalg.norm(error[3:]):.3g} rad are left{_where(model, pose[:3, 3], q)}. Choose another start"
     )
 
 

@@ -49,18 +49,16 @@ def _check_nominal(nominal: Any, _: object, robot: Robot, *__: object) -> Robot:
             finite.
     """
     if not isinstance(nominal, Robot):
-        raise ConfigError([f"mismatch.kind: build gave {nominal!r:.200}; it must give a Robot"])
+        raise ConfigError(f"mismatch.kind: build gave {nominal!r:.200}; it must give a Robot")
     if nominal.stage_names != robot.stage_names or nominal.model.joint_names != robot.model.joint_names:
         raise ConfigError(
-            [
-                "mismatch.kind: build gave a robot with other stages or joints: "
-                f"{', '.join(nominal.model.joint_names)}; they must be {', '.join(robot.model.joint_names)}"
-            ]
+            "mismatch.kind: build gave a robot with other stages or joints: "
+            f"{', '.join(nominal.model.joint_names)}; they must be {', '.join(robot.model.joint_names)}"
         )
     for model in (nominal.model, *(stage.model for stage in nominal.stages)):
         lengths = [placement.translation for placement in model.pin_model.jointPlacements]
         if not all(np.isfinite(part).all() for part in (model.inertial_parameters, model.gravity, np.array(lengths))):
-            raise ConfigError(["mismatch.kind: build gave a robot with masses or lengths that are not finite"])
+            raise ConfigError("mismatch.kind: build gave a robot with masses or lengths that are not finite")
     return nominal
 
 

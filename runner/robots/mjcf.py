@@ -110,7 +110,7 @@ def _refuse(path: Path, problems: Iterator[str]) -> None:
 
 
 def _refused(path: Path, error: Exception) -> ConfigError:
-    return ConfigError([f"robot.mjcf: {path}: MuJoCo does not take it: {' '.join(str(error).split())}"])
+    return ConfigError(f"robot.mjcf: {path}: MuJoCo does not take it: {' '.join(str(error).split())}")
 
 
 def _leave_shapes_that_weigh(spec: Any) -> None:

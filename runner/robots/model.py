@@ -252,7 +252,7 @@ def _build(urdf: str) -> "pin.Model":
     if said:  # of a shape that is unknown to Pinocchio: none is part of a model
         model, said = _read(_without_shapes(urdf))
     if said:
-        raise ConfigError([f"robot.urdf: Pinocchio does not take it as it is: {' '.join(said)}"])
+        raise ConfigError(f"robot.urdf: Pinocchio does not take it as it is: {' '.join(said)}")
     return model
 
 
@@ -273,7 +273,7 @@ def _read(urdf: str) -> "tuple[pin.Model, list[str]]":
         with caught_output(2, _SAID) as said:
             return pin.buildModelFromXML(urdf), said
     except (ValueError, RuntimeError) as error:
-        raise ConfigError([f"robot.urdf: Pinocchio cannot build it: {' '.join([str(error), *said])}"]) from error
+        raise ConfigError(f"robot.urdf: Pinocchio cannot build it: {' '.join([str(error), *said])}") from error
 
 
 def _without_shapes(urdf: str) -> str:

@@ -40,20 +40,16 @@ def mount(macro: str, mini: str, prefix: str, place: Mount) -> tuple[str, str]:
     links = _names(whole, "link")
     if place.frame not in links:
         raise ConfigError(
-            [
-                f"robot.stages.{prefix.rstrip('_')}.mount.frame: no link '{place.frame}'{nearest(place.frame, links)}; "
-                f"links: {', '.join(links)}"
-            ]
+            f"robot.stages.{prefix.rstrip('_')}.mount.frame: no link '{place.frame}'{nearest(place.frame, links)}; "
+            f"links: {', '.join(links)}"
         )
     _rename(mounted, prefix)
     for kind in ("link", "joint"):
         twice = sorted(set(_names(whole, kind)) & set(_names(mounted, kind)))
         if twice:
             raise ConfigError(
-                [
-                    f"robot.stages.{prefix.rstrip('_')}: the {kind} name {twice[0]} stands in the carrying arm "
-                    "already; name the stage differently"
-                ]
+                f"robot.stages.{prefix.rstrip('_')}: the {kind} name {twice[0]} stands in the carrying arm "
+                "already; name the stage differently"
             )
     children = {child.get("link") for child in mounted.findall("joint/child")}
     root = next(name for name in _names(mounted, "link") if name not in children)

@@ -1,6 +1,6 @@
 """Robot as a chain of stages: one arm, or several arms mounted on each other; values by joint."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.robots.joint_dynamics import FileDynamics
 from runner.robots.model import RobotModel
-from runner.schema.values import OptionalPerStage, by_stage, expand
+from runner.schema.values import OptionalPerStage, TorquePerStage, by_stage, expand
 
 
 @dataclass(frozen=True)
@@ -65,6 +65,11 @@ class Robot:
     def stage_names(self) -> tuple[str, ...]:
         """Names of the stages."""
         return tuple(stage.name for stage in self.stages)
+
+    @property
+    def stage_joints(self) -> dict[str, tuple[str, ...]]:
+        """Joint names of each stage."""
+        return {stage.name: stage.model.joint_names for stage in self.stages}
 
     def reach(self) -> float:
         """Largest distance of the tip from the first joint that the link lengths admit, in m."""
@@ -170,16 +175,19 @@ def _frame_positions(model: RobotModel, q: Sequence[FloatArray] | FloatArray, fr
     return positions
 
 
-def by_joint(key: str, value: OptionalPerStage, arm: Robot) -> FloatArray:
+def by_joint(key: str, value: TorquePerStage | OptionalPerStage, stages: Mapping[str, Sequence[str]]) -> FloatArray:
     """Return a key's value of each joint of a robot, shape (nq,); infinite for null.
+
+    Args:
+        key: The key.
+        value: Its value.
+        stages: Joint names of each stage.
 
     Raises:
         ConfigError: for values that do not fit the robot's stages and joints.
     """
-    if value is None:
-        return np.full(arm.model.nq, np.inf)
     values: list[float | None] = []
-    for stage, given in zip(arm.stages, by_stage(key, value, arm.stage_names), strict=True):
-        at = f"{key}.{stage.name}" if len(arm.stages) > 1 else key
-        values += expand(at, given, stage.model.joint_names)  # type: ignore[arg-type]
+    given = [None] * len(stages) if value is None else by_stage(key, value, list(stages))
+    for (name, joints), own in zip(stages.items(), given, strict=True):
+        values += expand(f"{key}.{name}" if len(stages) > 1 else key, own, joints)  # type: ignore[arg-type]
     return np.array([np.inf if each is None else each for each in values])

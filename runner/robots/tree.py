@@ -77,11 +77,9 @@ def check_tip(tip: str, frames: Sequence[str]) -> None:
         ConfigError: if it is the name of none, or of several.
     """
     if tip not in frames:
-        raise ConfigError([f"robot.tip: no frame '{tip}'{nearest(tip, frames)}; frames: {', '.join(frames)}"])
+        raise ConfigError(f"robot.tip: no frame '{tip}'{nearest(tip, frames)}; frames: {', '.join(frames)}")
     if frames.count(tip) > 1:
-        raise ConfigError(
-            [f"robot.tip: '{tip}' is the name of {frames.count(tip)} links and joints; rename all but one"]
-        )
+        raise ConfigError(f"robot.tip: '{tip}' is the name of {frames.count(tip)} links and joints; rename all but one")
 
 
 def end_of(joint: ET.Element, role: str) -> str:
@@ -118,12 +116,10 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
     """
     links = {link.get("name", ""): link for link in robot.findall("link")}
     if robot.tag != "robot" or not links:
-        raise ConfigError([f"robot.urdf: {path} is no URDF: it needs a <robot> with links"])
+        raise ConfigError(f"robot.urdf: {path} is no URDF: it needs a <robot> with links")
     if path.suffix == ".xacro" or any(element.tag.startswith(_XACRO) for element in robot.iter()):
         made = f"{path.name.removesuffix('.xacro').removesuffix('.urdf')}{'_made' * (path.suffix == '.urdf')}.urdf"
-        raise ConfigError(
-            [f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro {path.name} > {made}"]
-        )
+        raise ConfigError(f"robot.urdf: {path} holds xacro macros; make a URDF of it first: xacro {path.name} > {made}")
     robot.set("name", robot.get("name") or path.stem)
     renamed = _rename_joints(robot, links)
     joints = {joint.get("name", ""): joint for joint in robot.findall("joint")}
@@ -180,12 +176,12 @@ def parse_xml(path: Path, key: str = "robot.urdf") -> ET.Element:
         text = read_text(path, XML)
         return ET.fromstring(text, parser=ET.XMLParser(target=_Builder()))  # noqa: S314 - no entities, see there
     except ExcessError as error:
-        raise ConfigError([f"{key}: {path} {error}"]) from error
+        raise ConfigError(f"{key}: {path} {error}") from error
     except (ET.ParseError, ValueError) as error:
         hint = "; xacro macros? Make a URDF of it first" if "unbound prefix" in str(error) else ""
-        raise ConfigError([f"{key}: {path} is no XML: {error}{hint}"]) from error
+        raise ConfigError(f"{key}: {path} is no XML: {error}{hint}") from error
     except OSError as error:
-        raise ConfigError([f"{key}: {path} cannot be read: {error.strerror or error}"]) from error
+        raise ConfigError(f"{key}: {path} cannot be read: {error.strerror or error}") from error
 
 
 def is_mjcf(path: Path) -> bool:

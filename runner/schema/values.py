@@ -11,6 +11,8 @@ from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
 from runner.schema.units import JointDamping, JointTorque
 
+T = TypeVar("T")
+
 PositivePerJoint = PositiveFloat | list[PositiveFloat]
 NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]
 
@@ -37,12 +39,9 @@ def expand(key: str, value: float | list[float], joints: Sequence[str]) -> list[
         return [value] * len(joints)
     if len(value) != len(joints):
         raise ConfigError(
-            [f"{key}: {len(value)} values for {len(joints)} joints ({', '.join(joints)}); found {quoted(value)}"]
+            f"{key}: {len(value)} values for {len(joints)} joints ({', '.join(joints)}); found {quoted(value)}"
         )
     return value
-
-
-T = TypeVar("T")
 
 
 def _finite(value: Any) -> float:
@@ -61,19 +60,18 @@ def _number(value: Any, zero_allowed: bool) -> float:
 
 
 def _per_stage(check: Any) -> BeforeValidator:
+    def of_stage(stage: object, value: Any) -> Any:
+        try:
+            return check(value)
+        except ValueError as error:
+            raise ValueError(f"{stage} {error}") from None
+
     def parse(value: Any) -> Any:
         if isinstance(value, Mapping):
-            return {str(stage): _of_stage(check, stage, item) for stage, item in value.items()}
+            return {str(stage): of_stage(stage, item) for stage, item in value.items()}
         return check(value)
 
     return BeforeValidator(parse)
-
-
-def _of_stage(check: Any, stage: Any, value: Any) -> Any:
-    try:
-        return check(value)
-    except ValueError as error:
-        raise ValueError(f"{stage} {error}") from None
 
 
 def _torque(value: Any) -> float | list[float]:
@@ -119,11 +117,11 @@ def by_stage(key: str, value: T | Mapping[str, T], stages: Sequence[str]) -> lis
     names = ", ".join(stages)
     if not isinstance(value, Mapping):
         if len(stages) > 1:
-            raise ConfigError([f"{key}: needs a value for each stage ({names}); found {quoted(value)} for all"])
+            raise ConfigError(f"{key}: needs a value for each stage ({names}); found {quoted(value)} for all")
         return [value]
     if len(stages) == 1:
         raise ConfigError(
-            [f"{key}: the robot has one stage ({names}) and takes one value; found {quoted(dict(value))} by stage"]
+            f"{key}: the robot has one stage ({names}) and takes one value; found {quoted(dict(value))} by stage"
         )
     problems = [
         f"{key}.{name}: no such stage{nearest(name, stages)}; stages: {names}" for name in value if name not in stages

@@ -27,18 +27,14 @@ def touches_by_tip(config: RunConfig) -> bool:
     """
     if config.ignore_base_rotation:
         raise ConfigError(
-            [
-                "environment.kind: a wall is touched where rigid bodies bring the tip, and "
-                "plant.wrist_rotation=parallel leaves the rider's base unturned; set plant.wrist_rotation=real, or "
-                "environment=free"
-            ]
+            "environment.kind: a wall is touched where rigid bodies bring the tip, and "
+            "plant.wrist_rotation=parallel leaves the rider's base unturned; set plant.wrist_rotation=real, or "
+            "environment=free"
         )
     if config.plant.kind == "bullet" and config.arm.model.armature.any():
         raise ConfigError(
-            [
-                "environment.kind: a wall found together with robot.armature, which PyBullet's contacts do not know; "
-                "take plant=mujoco, robot.armature=0, or environment=free"
-            ]
+            "environment.kind: a wall found together with robot.armature, which PyBullet's contacts do not know; "
+            "take plant=mujoco, robot.armature=0, or environment=free"
         )
     return config.robot.tool is None and PLANTS.commands(config.plant.kind) == "torque"
 
@@ -59,10 +55,8 @@ def add_wall(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
         return wall
     if wall.config.friction:
         raise ConfigError(
-            [
-                f"environment.friction: {wall.config.friction:g} found, and plant={config.plant.kind} makes the "
-                "contact of a tool without friction; take 0, robot.tool=null (the tip touches), or plant=rk4"
-            ]
+            f"environment.friction: {wall.config.friction:g} found, and plant={config.plant.kind} makes the "
+            "contact of a tool without friction; take 0, robot.tool=null (the tip touches), or plant=rk4"
         )
     wall.reset(config.path.start)
     tool = config.robot.tool

@@ -125,7 +125,7 @@ def _validated(composed: Composed, part: UserPlugin) -> RunConfig:
     kind = law.get("kind") if isinstance(law, Mapping) else law
     if kind != part.name or CONTROLLERS.is_ours(part.name):
         must = f"must be '{part.name}', as the file is called, and that no name of a law of ours"
-        raise ConfigError([f"controller.kind: {must}; found '{kind}'"])
+        raise ConfigError(f"controller.kind: {must}; found '{kind}'")
     return validate(composed)
 
 
@@ -150,7 +150,7 @@ def _first_ticks(config: RunConfig) -> Tick:
         whole.close()
     failure = trace.failure
     if failure is not None and not failure.reason.startswith("diverged"):
-        raise ConfigError([f"at {failure.time:g} s: {failure.reason}"])
+        raise ConfigError(f"at {failure.time:g} s: {failure.reason}")
     return Tick(config.timing.tick, float(np.median(trace.tick_seconds)), None if failure is None else failure.time)
 
 

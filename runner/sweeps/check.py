@@ -131,7 +131,7 @@ def _names(config: RunConfig, block: Block) -> Texts:
 
 def _check_alike(first: RunConfig, other: RunConfig) -> None:
     if _shared(first) != _shared(other):
-        raise ConfigError(["outputs, sweep.*, limits.*, caveats.*, spec.*: must have one value in all runs of a sweep"])
+        raise ConfigError("outputs, sweep.*, limits.*, caveats.*, spec.*: must have one value in all runs of a sweep")
 
 
 def _shared(config: RunConfig) -> tuple[object, ...]:

@@ -54,7 +54,7 @@ class Engine:
 
     def __post_init__(self) -> None:
         if isinstance(self.workers, bool) or not isinstance(self.workers, int) or self.workers < 0:
-            raise ConfigError([f"hydra.sweeper.workers: must be a whole number, 0 or more; found {self.workers!r}"])
+            raise ConfigError(f"hydra.sweeper.workers: must be a whole number, 0 or more; found {self.workers!r}")
 
 
 @dataclass(frozen=True)

@@ -94,7 +94,7 @@ def _check_ranges(overrides: Sequence[Override]) -> None:
 
 def _check_cells(cells: float) -> None:
     if excess := CELLS.excess(cells):
-        raise ConfigError([f"the sweep {excess}; sweep over fewer values"])
+        raise ConfigError(f"the sweep {excess}; sweep over fewer values")
 
 
 def _read(override: Override, groups: Sequence[str]) -> SweptKey:

@@ -139,10 +139,8 @@ def joint_motion(config: FromFileConfig, robot: Robot) -> JointMotion | None:
     names = robot.model.joint_names
     if len(positions) != len(names):
         raise ConfigError(
-            [
-                f"trajectory.file: has {len(positions)} joints, q1 to q{len(positions)}; the robot has {len(names)}: "
-                f"{', '.join(names)}"
-            ]
+            f"trajectory.file: has {len(positions)} joints, q1 to q{len(positions)}; the robot has {len(names)}: "
+            f"{', '.join(names)}"
         )
     motion = config.motion()
     return JointRows(motion.times, motion.orders)

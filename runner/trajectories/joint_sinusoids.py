@@ -156,7 +156,7 @@ def _draw(amplitude: FloatArray, harmonics: int, generator: np.random.Generator)
 def _check(coefficients: list[list[Pair]], harmonics: int, names: tuple[str, ...]) -> None:
     key = "trajectory.coefficients"
     if len(coefficients) != len(names):
-        raise ConfigError([f"{key}: {len(coefficients)} lists for {len(names)} joints ({', '.join(names)})"])
+        raise ConfigError(f"{key}: {len(coefficients)} lists for {len(names)} joints ({', '.join(names)})")
     problems = [
         f"{key}.{joint}: {len(own)} pairs for trajectory.harmonics, {harmonics}"
         for joint, own in enumerate(coefficients)

@@ -92,7 +92,7 @@ def joint_motion(config: JointWaypointsConfig, robot: Robot) -> JointMotion:
         index = int(np.argmin(lengths))
         before = f"trajectory.configurations.{index - 1}" if index else "the start"
         raise ConfigError(
-            [f"trajectory.configurations.{index}: is the same as {before}; two in succession must differ. Take one out"]
+            f"trajectory.configurations.{index}: is the same as {before}; two in succession must differ. Take one out"
         )
     times = passing_times(lengths, config.time_shares, config.duration)
     return JointWaypoints(least_jerk_spline(configurations, times), config.duration, _SAMPLES * len(given))

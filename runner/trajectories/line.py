@@ -84,7 +84,5 @@ def build(config: LineConfig, start: FloatArray) -> Trajectory:
     """
     end = np.array(config.goal)
     if np.array_equal(start, end):
-        raise ConfigError(
-            [f"trajectory.goal: {config.goal} m is the start, and a line leads elsewhere. Choose another"]
-        )
+        raise ConfigError(f"trajectory.goal: {config.goal} m is the start, and a line leads elsewhere. Choose another")
     return Line(start, end, config.duration)

@@ -147,9 +147,7 @@ def build(config: WaypointsConfig, start: FloatArray) -> Trajectory:
         index = int(np.argmin(lengths))
         before = f"trajectory.points.{index - 1}" if index else "the start"
         raise ConfigError(
-            [
-                f"trajectory.points.{index}: lies where {before} does, at {points[index].tolist()} m; two in "
-                "succession must differ. Take one out"
-            ]
+            f"trajectory.points.{index}: lies where {before} does, at {points[index].tolist()} m; two in "
+            "succession must differ. Take one out"
         )
     return minimum_jerk(points, passing_times(lengths, config.time_shares, config.duration))

@@ -108,7 +108,7 @@ class Weighing:
             return candidates[choose_orientations(orientations, config.orientations)]
         if len(candidates) < config.orientations:
             raise ConfigError(
-                [f"calibration.candidates: {len(candidates)} are left for {config.orientations} orientations"]
+                f"calibration.candidates: {len(candidates)} are left for {config.orientations} orientations"
             )
         return candidates[: config.orientations]
 
@@ -125,7 +125,7 @@ class Weighing:
             settling = int(np.ceil(-np.log(_SETTLED) / (2.0 * np.pi * config.low_pass * period)))
         each = settling + samples
         if excess := READINGS.excess(each * len(self._loads)):
-            raise ConfigError([f"calibration: it {excess}; take fewer samples or orientations, or a higher low_pass"])
+            raise ConfigError(f"calibration: it {excess}; take fewer samples or orientations, or a higher low_pass")
         sensor = ForceTorqueSensor(each * len(self._loads), period, config, generator)
         readings = np.array(
             [

@@ -49,7 +49,7 @@ def touching_postures(bench: Bench, tip: FloatArray, config: TouchingConfig) -> 
     middle = bench.home if config.posture is None else np.array(config.posture)
     if middle.shape != bench.home.shape:
         raise ConfigError(
-            [f"calibration.posture: must have {bench.home.size} values, or be null; found {quoted(config.posture)}"]
+            f"calibration.posture: must have {bench.home.size} values, or be null; found {quoted(config.posture)}"
         )
     central = bench.flange.tip_pose(middle)
     point = central[:3, :3] @ tip + central[:3, 3]
@@ -63,10 +63,8 @@ def touching_postures(bench: Bench, tip: FloatArray, config: TouchingConfig) -> 
             postures.append(solve_tip_pose(bench.flange, pose, middle))
         except ConfigError:
             raise ConfigError(
-                [
-                    f"calibration.spread: {config.spread:g} rad is more than the arm can do with the tip at "
-                    f"{np.round(point, 4).tolist()} m: pose {number + 1} of {config.poses} is out of its reach or its "
-                    "joint limits; take a smaller spread, or another posture"
-                ]
+                f"calibration.spread: {config.spread:g} rad is more than the arm can do with the tip at "
+                f"{np.round(point, 4).tolist()} m: pose {number + 1} of {config.poses} is out of its reach or its "
+                "joint limits; take a smaller spread, or another posture"
             ) from None
     return np.array(postures)

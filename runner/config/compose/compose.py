@@ -152,11 +152,11 @@ def take_data_file(resolved: Mapping[str, object], config_dirs: Sequence[Path]) 
 
 def _find(name: str, config_dirs: Sequence[Path]) -> Path:
     if ".." in Path(name).parts:
-        raise ConfigError([f"trajectory.file: '{name}' leads out of its folder; give its whole path"])
+        raise ConfigError(f"trajectory.file: '{name}' leads out of its folder; give its whole path")
     places = [Path(name)] if Path(name).is_absolute() else [folder / name for folder in (*config_dirs, Path.cwd())]
     for place in places:
         if place.is_file():
             check_inside(place, config_dirs)
             return place
     searched = ", ".join(str(each.parent) for each in places)
-    raise ConfigError([f"trajectory.file: no file '{name}'; looked in {searched}"])
+    raise ConfigError(f"trajectory.file: no file '{name}'; looked in {searched}")

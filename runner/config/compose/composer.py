@@ -90,7 +90,7 @@ class Composer:
             raise explain(error, self.config_dirs) from None
         except (TypeError, KeyError, IndexError, AttributeError, AssertionError) as error:
             found = f"{type(error).__name__} {error}".strip()
-            raise ConfigError([f"Hydra cannot compose the config: {found}; look at what is unusual in it"]) from error
+            raise ConfigError(f"Hydra cannot compose the config: {found}; look at what is unusual in it") from error
         return config
 
     def sweeper(self, overrides: Sequence[str]) -> DictConfig:
@@ -147,7 +147,7 @@ def check_composed(config: DictConfig) -> None:
         value = OmegaConf.select(config, f"hydra.sweeper.{key}")
         found = OmegaConf.to_container(value, resolve=True) if OmegaConf.is_config(value) else value
         if not isinstance(found, kind | None):
-            raise ConfigError([f"hydra.sweeper.{key}: must be {wanted}, or null; found {quoted(found)}"])
+            raise ConfigError(f"hydra.sweeper.{key}: must be {wanted}, or null; found {quoted(found)}")
 
 
 def _chooses_option(override: Override, known: Sequence[str]) -> bool:

@@ -27,31 +27,31 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
     if isinstance(error, HydraException) and not str(error) and isinstance(error.__cause__, OmegaConfBaseException):
         error = error.__cause__  # Hydra adds nothing to it
     if isinstance(error, yaml.YAMLError):
-        return ConfigError([explain_yaml(error)])
+        return ConfigError(explain_yaml(error))
     if isinstance(error, MissingConfigException) and error.missing_cfg_file:
         group, _, option = str(error.missing_cfg_file).partition("/")
         known = group_options(group, config_dirs)
         if former := explain_value(group, option):
-            return ConfigError([f"{group}: {former}"])
+            return ConfigError(f"{group}: {former}")
         if known:
-            return ConfigError([f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}"])
+            return ConfigError(f"{group}: no '{option}'{nearest(option, known)}; known: {', '.join(known)}")
     if isinstance(error, OverrideParseException):
         found = one_line(f"'{error.override}'", VALUE)
         return ConfigError(
-            [f"{found} is not a valid override: {one_line(explain_parser(str(error).splitlines()[0]), VALUE)}"]
+            f"{found} is not a valid override: {one_line(explain_parser(str(error).splitlines()[0]), VALUE)}"
         )
     missing = _LACKING.match(str(error))
     if isinstance(error, InterpolationKeyError) and error.full_key and missing is not None:
         group = missing[1].partition(".")[0]
         lacks = f"it refers to {missing[1]}, which the chosen {group} lacks"
-        return ConfigError([f"{error.full_key}: {lacks}; give a value, or take another {group}"])
+        return ConfigError(f"{error.full_key}: {lacks}; give a value, or take another {group}")
     if isinstance(error, OmegaConfBaseException) and error.full_key:
-        return ConfigError([f"{error.full_key}: {str(error).splitlines()[0]}"])
+        return ConfigError(f"{error.full_key}: {str(error).splitlines()[0]}")
     if isinstance(error, RecursionError):
-        return ConfigError(["the config is nested too deeply, or a value refers to itself"])
+        return ConfigError("the config is nested too deeply, or a value refers to itself")
     text = str(error).replace("++", "")  # see `force`
     several = _AMBIGUOUS.match(text)
     if several is not None:
         given = f"{quoted(several[1])} gives several values"
-        return ConfigError([f"{given}; `runner -m` sweeps over them; write a list in brackets: KEY=[A,B]"])
-    return ConfigError([" ".join(text.split("\nSee https")[0].split("\nTo append")[0].split())])
+        return ConfigError(f"{given}; `runner -m` sweeps over them; write a list in brackets: KEY=[A,B]")
+    return ConfigError(" ".join(text.split("\nSee https")[0].split("\nTo append")[0].split()))

@@ -95,7 +95,7 @@ class CheckedSource(ConfigSource):
         """
         if config_path.startswith("/") or ".." in config_path.split("/"):
             named = f"{quoted(config_path)}: not a config in a folder; a defaults list or an override names it"
-            raise ConfigError([f"{named}; allowed: names without '..' and '/' in front"])
+            raise ConfigError(f"{named}; allowed: names without '..' and '/' in front")
         return self._file(config_path).is_file() and not self._is_hidden(config_path)
 
     def _is_hidden(self, config_path: str) -> bool:
@@ -128,7 +128,7 @@ class CheckedSource(ConfigSource):
             if self.provider == _USERS and self._has_ours(config_path):  # ambiguous name
                 group, _, option = config_path.rpartition("/")
                 raise ConfigError(
-                    [f"{group}: '{option}' is a built-in option, and {path} has the same name; rename that file"]
+                    f"{group}: '{option}' is a built-in option, and {path} has the same name; rename that file"
                 )
             _check_settings(content, config_path, package, path)
         return ConfigResult(self.provider, self.full_path(), content, {"package": package})
@@ -151,13 +151,13 @@ def _read(path: Path, *_: int) -> bytes:
             content = OmegaConf.load(file)
         return pickle.dumps((content, ConfigSource._get_header_dict(text[:_HEAD])["package"]))
     except YamlError as error:
-        raise ConfigError([str(error)]) from None
+        raise ConfigError(str(error)) from None
     except ExcessError as error:
-        raise ConfigError([f"{path}: {error}"]) from None
+        raise ConfigError(f"{path}: {error}") from None
     except UnicodeDecodeError as error:
-        raise ConfigError([f"{path}: is not a text file: {error}"]) from None
+        raise ConfigError(f"{path}: is not a text file: {error}") from None
     except OSError as error:
-        raise ConfigError([f"{path}: {error.strerror or 'holds no mapping of keys'}"]) from None
+        raise ConfigError(f"{path}: {error.strerror or 'holds no mapping of keys'}") from None
 
 
 def _check_settings(content: Any, config_path: str, package: str | None, path: Path) -> None:

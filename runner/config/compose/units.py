@@ -124,7 +124,7 @@ def with_numbers(override: str) -> str:
         units = _find_unit(place).at(place)
         found = next((found for unit in units if (found := quantity.in_unit(unit)) is not None), None)
         if found is None:
-            raise ConfigError([f"{key}: {explain_quantity(given, units)}"])
+            raise ConfigError(f"{key}: {explain_quantity(given, units)}")
         return f"{name}{equals}{found!r}"
 
     def numbers(match: re.Match[str]) -> str:

@@ -40,7 +40,7 @@ def settings_error(text: str, path: Path) -> ConfigError:
 
     where = f"set it on the command line or in {settings_path()}; allowed here: keys of {_AXES}"
     found = f"{line_with(text, path)}: {quoted(text)}"
-    return ConfigError([f"{found} controls how or where runs are simulated, which no file may do; {where}"])
+    return ConfigError(f"{found} controls how or where runs are simulated, which no file may do; {where}")
 
 
 def settings_path() -> Path:
@@ -77,9 +77,9 @@ def _read(path: Path) -> Mapping[str, str]:
     try:
         content = read_yaml(path.read_text(encoding="utf-8"), path) or {}
     except (OSError, ValueError) as error:
-        raise ConfigError([f"cannot read {path}: {error}"]) from None
+        raise ConfigError(f"cannot read {path}: {error}") from None
     for key, value in content.items() if isinstance(content, dict) else [(str(content), None)]:
         if key not in KEYS or not isinstance(value, str | int):
             known = f"{nearest(key, KEYS)}; settings: {', '.join(KEYS)}"
-            raise ConfigError([f"{line_with(key, path)}: {quoted({key: value})} is not a setting{known}"])
+            raise ConfigError(f"{line_with(key, path)}: {quoted({key: value})} is not a setting{known}")
     return {key: os.path.expanduser(str(value)) for key, value in content.items()}  # noqa: PTH111 - of a folder

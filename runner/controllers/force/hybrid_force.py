@@ -133,7 +133,7 @@ def build(config: HybridForceConfig, robot: Robot) -> tuple[Loop, ...]:
 def _unit(normal: list[float]) -> FloatArray:
     length = float(np.linalg.norm(normal))
     if abs(length - 1.0) > 1e-6:
-        raise ConfigError([f"controller.normal: must be a unit vector; found {normal}, of length {length:.7g}"])
+        raise ConfigError(f"controller.normal: must be a unit vector; found {normal}, of length {length:.7g}")
     return np.array(normal) / length
 
 
@@ -145,15 +145,11 @@ def _check_directions(task: ForceTask, normal: FloatArray) -> None:
     names = "; ".join(str(np.round(row, 6).tolist()) for row in directions)
     if along < 1.0 - 1e-6:
         raise ConfigError(
-            [
-                f"controller.normal: {task.name} cannot push along {normal.tolist()}, as its tip goes along "
-                f"{names} alone; take a normal among these"
-            ]
+            f"controller.normal: {task.name} cannot push along {normal.tolist()}, as its tip goes along "
+            f"{names} alone; take a normal among these"
         )
     if len(directions) < 2:
         raise ConfigError(
-            [
-                f"controller.normal: a force along {normal.tolist()} leaves no direction to move in, as the tip of "
-                f"{task.name} goes along {names} alone; take an arm whose tip has two directions or more"
-            ]
+            f"controller.normal: a force along {normal.tolist()} leaves no direction to move in, as the tip of "
+            f"{task.name} goes along {names} alone; take an arm whose tip has two directions or more"
         )

@@ -133,22 +133,18 @@ def _count_ticks(config: IterativeLearningConfig) -> int:
     every, period = config.repeats_every, config.period
     if every is None:
         raise ConfigError(
-            ["controller.repeats_every: null; allowed: the time in s after which the desired motion is the same again"]
+            "controller.repeats_every: null; allowed: the time in s after which the desired motion is the same again"
         )
     if every / period > _MOST_TICKS:
         raise ConfigError(
-            [
-                f"controller.repeats_every: {every:g} s are {every / period:.3g} of controller.period, {period:g} s; "
-                f"allowed: up to {_MOST_TICKS}"
-            ]
+            f"controller.repeats_every: {every:g} s are {every / period:.3g} of controller.period, {period:g} s; "
+            f"allowed: up to {_MOST_TICKS}"
         )
     ticks = round(every / period)
     if ticks < 1 or abs(ticks * period - every) > 1e-9 * every:
         raise ConfigError(
-            [
-                f"controller.repeats_every: {every:g} s is no multiple of controller.period, {period:g} s; such as "
-                f"{max(ticks, 1) * period:g}"
-            ]
+            f"controller.repeats_every: {every:g} s is no multiple of controller.period, {period:g} s; such as "
+            f"{max(ticks, 1) * period:g}"
         )
     return ticks
 

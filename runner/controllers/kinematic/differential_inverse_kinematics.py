@@ -154,10 +154,8 @@ def _expand_posture(posture: list[float], model: RobotModel) -> list[float]:
 def _check_gain(config: DifferentialInverseKinematicsConfig) -> None:
     if config.gain * config.period > 1.0 + 1e-9:
         raise ConfigError(
-            [
-                f"controller.gain: {config.gain:g} 1/s times controller.period, {config.period:g} s, is above 1: the "
-                f"error would overshoot at each tick; allowed: up to {1.0 / config.period:g}"
-            ]
+            f"controller.gain: {config.gain:g} 1/s times controller.period, {config.period:g} s, is above 1: the "
+            f"error would overshoot at each tick; allowed: up to {1.0 / config.period:g}"
         )
 
 

@@ -31,10 +31,8 @@ class LimitedMotion:
     def __init__(self, model: RobotModel, period: float, approach: float) -> None:
         if model.nq < 6:
             raise ConfigError(
-                [
-                    f"controller.kind: admittance leads the tool's pose, 6 dimensions, and the arm has {model.nq} "
-                    f"joints ({', '.join(model.joint_names)})"
-                ]
+                f"controller.kind: admittance leads the tool's pose, 6 dimensions, and the arm has {model.nq} "
+                f"joints ({', '.join(model.joint_names)})"
             )
         self._model = model.pin_model
         self._data = self._model.createData()

@@ -81,7 +81,7 @@ def build(config: MacroMiniConfig, robot: Robot) -> tuple[Loop, ...]:
     names = robot.stage_names
     if len(names) < 2:
         raise ConfigError(
-            [f"controller.kind: macro_mini couples stages and the robot has one ({names[0]}); take operational_space"]
+            f"controller.kind: macro_mini couples stages and the robot has one ({names[0]}); take operational_space"
         )
     periods = by_stage("controller.period", config.period, names)
     controllers = [_controller(config, robot, index, periods[0]) for index in range(len(names))]
@@ -101,10 +101,8 @@ def _controller(config: MacroMiniConfig, robot: Robot, index: int, macro_period:
         return HeldController(robot, index, law, ignore_base_rotation)
     if config.coupling == "inertial_damping" and ignore_base_rotation:
         raise ConfigError(
-            [
-                "controller.wrist_rotation: parallel does not tell how the base turns, which inertial_damping needs; "
-                "take real"
-            ]
+            "controller.wrist_rotation: parallel does not tell how the base turns, which inertial_damping needs; "
+            "take real"
         )
     if config.coupling == "inertial_damping":
         return InertialDamping(robot, index, law, config.damping_gain)

@@ -104,10 +104,8 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
     def __init__(self, model: RobotModel, law: WholeBodyLaw) -> None:
         if model.nq != 3:
             raise ConfigError(
-                [
-                    f"controller.kind: operational_space needs a square Jacobian of the tip position, 3 joints; "
-                    f"the arm has {model.nq} ({', '.join(model.joint_names)})"
-                ]
+                f"controller.kind: operational_space needs a square Jacobian of the tip position, 3 joints; "
+                f"the arm has {model.nq} ({', '.join(model.joint_names)})"
             )
         k_p, k_v = law.natural_frequency**2, 2.0 * law.damping_ratio * law.natural_frequency
         weights = np.array([k_p, k_v, 1.0]) if law.feedforward else np.array([k_p, 0.0, 0.0])
@@ -199,10 +197,8 @@ def build(config: OperationalSpaceConfig, robot: Robot) -> tuple[Loop, ...]:
     names = robot.stage_names
     if len(names) > 1:
         raise ConfigError(
-            [
-                f"controller.kind: operational_space controls one arm; the robot has {robot.model.nq} joints in "
-                f"stages ({', '.join(names)}); take macro_mini or whole_body"
-            ]
+            f"controller.kind: operational_space controls one arm; the robot has {robot.model.nq} joints in "
+            f"stages ({', '.join(names)}); take macro_mini or whole_body"
         )
     orientation = held_orientation(config.task, robot.model, robot.home)
     (natural_frequency,) = by_stage("controller.natural_frequency", config.natural_frequency, names)

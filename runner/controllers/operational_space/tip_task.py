@@ -116,10 +116,8 @@ class TipTask:
         """
         if not 0 < self.rows <= model.nq:
             raise ConfigError(
-                [
-                    f"controller.kind: needs {self.rows or 1} joints or more to bring the tip anywhere; the arm "
-                    f"has {model.nq} ({', '.join(model.joint_names)})"
-                ]
+                f"controller.kind: needs {self.rows or 1} joints or more to bring the tip anywhere; the arm "
+                f"has {model.nq} ({', '.join(model.joint_names)})"
             )
 
     def jacobian(self, numbers: TipNumbers, tip: Tip) -> tuple[Array, Array]:
@@ -198,15 +196,9 @@ def held_orientation(task: TaskName, model: RobotModel, home: FloatArray) -> Flo
     rows, least = (len(task_basis(model, pose)) for pose in (task == "pose", False))
     if model.nq < rows or not least:
         raise ConfigError(
-            [
-                f"controller.task: {task} has {rows} dimensions, and the arm {model.nq} joints "
-                f"({', '.join(model.joint_names)}); "
-                + (
-                    "take controller.task=position"
-                    if 0 < least <= model.nq
-                    else f"it needs {least or 1} joints or more"
-                )
-            ]
+            f"controller.task: {task} has {rows} dimensions, and the arm {model.nq} joints "
+            f"({', '.join(model.joint_names)}); "
+            + ("take controller.task=position" if 0 < least <= model.nq else f"it needs {least or 1} joints or more")
         )
     return None if task == "position" else model.tip_pose(home)[:3, :3]
 

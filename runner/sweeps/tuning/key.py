@@ -41,13 +41,11 @@ class Key:
 
     def __post_init__(self) -> None:
         if not (math.isfinite(self.low) and math.isfinite(self.high)):
-            raise ConfigError([f"{self.name}: its range must be finite; found {self.low:g} to {self.high:g}"])
+            raise ConfigError(f"{self.name}: its range must be finite; found {self.low:g} to {self.high:g}")
         if self.low >= self.high:
-            raise ConfigError(
-                [f"{self.name}: its range is empty, {self.low:g} to {self.high:g}; low must be below high"]
-            )
+            raise ConfigError(f"{self.name}: its range is empty, {self.low:g} to {self.high:g}; low must be below high")
         if self.log and self.low <= 0.0:
-            raise ConfigError([f"{self.name}: on a logarithmic scale low must be above 0; found {self.low:g}"])
+            raise ConfigError(f"{self.name}: on a logarithmic scale low must be above 0; found {self.low:g}")
 
     @property
     def probes(self) -> tuple[float, ...]:
@@ -94,7 +92,7 @@ def read_key(override: Override) -> Key | None:
     if isinstance(found, RangeSweep) and not found.tags:
         values: list[Any] = list(override.sweep_iterator(Transformer.identity))
         if len(values) < 2:
-            raise ConfigError([f"{name}: its range is empty; {found.start} to {found.stop} has no two values"])
+            raise ConfigError(f"{name}: its range is empty; {found.start} to {found.stop} has no two values")
         integer = all(isinstance(value, int) for value in values)
         return Key(name, values[0], values[-1], step=abs(found.step), log=False, integer=integer)
-    raise ConfigError([f"'{override.input_line}' is not a range to tune in; ranges: {RANGES}"])
+    raise ConfigError(f"'{override.input_line}' is not a range to tune in; ranges: {RANGES}")

@@ -117,16 +117,16 @@ def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[s
     if problems:
         raise ConfigError(problems)
     if not keys:
-        raise ConfigError([f"nothing to tune; give a key a range, as in KEY={RANGES}"])
+        raise ConfigError(f"nothing to tune; give a key a range, as in KEY={RANGES}")
     return fixed, list(keys.values())
 
 
 def _read_key(override: Override, known_groups: Sequence[str]) -> Key | None:
     key = read_key(override)
     if key is not None and key.name in known_groups:
-        raise ConfigError([f"{key.name}: is a group of options, not a number"])
+        raise ConfigError(f"{key.name}: is a group of options, not a number")
     if key is not None and not is_simulated(key.name):
-        raise ConfigError([f"{key.name}: says how runs are made, not what is simulated; it cannot be tuned"])
+        raise ConfigError(f"{key.name}: says how runs are made, not what is simulated; it cannot be tuned")
     return key
 
 
@@ -158,5 +158,5 @@ def _check_ranges(loader: Composer, shared: Sequence[str], keys: Sequence[Key]) 
     if problems:
         raise ConfigError(problems, "  nothing was started")
     if checked.settings.trace not in ("auto", "all"):
-        raise ConfigError([f"sweep.trace: a tuning keeps the trace of every run; found '{checked.settings.trace}'"])
+        raise ConfigError(f"sweep.trace: a tuning keeps the trace of every run; found '{checked.settings.trace}'")
     return plan, replace(checked, names=Names.of(names))

@@ -55,7 +55,7 @@ def test_a_value_by_joint_is_worked_out_once():
         (argument.value, path.stem)
         for path in (ROOT / "runner").rglob("*.py")
         for node in nodes(path)
-        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("by_stage", "expand", "problems.attempt")
+        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("by_stage", "by_joint", "problems.attempt")
         for argument in node.args
         if isinstance(argument, ast.Constant) and argument.value in ("noise.position", "torque_limits.max")
     ]

@@ -70,10 +70,8 @@ class ThreeJointArm:
         fits = model.nq == 7 and np.allclose(self.tip(*probe), model.tip_position(self.posture(*probe)), atol=1e-9)
         if not fits:
             raise ConfigError(
-                [
-                    "controller.kind: three_joint solves the xArm7's chain with joints 1, 2 and 4; this arm's is "
-                    f"another (joints {', '.join(model.joint_names)}); take differential_inverse_kinematics"
-                ]
+                "controller.kind: three_joint solves the xArm7's chain with joints 1, 2 and 4; this arm's is "
+                f"another (joints {', '.join(model.joint_names)}); take differential_inverse_kinematics"
             )
 
     def posture(self, q1: float, q2: float, q4: float) -> FloatArray:

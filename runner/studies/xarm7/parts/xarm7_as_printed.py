@@ -100,7 +100,7 @@ class AsPrinted:
     def __init__(self, model: RobotModel, config: AsPrintedConfig, home: FloatArray) -> None:
         if model.nq != 7:
             raise ConfigError(
-                [f"controller.kind: xarm7_as_printed is of the xArm7's seven joints; the arm has {model.nq}"]
+                f"controller.kind: xarm7_as_printed is of the xArm7's seven joints; the arm has {model.nq}"
             )
         self._model = model
         self._jacobian = PrintedJacobian(model, config.columns == "printed", config.angles == "printed")
