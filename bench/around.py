@@ -24,7 +24,7 @@ from runner.simulation.provenance import job_provenance
 from runner.simulation.results import timing
 from runner.simulation.sensors import make_encoders
 from runner.store import Outcome
-from runner.store.json_texts import JsonTexts
+from runner.store.seal import JsonTexts
 from runner.store.shards import ShardRow, shard_name, write_shard
 from runner.store.writing import record_texts
 

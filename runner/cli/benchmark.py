@@ -10,7 +10,6 @@ from argparse import Namespace
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
@@ -32,7 +31,6 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Print a line for each arm, the total time, and the command that simulates the benchmark."""
-    quiet_environment()
     use_plugins([f"controller={options.law}"])
     from runner.config.compose.composer import Composer
     from runner.study.code import read_user_plugins

@@ -4,7 +4,6 @@ import sys
 from argparse import Namespace
 from typing import TYPE_CHECKING
 
-from runner.base.engines import quiet_environment
 from runner.base.quantities import plain_number
 from runner.base.sanitize import align_columns, one_line
 from runner.cli.arguments import Parser
@@ -21,7 +20,6 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Simulate one calibration; print a table of its errors, and its folder as the last line."""
-    quiet_environment()
     from runner.sweeps.job import calibrate
 
     outputs = [] if options.output is None else [f"outputs={options.output}"]

@@ -11,7 +11,6 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.quantities import plain_number
 from runner.base.sanitize import align_columns, one_line
@@ -47,7 +46,6 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Check a run or sweep against a baseline, or save one."""
-    quiet_environment()
     markdown = options.format == ["markdown"]
     from runner import store
     from runner.store.baselines import Bands, cell_names, load_baseline, save_baseline

@@ -14,12 +14,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.base.dotted_keys import dotted, leaves
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.quantities import plain_number
 from runner.base.sanitize import align_columns, one_line
 from runner.cli.arguments import Parser, Stored
-from runner.store.kinds import kind_of
+from runner.store.kinds import kind_of, open_stored
 
 if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
@@ -66,7 +65,6 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the comparison."""
-    quiet_environment()
     recordings = [path for path in options.folders if _is_recording(path)]
     if recordings or options.columns or options.fill_gaps:
         _compare_recording(options.folders, recordings, options)
@@ -78,7 +76,8 @@ def run(options: Namespace) -> int:
 def _compare(options: Namespace) -> None:
     """Print a comparison of levels, runs or sweeps."""
     from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, measure_compared
-    from runner.store import Run, Sweep, open_stored
+    from runner.store.run import Run
+    from runner.store.sweep import Sweep
     from runner.sweeps.measurements import check_metrics, find_axis, limit_sweep
 
     metrics, things = options.metrics or (), list(map(open_stored, options.folders))
@@ -195,7 +194,7 @@ def _run_lines(
 ) -> Iterator[str]:
     from runner.reporting.comparison.differences import find_differences
     from runner.reporting.comparison.pairs import match
-    from runner.store import simulated_part
+    from runner.store.stored import simulated_part
 
     a, b = (side.name for side in sides)
     for side, run in zip(sides, runs, strict=True):

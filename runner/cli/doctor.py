@@ -12,7 +12,6 @@ import shlex
 from argparse import Namespace
 from pathlib import Path
 
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
@@ -41,7 +40,6 @@ def run(options: Namespace) -> int:
         options.parser.error("--format needs --output DIR")
     if not options.file.is_file():
         raise RunnerError(f"{options.file}: no such file. Allowed: a URDF or an MJCF.")
-    quiet_environment()
     from runner.doctor.config_folder import write_folder
     from runner.doctor.examination import examine
 

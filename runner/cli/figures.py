@@ -9,7 +9,6 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser, Stored
 from runner.config.compose.user_settings import outputs_dir
@@ -43,7 +42,6 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Write the figures; print their folder as the last line."""
     width = _millimetres(options.width)
-    quiet_environment()
     from runner.reporting.charts.sheet import column
     from runner.reporting.export.figures import choose_figures, figures_of, write_figures
 

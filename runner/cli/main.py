@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import NoReturn
 
+from runner.base.engines import quiet_environment
 from runner.base.errors import DISK_FULL, RunnerError, describe_part_error, describe_write_error, unknown, user_place
 from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import show_progress
@@ -107,6 +108,7 @@ def _open_outputs() -> None:
 
 def dispatch(words: Sequence[str]) -> int:
     """Run one command line and return its exit code."""
+    quiet_environment()
     try:
         common, others = COMMON.parse_known_args(words)
         if common.plugin:

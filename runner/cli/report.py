@@ -2,7 +2,6 @@
 
 from argparse import Namespace
 
-from runner.base.engines import quiet_environment
 from runner.cli.arguments import Parser, Stored
 
 FORMATS = ("html", "pdf")
@@ -26,7 +25,6 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Write the report; print its folder as the last line."""
-    quiet_environment()
     from runner.reporting.stored import write
 
     formats = [name for name in FORMATS if name in (options.format or FORMATS)]

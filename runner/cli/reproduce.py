@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base import progress
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
@@ -87,7 +86,6 @@ def run(options: Namespace) -> int:
         raise RunnerError(f"reproduce: the study decides what it simulates ({others[0]}). Allowed: {allowed}.")
     if options.study not in (AUDIT, "all"):
         find_study(options.study, (AUDIT, "all"))  # rejects an unknown name before anything is read
-    quiet_environment()
     plugins = [word for text in named_parts() for word in ("--plugin", text)]
     command = shlex.join(["runner", *plugins, "reproduce", *options.words])
     workers = [] if options.jobs is None else [f"hydra.sweeper.workers={options.jobs}"]

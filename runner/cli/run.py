@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.base.paths import conf_dir
 from runner.cli.arguments import Parser
@@ -105,7 +104,6 @@ def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -
         config_dirs: The user's config folders.
         command: The command line; it is stored with a sweep.
     """
-    quiet_environment()
     from runner.cli.summary import print_run, print_sweep
     from runner.config.compose.compose import compose
     from runner.config.compose.composer import Composer

@@ -11,7 +11,6 @@ from math import isnan
 from typing import TYPE_CHECKING
 
 from runner.base import progress
-from runner.base.engines import quiet_environment
 from runner.base.quantities import plain_number
 from runner.base.sanitize import align_columns
 from runner.cli.arguments import Names, Parser, Stored
@@ -43,7 +42,6 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Print a table for each metric; return 1 if differences disagree."""
-    quiet_environment()
     from runner import store
     from runner.analysis.sensitivity import check_smooth, differences, of_run
 

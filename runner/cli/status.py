@@ -3,7 +3,6 @@
 import sys
 from argparse import Namespace
 
-from runner.base.engines import quiet_environment
 from runner.cli.arguments import Parser, Stored
 
 
@@ -14,7 +13,6 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the numbers of runs that are done, failed, left or have caveats, and the command that continues."""
-    quiet_environment()
     from runner.base.quantities import format_duration
     from runner.store import open_sweep
     from runner.sweeps.status import find_status

@@ -14,7 +14,6 @@ from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 
-from runner.base.engines import quiet_environment
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
@@ -59,7 +58,6 @@ def _check(options: Namespace) -> int:
     from runner.study.names import find_study
 
     find_study(options.study)  # rejects an unknown name before anything is read
-    quiet_environment()
     from runner.study.check import problems
     from runner.study.execute import make_all
     from runner.study.study import load_study

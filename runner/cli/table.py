@@ -8,7 +8,6 @@ from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError, unknown
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored
@@ -37,7 +36,6 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Write the whole table into the sweep's folder, and print the folder; or the table that the options choose."""
     chosen = _format(options)
-    quiet_environment()
     from runner import store
     from runner.store.kinds import kind_of
     from runner.sweeps.measurements import measure_sweep

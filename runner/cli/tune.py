@@ -12,7 +12,6 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from runner.base import progress
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.cli import report
 from runner.cli.arguments import Parser, count
@@ -52,7 +51,6 @@ def run(options: argparse.Namespace) -> int:
         options.parser.error("no metric to tune for. Add --minimize METRIC or --maximize METRIC.")
     if len({metric for _, metric in objectives}) < len(objectives):
         raise RunnerError("--minimize and --maximize: both have the same metric. Allowed: each metric once.")
-    quiet_environment()
     from runner.sweeps.tuning.objective import Objective
     from runner.sweeps.tuning.run import tune
 

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import Literal
 
 from runner.base import progress
-from runner.base.engines import quiet_environment
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser
 from runner.config.compose.user_settings import outputs_dir
@@ -49,7 +48,6 @@ def run(options: Namespace) -> int:
     if not options.outputs.is_dir():
         allowed = "an outputs folder, as in `runner verify outputs`"
         raise RunnerError(f"{options.outputs}: no such folder. Allowed: {allowed}.")
-    quiet_environment()
     found = []
     progress.begin("verifying", unit="files")
     for each in verify(options.outputs):

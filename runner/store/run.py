@@ -15,10 +15,10 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.config.composed import Composed
 from runner.store.kinds import kind_of
+from runner.store.parquet import VALUES_FILE, open_parquet, read_column, read_table
 from runner.store.record import Metrics, find_faults
 from runner.store.seal import DamagedError
 from runner.store.stored import MEND, Stored, read_job, write_job
-from runner.store.values import VALUES_FILE, open_parquet, read_column, read_table
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,4 +1,4 @@
-"""Digests of stored files.
+"""Digests and JSON of stored files.
 
 A damaged file is detected when it is read, and never used. A digest detects accidents: a flipped bit, half a file, an
 edit. It does not detect forgery, because anyone can compute a new digest.
@@ -20,6 +20,14 @@ SCHEMA = 3
 _BLANK = "0" * 64
 _DIGEST = re.compile(rb'"digest": "([0-9a-f]{64})"')
 _LINE_HEX = 32
+
+_encode = json.JSONEncoder().encode
+encode_finite = json.JSONEncoder(allow_nan=False).encode
+"""Return the JSON text of a value, as `json.dumps` does.
+
+Raises:
+    ValueError: if a number is not finite.
+"""
 
 
 class DamagedError(StoreError):
@@ -153,3 +161,26 @@ def _is_whole(content: bytes) -> bool:
 
 def _short(error: Exception) -> str:
     return " ".join(str(error).split())[:200]
+
+
+class JsonTexts:
+    """Encoder with the output of `json.dumps` that encodes a repeated value below the root only once.
+
+    A value is recognized as the same object under the same key. It must not be changed between calls.
+    """
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, int], str] = {}
+        self._kept: list[object] = []  # keeps the objects alive, so that their ids stay unique
+
+    def of(self, content: Mapping[str, Any]) -> str:
+        """Return the JSON of a mapping."""
+        known = self._known.get
+        entries = [known((key, id(value))) or self._entry(key, value) for key, value in content.items()]
+        return "{" + ", ".join(entries) + "}"
+
+    def _entry(self, key: str, value: object) -> str:
+        entry = f"{_encode(key)}: {_encode(value)}"
+        self._kept.append(value)
+        self._known[key, id(value)] = entry
+        return entry

@@ -21,13 +21,12 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.limits import ExcessError, open_parquet
-from runner.store.arrow_columns import list_column, text_column, truth_column, whole_column
 from runner.store.atomic import write_atomically
-from runner.store.json_texts import encode_finite
 from runner.store.names import Names
+from runner.store.parquet import list_column, text_column, truth_column, whole_column
 from runner.store.record import find_faults
 from runner.store.run import Run
-from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest
+from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest, encode_finite
 
 _COLUMNS = ("run", "config", "urdf", "record", "metrics")
 _SHARED = ["failure", "urdf", "metrics"]  # columns with many equal rows

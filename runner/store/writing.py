@@ -17,12 +17,11 @@ from runner.base.trace import Trace
 from runner.metrics.caveats import Found
 from runner.simulation.results import RunResult
 from runner.statistics.spec import bounds_of, judge
-from runner.store.arrow_columns import float_column
 from runner.store.atomic import write_atomically
-from runner.store.json_texts import JsonTexts, encode_finite
+from runner.store.parquet import VALUES_FILE, float_column, values_parquet
 from runner.store.run import Run
+from runner.store.seal import JsonTexts, encode_finite
 from runner.store.stored import write_job
-from runner.store.values import VALUES_FILE, values_parquet
 
 
 def prepare(outputs: Path) -> None:

@@ -12,7 +12,7 @@ from runner.plugins.metric_units import units_of
 from runner.simulation.batch import BatchSimulator, simulate_together
 from runner.simulation.provenance import command, job_provenance
 from runner.simulation.results import Collector
-from runner.store.json_texts import JsonTexts
+from runner.store.seal import JsonTexts
 from runner.store.shards import ShardRow
 from runner.store.writing import record_texts
 from runner.sweeps.deadline import TimeLimitError, deadline

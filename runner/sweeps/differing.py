@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from runner.base.cache import Memory
 from runner.base.dotted_keys import dotted, leaves, split_override
-from runner.store import Run, simulated_part
+from runner.store.run import Run
+from runner.store.stored import simulated_part
 
 if TYPE_CHECKING:
     from runner.sweeps.measurements import Axis

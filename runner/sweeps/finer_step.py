@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from runner import store
 from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.statistics.interval import SMALLEST_SAMPLE
-from runner.store import Run, Sweep
 from runner.store.finished import finer_names, write_finer
+from runner.store.run import Run
+from runner.store.sweep import Sweep
 from runner.sweeps.measurements import axes_of
 
 if TYPE_CHECKING:
@@ -71,10 +71,11 @@ def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
     # Imports of the simulator, which a comparison of runs with known errors does not need
     from runner.config.validation import validate
     from runner.simulation.run import simulate_blocks, threads_allowed
+    from runner.store.identity import run_hash
 
     try:
         config = validate(run.composed)
-        if store.run_hash(run.config, config.arm.urdf) != run.hash:
+        if run_hash(run.config, config.arm.urdf) != run.hash:
             return None
         if reason := _hindrance(config):
             return reason, {}

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.store import Run
+from runner.store.run import Run
 from runner.store.shards import METRIC, open_row, read_columns
 from runner.sweeps.differing import Resolver
 

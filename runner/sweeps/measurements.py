@@ -14,10 +14,11 @@ from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get, split_override
 from runner.base.errors import RunnerError, StoreError, unknown
-from runner.store import DamagedError, Finished, Run, Sweep
 from runner.store.axes import Axes, is_simulated, override_value
-from runner.store.finished import finer_names, read_finer
-from runner.store.sweep import InShard
+from runner.store.finished import Finished, finer_names, read_finer
+from runner.store.run import Run
+from runner.store.seal import DamagedError
+from runner.store.sweep import InShard, Sweep
 from runner.sweeps.differing import Difference, Resolved
 from runner.sweeps.gathering import Gathered
 from runner.sweeps.status import find_status

@@ -9,9 +9,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from runner import store
 from runner.base.errors import RunnerError
-from runner.store.seal import read_json
+from runner.store.finished import Finished
+from runner.store.seal import DamagedError, read_json
+from runner.store.sweep import Sweep
 
 _PATIENCE = 1.0  # s; `runner status` holds the lock for an instant
 
@@ -84,19 +85,19 @@ class Status:
     damage: Sequence[str]
 
 
-def find_status(sweep: store.Sweep) -> Status:
+def find_status(sweep: Sweep) -> Status:
     """Return the progress of a sweep.
 
     Raises:
         OSError: if the outputs folder of the sweep cannot be read.
     """
-    finished = store.Finished(sweep.outputs)
+    finished = Finished(sweep.outputs)
     names = set(sweep.hashes)
     ends = {name: finished.outcome(name) for name in names}
     stored = [end for end in ends.values() if end is not None]
     left = len(names) - len(stored)
     pace = None
-    with contextlib.suppress(store.DamagedError):  # the sweep rewrites it every few seconds
+    with contextlib.suppress(DamagedError):  # the sweep rewrites it every few seconds
         pace = read_pace(sweep.folder)
     return Status(
         done=len(stored),
@@ -119,5 +120,5 @@ def read_pace(folder: Path) -> float | None:
         return None
     pace = read_json(folder / NOTE, _MEND).get("seconds_per_run")
     if not (isinstance(pace, float) and math.isfinite(pace)):
-        raise store.DamagedError(f"cannot read {folder / NOTE}: it has no time for a run; {_MEND}")
+        raise DamagedError(f"cannot read {folder / NOTE}: it has no time for a run; {_MEND}")
     return pace

@@ -14,7 +14,8 @@ from runner.reporting.answers import Answer, Asked, ask, judge
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
 from runner.reporting.comparison.pairs import Label, Pairs, keep_common_seeds, label_text, level_pairs, match
 from runner.reporting.metric_titles import first_screen, is_part, whole_metrics
-from runner.store import Run, Sweep
+from runner.store.run import Run
+from runner.store.sweep import Sweep
 from runner.sweeps.measurements import (
     Measurements,
     check_metrics,

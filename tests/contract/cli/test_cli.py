@@ -132,7 +132,7 @@ def test_a_run_prints_its_folder_and_writes_nothing_but_outputs(cli, tmp_path):
 
 def test_the_same_command_again_simulates_nothing(cli, monkeypatch):
     first = cli(*SHORT)
-    monkeypatch.setattr(job, "simulate", None)
+    monkeypatch.setattr(job, "simulate_run", None)
     again = cli(*SHORT)
     assert (again.code, again.out) == (first.code, first.out)
     assert again.err == first.err.replace(", stored in", ", stored before in")
@@ -247,7 +247,7 @@ def test_an_internal_error_ends_with_3_and_its_trace(cli, monkeypatch):
     def break_down(*_):
         raise ValueError("a bug")
 
-    monkeypatch.setattr(job, "simulate", break_down)
+    monkeypatch.setattr(job, "simulate_run", break_down)
     ending = cli(*SHORT)
     assert (ending.code, ending.out) == (3, "")
     assert "Traceback (most recent call last):" in ending.err
@@ -289,7 +289,7 @@ def test_too_little_memory_is_said(cli, monkeypatch):
     def run_out(*_):
         raise MemoryError("unable to allocate 2 TiB")
 
-    monkeypatch.setattr(job, "simulate", run_out)
+    monkeypatch.setattr(job, "simulate_run", run_out)
     ending = cli(*SHORT)
     assert ending.code == 2
     assert ending.err == (

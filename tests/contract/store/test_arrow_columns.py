@@ -8,7 +8,7 @@ import pyarrow
 import pytest
 
 from runner.store import arrow_columns
-from runner.store.arrow_columns import float_column, list_column, text_column, truth_column, whole_column
+from runner.store.parquet import float_column, list_column, text_column, truth_column, whole_column
 
 
 @pytest.mark.parametrize("texts", [[], ["", "ä 中", "a" * 100]])

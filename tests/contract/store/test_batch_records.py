@@ -10,8 +10,8 @@ from runner.metrics import summarize_arrays
 from runner.metrics.caveats import Caveat, Found
 from runner.plugins.metric_units import unit_of
 from runner.store import Finished, Outcome
-from runner.store.json_texts import JsonTexts
 from runner.store.run import Run
+from runner.store.seal import JsonTexts
 from runner.store.shards import ShardRow, read_columns, read_outcomes, shard_name, write_shard
 from runner.store.writing import make_record, record_texts
 

@@ -9,7 +9,7 @@ from support.grids import plan_sweep
 from runner import store
 from runner.config.compose.composer import Composer
 from runner.simulation import batch
-from runner.store.json_texts import JsonTexts
+from runner.store.seal import JsonTexts
 from runner.sweeps import work
 from runner.sweeps.batch import _rows
 from runner.sweeps.check import check

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from runner.store import json_texts
-from runner.store.json_texts import JsonTexts, encode_finite
+from runner.store import seal
+from runner.store.seal import JsonTexts, encode_finite
 
 SHARED = {"kind": "goal", "points": [0.1, 1e-300, -0.0], "name": "ä\n", "none": None}
 
@@ -19,8 +19,8 @@ def test_the_text_is_that_of_the_library():
 
 
 def test_a_common_part_is_encoded_once(monkeypatch):
-    encoded, encode = [], json_texts._encode
-    monkeypatch.setattr(json_texts, "_encode", lambda value: encoded.append(value) or encode(value))
+    encoded, encode = [], seal._encode
+    monkeypatch.setattr(seal, "_encode", lambda value: encoded.append(value) or encode(value))
     texts = JsonTexts()
     for _ in range(3):
         texts.of({"path": SHARED})

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from runner.store.parquet import open_parquet, read_column, values_parquet
 from runner.store.seal import DamagedError
-from runner.store.values import open_parquet, read_column, values_parquet
 
 PATH = Path("values.parquet")
 VALUES = {"a": np.array([0.1, np.nan, -2.5e-300]), "b": np.array([1.0, 2.0, 1.0 / 3.0])}
