@@ -14,9 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from runner.api.commands import calibrate, run, sweep, tune
-    from runner.api.compare import compare
-    from runner.api.open import open_run, open_sweep, open_tuning
-    from runner.api.report import Report, report
+    from runner.api.results import Report, compare, open_run, open_sweep, open_tuning, report
     from runner.api.run import Run
     from runner.api.sweep import Sweep
     from runner.api.tuning import Tuning
@@ -45,17 +43,17 @@ __all__ = [
 _PLACES = {
     "Calibration": "runner.store",
     "Metric": "runner.store.record",
-    "Report": "runner.api.report",
+    "Report": "runner.api.results",
     "Run": "runner.api.run",
     "RunnerError": "runner.base.errors",
     "Sweep": "runner.api.sweep",
     "Tuning": "runner.api.tuning",
     "calibrate": "runner.api.commands",
-    "compare": "runner.api.compare",
-    "open_run": "runner.api.open",
-    "open_sweep": "runner.api.open",
-    "open_tuning": "runner.api.open",
-    "report": "runner.api.report",
+    "compare": "runner.api.results",
+    "open_run": "runner.api.results",
+    "open_sweep": "runner.api.results",
+    "open_tuning": "runner.api.results",
+    "report": "runner.api.results",
     "run": "runner.api.commands",
     "sweep": "runner.api.commands",
     "tune": "runner.api.commands",

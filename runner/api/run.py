@@ -56,7 +56,7 @@ class Run(store.Run):
         Raises:
             RunnerError: if there is no such repetition, or the code has changed since the run.
         """
-        from runner.api.resimulate import signals_of
+        from runner.api.signals import signals_of
 
         return signals_of(self, repetition).frame
 
@@ -71,8 +71,7 @@ class Run(store.Run):
         Raises:
             RunnerError: if the run has no such signal; lists the signals that it has.
         """
-        from runner.api.plots import figure_of
-        from runner.api.resimulate import signals_of
+        from runner.api.signals import figure_of, signals_of
 
         return figure_of(signals_of(self, repetition), signal)
 
@@ -148,8 +147,7 @@ class Run(store.Run):
         return key_metrics(self, most)
 
     def _picture(self) -> str:
-        from runner.api.plots import svg_of
-        from runner.api.resimulate import Signals
+        from runner.api.signals import Signals, svg_of
 
         try:
             signals = Signals(super().trace(), self.units)

@@ -68,7 +68,7 @@ def test_a_sweep_elsewhere_names_its_folder(cli, tmp_path):
 
 
 def test_of_very_many_cells_nothing_is_compared(cli, monkeypatch):
-    monkeypatch.setattr("runner.cli.summary._MOST_RANKED", 1)
+    monkeypatch.setattr("runner.cli.run._MOST_RANKED", 1)
     ending = cli("-m", "hydra.sweeper.workers=0", "robot=macro", "duration=0.05", "seed=0,1")
     assert ending.err.splitlines()[-2] == "runner: 2 runs: 2 made, 0 stored before, none of them failed"
 

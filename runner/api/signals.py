@@ -1,0 +1,177 @@
+"""Signals of any repetition of a stored run, and their Matplotlib figures over time.
+
+Every repetition except the first is simulated again.
+"""
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from matplotlib.figure import Figure
+
+from runner import store
+from runner.base.errors import ConfigError, RunnerError, unknown
+from runner.base.quantities import label_with_unit
+from runner.reporting.charts.stills import as_figure, draw
+from runner.reporting.document import Curves, Panel, Series
+from runner.reporting.metric_titles import capital
+from runner.store.run import units_of
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from runner.base.trace import Trace
+    from runner.config.run import RunConfig
+
+_JOINT = re.compile(r"(q|dq|tau)(\d+)(_command)?")
+_AXIS = re.compile(r"(\w+)_([xyz])")
+_NAMES = {"q": "position", "dq": "velocity", "tau": "torque", "q_command": "position_command"}
+_TITLES = {
+    "position": "joint position",
+    "position_command": "commanded joint position",
+    "velocity": "joint velocity",
+    "torque": "joint torque",
+    "error": "tip position error",
+    "tip": "tip position",
+    "desired": "desired tip position",
+}
+_BESIDE = {"tip": "desired"}  # signal drawn dashed together with another
+
+
+@dataclass(frozen=True)
+class Signals:
+    """The signals of one repetition.
+
+    Attributes:
+        frame: One row per tick, one column per signal.
+        units: Unit of each column.
+    """
+
+    frame: "pd.DataFrame"
+    units: Mapping[str, str]
+
+
+def signals_of(run: store.Run, repetition: int) -> Signals:
+    """Return the signals of a repetition: the first is read from the store, any other is simulated again.
+
+    The metrics of the new simulation must equal the stored metrics, to the last bit.
+
+    Raises:
+        RunnerError: if there is no such repetition, or the code, the robot's file or the machine gives another result.
+        DamagedError: if the run is damaged.
+    """
+    count = run.repetitions
+    if not 0 <= repetition < count:
+        raise RunnerError(f"repetition: run {run.hash} has no repetition {repetition}. Allowed: 0 to {count - 1}.")
+    if repetition == 0 and run.text is None:
+        return Signals(store.Run.trace(run).copy(), run.units)
+    return _simulated(run, repetition)
+
+
+def _simulated(run: store.Run, repetition: int) -> Signals:
+    from runner.metrics import evaluate
+    from runner.simulation.assembly import metric_context
+    from runner.store.writing import trace_table
+
+    config = _checked(run, repetition)
+    trace = _simulate(config, repetition)
+    found = evaluate(trace, metric_context(config), [])
+    for name in run.metrics:
+        stored = float(run.values(name)[repetition])
+        value = None if math.isnan(stored) else stored
+        if found.get(name) != value:
+            raise RunnerError(
+                f"repetition {repetition} of {run.hash}, simulated again, differs: {name} is {found.get(name)}, "
+                f"stored is {value}; another machine or library version rounds in another way"
+            )
+    table = trace_table(trace)
+    return Signals(table.to_pandas(), units_of(table))
+
+
+def _checked(run: store.Run, repetition: int) -> "RunConfig":
+    """Return the config of a run; raise an error if the code or the robot has changed since the run."""
+    from runner.config.validation import validate
+
+    cannot = f"repetition {repetition} of {run.hash} cannot be simulated again: "
+    if store.run_hash(run.config, run.urdf) != run.hash:
+        raise RunnerError(
+            f"{cannot}the code has changed since the run (the runner, a plug-in, or the version of an engine), or one "
+            "of its plug-ins is not loaded; simulate it again with runner.run"
+        )
+    try:
+        config = validate(run.composed)
+    except ConfigError as error:
+        raise RunnerError(f"{cannot}{'; '.join(error.problems)}") from None
+    if config.arm.urdf != run.urdf:
+        raise RunnerError(f"{cannot}the file of its robot has changed since the run; simulate it again with runner.run")
+    return config
+
+
+def _simulate(config: "RunConfig", repetition: int) -> "Trace":
+    from runner.simulation.assembly import assemble
+    from runner.simulation.run import simulate_repetition
+
+    loop = assemble(config, repetition)
+    try:
+        return simulate_repetition(loop, config, repetition)[0]
+    finally:
+        loop.close()
+
+
+def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:
+    """Return the signals of a trace that are drawn together: the columns of each, by the name of the joint or axis.
+
+    >>> families(["t", "q1", "tau1", "tau2", "error_x", "error_y"])
+    {'position': {'1': 'q1'}, 'torque': {'1': 'tau1', '2': 'tau2'}, 'error': {'x': 'error_x', 'y': 'error_y'}}
+    """
+    found: dict[str, dict[str, str]] = {}
+    for column in columns:
+        joint, axis = _JOINT.fullmatch(column), _AXIS.fullmatch(column)
+        if joint:
+            found.setdefault(_NAMES[joint[1] + (joint[3] or "")], {})[joint[2]] = column
+        elif axis:
+            found.setdefault(axis[1], {})[axis[2]] = column
+    return found
+
+
+def figure_of(signals: Signals, name: str) -> Figure:
+    """Return the figure of a signal over time: a panel for each unit, a curve for each joint or axis.
+
+    Raises:
+        RunnerError: if there is no such signal; lists the existing signals.
+    """
+    return as_figure(_curves(signals, name))
+
+
+def svg_of(signals: Signals, name: str) -> str:
+    """Return the figure of a signal as SVG; see `figure_of`."""
+    return draw(_curves(signals, name))
+
+
+def _curves(signals: Signals, name: str) -> Curves:
+    known = families(list(signals.frame.columns))
+    if name not in known:
+        raise RunnerError(unknown("signal", name, known))
+    title = _TITLES.get(name, name.replace("_", " "))
+    units = dict.fromkeys(signals.units[column] for column in known[name].values())
+    beside = known.get(_BESIDE.get(name, ""), {})
+    return Curves("", [_panel(signals, title, unit, known[name], beside) for unit in units], columns=1)
+
+
+def _panel(signals: Signals, title: str, unit: str, columns: Mapping[str, str], beside: Mapping[str, str]) -> Panel:
+    shown = {label: column for label, column in columns.items() if signals.units[column] == unit}
+    t = signals.frame["t"].to_numpy()
+    series = [
+        Series(label, t, signals.frame[column].to_numpy(), color=place)
+        for place, (label, column) in enumerate(shown.items())
+    ]
+    series += [
+        Series(f"{label} desired", t, signals.frame[beside[label]].to_numpy(), "dashed", color=place)
+        for place, label in enumerate(shown)
+        if label in beside
+    ]
+    if title == _TITLES["torque"] and unit == "N":
+        title = "joint force"
+    return Panel(capital(title), "time (s)", label_with_unit(title.split()[-1], unit), series)
