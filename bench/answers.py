@@ -13,7 +13,8 @@ from runner.reporting.answers import Asked, judge
 from runner.reporting.sweep.question import find_question
 from runner.reporting.sweep.subject import Subject
 from runner.statistics import compare_paired
-from runner.sweeps.measurements import Axis, Measurements
+from runner.store.axes import Axis
+from runner.sweeps.measurements import Measurements
 
 PRIMARY, OTHER = "max_tracking_error", "peak_torque"
 _LEVELS, _SEEDS = 3, 8

@@ -13,7 +13,8 @@ from runner.api.run import Run
 from runner.base.errors import RunnerError, unknown
 from runner.base.quantities import quantity
 from runner.base.sanitize import few, one_line
-from runner.sweeps.measurements import Axis, Measurements, axes_of, find_axis, measure_sweep
+from runner.store.axes import Axis, axes_of, find_axis
+from runner.sweeps.measurements import Measurements, measure_sweep
 from runner.sweeps.status import Status, find_status
 
 if TYPE_CHECKING:

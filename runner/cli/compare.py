@@ -76,9 +76,10 @@ def run(options: Namespace) -> int:
 def _compare(options: Namespace) -> None:
     """Print a comparison of levels, runs or sweeps."""
     from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, measure_compared
+    from runner.store.axes import find_axis
     from runner.store.run import Run
     from runner.store.sweep import Sweep
-    from runner.sweeps.measurements import check_metrics, find_axis, limit_sweep
+    from runner.sweeps.measurements import check_metrics, limit_sweep
 
     metrics, things = options.metrics or (), list(map(open_stored, options.folders))
     runs = [thing for thing in things if isinstance(thing, Run)]
@@ -283,7 +284,7 @@ def _head(one: "Asked") -> list[str]:
 def _explain_alone(thing: "Run | Sweep") -> str:
     """Return the reason why one run or sweep is not enough."""
     from runner.store import Run
-    from runner.sweeps.measurements import axes_of
+    from runner.store.axes import axes_of
 
     folder = thing.folder
     if isinstance(thing, Run):

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from omegaconf import DictConfig
 
     from runner.store import Run
-    from runner.sweeps.measurements import Axis
+    from runner.store.axes import Axis
     from runner.sweeps.run import Ended
 
 _METRICS = 5
@@ -232,8 +232,8 @@ def _print_caveats(run: "Run", thresholds: Any) -> None:
 def print_sweep(ended: "Ended") -> int:
     """Print the summary of a sweep; return its exit code."""
     from runner.store import open_sweep
+    from runner.store.axes import axes_of
     from runner.sweeps.differing import in_words
-    from runner.sweeps.measurements import axes_of
 
     if ended.failures:
         rows = [[" ".join(overrides), why, str(where)] for overrides, why, where in ended.failures[:_FAILURES_SHOWN]]

@@ -21,7 +21,7 @@ from runner.store.run import Run
 from runner.store.stored import simulated_part
 
 if TYPE_CHECKING:
-    from runner.sweeps.measurements import Axis
+    from runner.store.axes import Axis
 
 
 DISTANCE = "distance from start to goal"

@@ -16,10 +16,10 @@ from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.statistics.interval import SMALLEST_SAMPLE
+from runner.store.axes import axes_of
 from runner.store.finished import finer_names, write_finer
 from runner.store.run import Run
 from runner.store.sweep import Sweep
-from runner.sweeps.measurements import axes_of
 
 if TYPE_CHECKING:
     from runner.config.run import RunConfig

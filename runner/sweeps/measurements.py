@@ -1,7 +1,7 @@
 """Measurements of a sweep by cell: swept axes, status, and every metric in every repetition."""
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,7 +14,7 @@ from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get, split_override
 from runner.base.errors import RunnerError, StoreError, unknown
-from runner.store.axes import Axes, is_simulated, override_value
+from runner.store.axes import Axis, axes_of, find_cells
 from runner.store.finished import Finished, finer_names, read_finer
 from runner.store.run import Run
 from runner.store.seal import DamagedError
@@ -22,119 +22,6 @@ from runner.store.sweep import InShard, Sweep
 from runner.sweeps.differing import Difference, Resolved
 from runner.sweeps.gathering import Gathered
 from runner.sweeps.status import find_status
-
-
-@dataclass(frozen=True)
-class Axis:
-    """Key whose value differs between the cells of a sweep.
-
-    Attributes:
-        name: The key, such as "noise.position", or a group, such as "controller".
-        values: Distinct values of the key: numbers in ascending order, or strings in order of appearance.
-        level: Index into `values` of each cell, shape (cells,).
-    """
-
-    name: str
-    values: Sequence[float] | Sequence[str]
-    level: NDArray[np.intp]
-
-    @property
-    def numbers(self) -> FloatArray | None:
-        """Values of the axis as numbers, shape (levels,); None for strings."""
-        texts = len(self.values) > 0 and isinstance(self.values[0], str)
-        return None if texts else np.array(self.values, dtype=float)
-
-    @property
-    def texts(self) -> list[str]:
-        """Values of the axis as strings."""
-        return [value if isinstance(value, str) else f"{value:g}" for value in self.values]
-
-    def text(self, level: int) -> str:
-        """Return the value of a level as a string."""
-        value = self.values[level]
-        return value if isinstance(value, str) else f"{value:g}"
-
-    def find_level(self, value: object, option: str = "") -> int:
-        """Return the level of a number or a string.
-
-        Args:
-            value: The value.
-            option: Option that gave the value, such as "--where robot=macro"; a message begins with it.
-
-        Raises:
-            RunnerError: If the axis has no such value; the message lists its values.
-        """
-        wanted = str(value).strip("'\"")
-        number = _number(wanted)
-        for level, (own, text) in enumerate(zip(self.values, self.texts, strict=True)):
-            if wanted == text or (number is not None and number in (own, _number(text))):
-                return level
-        raise RunnerError(unknown("value", wanted, self.texts, option or self.name))
-
-
-def find_axis(axes: Sequence[Axis], name: str, option: str = "") -> Axis:
-    """Return the axis of a name.
-
-    Args:
-        axes: The axes of a sweep.
-        name: The name, such as "controller".
-        option: Option that gave the name, such as "--by"; a message begins with it.
-
-    Raises:
-        RunnerError: If there is no such axis; the message lists the axes.
-    """
-    names = [axis.name for axis in axes]
-    if name not in names:
-        raise RunnerError(unknown("axis", name, names, option))
-    return axes[names.index(name)]
-
-
-def find_cells(axes: Sequence[Axis], where: Sequence[str], count: int) -> NDArray[np.intp]:
-    """Return the cells of a sweep that have some values.
-
-    Args:
-        axes: The axes of the sweep.
-        where: The values, each as KEY=VALUE.
-        count: Number of cells.
-
-    Raises:
-        RunnerError: If there is no such axis or value, or no cell with all of them.
-    """
-    kept = np.ones(count, dtype=bool)
-    for text in where:
-        name, given, value = text.partition("=")
-        axis = find_axis(axes, name, "--where")
-        if not given:
-            raise RunnerError(f"--where {text}: no value. Allowed: KEY=VALUE.")
-        kept &= axis.level == axis.find_level(value, f"--where {name}")
-    if not kept.any():
-        raise RunnerError(f"--where: no cell of the sweep has {' and '.join(where)}.")
-    return np.flatnonzero(kept)
-
-
-def group_cells(axes: Sequence[Axis], cells: NDArray[np.intp]) -> list[tuple[list[int], NDArray[np.intp]]]:
-    """Return the combinations of the levels of some axes, in ascending order, each with its cells.
-
-    Args:
-        axes: The axes; without axes, all cells are one group.
-        cells: The cells, shape (n,).
-    """
-    combination = number_rows([axis.level[cells] for axis in axes], len(cells))
-    order = np.argsort(combination, kind="stable")
-    groups = np.split(cells[order], np.flatnonzero(np.diff(combination[order])) + 1) if len(cells) else []
-    return [([int(axis.level[some[0]]) for axis in axes], some) for some in groups]
-
-
-def number_rows(columns: Sequence[NDArray[np.intp]], count: int) -> NDArray[np.intp]:
-    """Return the number of each row among the distinct rows in ascending order, shape (count,).
-
-    Args:
-        columns: Columns of the rows, each of shape (count,); without columns, all rows are equal.
-        count: Number of rows.
-    """
-    if not columns:
-        return np.zeros(count, dtype=np.intp)
-    return np.asarray(np.unique(np.column_stack(columns), axis=0, return_inverse=True)[1]).ravel()
 
 
 @dataclass(frozen=True)
@@ -421,57 +308,6 @@ def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measure
 def _by_seed(cells: NDArray[np.intp], seeds: NDArray[np.int64]) -> list[NDArray[np.intp]]:
     """Return cells grouped by seed."""
     return [cells[seeds[cells] == seed] for seed in np.unique(seeds[cells])]
-
-
-def axes_of(overrides: Sequence[Sequence[str]]) -> tuple[list[Axis], list[str]]:
-    """Return the keys whose values differ between jobs as axes, and the other overrides."""
-    axes, fixed = [], []
-    columns = _of_grid(overrides) if isinstance(overrides, Axes) else _of_jobs(overrides)
-    for key, values, times in columns:
-        if isinstance(values, str):
-            fixed.append(f"{key}={values}")
-        else:
-            found, level = _levels(values)
-            axes.append(Axis(key, found, np.resize(np.repeat(level, times), len(overrides))))
-    return axes, fixed
-
-
-def _of_grid(overrides: Axes) -> Iterator[tuple[str, Sequence[Any], int]]:
-    """Yield keys, their values in turn (a string if all cells share it), and the number of cells for each value."""
-    for entry, times in overrides.runs_of_levels():
-        if isinstance(entry, str) or all(value == entry.values[0] for value in entry.values):
-            key, text = split_override(entry if isinstance(entry, str) else entry.text(0))
-            yield key, text, times
-        else:
-            yield entry.key.lstrip("+"), entry.values, times
-
-
-def _of_jobs(overrides: Sequence[Sequence[str]]) -> Iterator[tuple[str, Sequence[Any], int]]:
-    """Yield keys, their values by job (a string if all jobs share it), and 1."""
-    given = [dict(map(split_override, job)) for job in overrides]
-    for key in dict.fromkeys(key for job in given for key in job if is_simulated(key)):
-        texts = [job.get(key, "") for job in given]
-        numbers = [_number(text) for text in texts]
-        yield key, texts[0] if len(set(texts)) == 1 else texts if None in numbers else numbers, 1
-
-
-def _levels(values: Sequence[Any]) -> tuple[Sequence[float] | Sequence[str], NDArray[np.intp]]:
-    """Return the distinct values, and the index of each value among them, shape (n,)."""
-    if isinstance(values, range) or all(type(value) in (int, float) and np.isfinite(value) for value in values):
-        numbers, level = np.unique(np.array(values, dtype=float), return_inverse=True)
-        return numbers.tolist(), level
-    texts = [value.strip("'\"") if isinstance(value, str) else override_value(value) for value in values]
-    place = {text: index for index, text in enumerate(dict.fromkeys(texts))}
-    return list(place), np.array([place[text] for text in texts], dtype=np.intp)
-
-
-def _number(text: str) -> float | None:
-    """Return the value of an override if it is a finite number, otherwise None."""
-    try:
-        number = float(text)
-    except ValueError:
-        return None
-    return number if np.isfinite(number) else None
 
 
 def check_metrics(wanted: Sequence[str], known: Iterable[str]) -> None:

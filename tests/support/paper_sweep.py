@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from runner.sweeps.measurements import Axis, Measurements
+from runner.store.axes import Axis
+from runner.sweeps.measurements import Measurements
 
 CONTROLLERS, LOADS, SEEDS = ["computed_torque", "operational_space"], [0.5, 2.0], [0.0, 1.0, 2.0]
 

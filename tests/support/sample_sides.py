@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.sweeps.measurements import Axis, Measurements
+from runner.store.axes import Axis
+from runner.sweeps.measurements import Measurements
 
 LAWS = {"robot": ["macro", "xarm7"], "gravity": [9.6, 9.81]}
 

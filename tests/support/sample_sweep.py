@@ -5,7 +5,8 @@ import itertools
 import numpy as np
 
 from runner.reporting.sweep.subject import Subject, choose
-from runner.sweeps.measurements import Axis, Measurements
+from runner.store.axes import Axis
+from runner.sweeps.measurements import Measurements
 
 
 def measurements(axes, metrics, failed=()):

@@ -13,8 +13,9 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.errors import RunnerError
 from runner.statistics import Comparison, subtract
+from runner.store.axes import find_axis, group_cells, number_rows
 from runner.sweeps.differing import value_text
-from runner.sweeps.measurements import Measurements, find_axis, group_cells, number_rows
+from runner.sweeps.measurements import Measurements
 
 SEED = "seed"
 """The axis whose levels are draws of one thing, as repetitions are."""

@@ -16,13 +16,7 @@ from runner.reporting.comparison.pairs import Label, Pairs, keep_common_seeds, l
 from runner.reporting.metric_titles import first_screen, is_part, whole_metrics
 from runner.store.run import Run
 from runner.store.sweep import Sweep
-from runner.sweeps.measurements import (
-    Measurements,
-    check_metrics,
-    measure_run,
-    measure_stored,
-    stored_part,
-)
+from runner.sweeps.measurements import Measurements, check_metrics, measure_run, measure_stored, stored_part
 
 if TYPE_CHECKING:
     import pandas as pd

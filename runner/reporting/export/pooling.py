@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.base.sanitize import table_cell
-from runner.sweeps.measurements import Axis, Measurements, find_axis, find_cells, group_cells
+from runner.store.axes import Axis, find_axis, find_cells, group_cells
+from runner.sweeps.measurements import Measurements
 from runner.sweeps.table import metric_columns, with_units
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, group_levels, spans_decades
 from runner.statistics import median_interval
 from runner.store import Run
-from runner.sweeps.measurements import Axis
+from runner.store.axes import Axis
 
 _MOST_LINES = 8
 

@@ -13,7 +13,7 @@ from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.sweep.subject import MOST_GROUPS, QUANTILE_RULE, Subject, key_label, spans_decades
 from runner.statistics import PERMUTATIONS, EffectAnalysis
-from runner.sweeps.measurements import Axis
+from runner.store.axes import Axis
 
 _MOST_LEVELS = 200  # of an axis that are drawn, spread evenly
 _MOST_LINES = 6

@@ -7,7 +7,7 @@ from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Notice, Section, Table
 from runner.reporting.markup import literal, literals
 from runner.reporting.sweep.subject import Subject
-from runner.sweeps.measurements import Axis
+from runner.store.axes import Axis
 
 _MOST_ROWS = 40
 

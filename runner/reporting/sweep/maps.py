@@ -12,7 +12,7 @@ from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Formula, Map, Maps, Section, Series, Text
 from runner.reporting.markup import literal
 from runner.reporting.sweep.subject import Subject, key_label, spans_decades
-from runner.sweeps.measurements import Axis, group_cells
+from runner.store.axes import Axis, group_cells
 
 POOLED = "seed"  # the one axis over which maps take a median: its values mean nothing
 _FEWEST_FOR_CONTOURS = 3

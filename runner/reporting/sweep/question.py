@@ -14,7 +14,7 @@ from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, first_screen, title
 from runner.reporting.sweep.subject import Subject
 from runner.statistics import SMALLEST_SAMPLE
-from runner.sweeps.measurements import Axis
+from runner.store.axes import Axis
 
 _MOST_TOLD = 3  # pairs of values of an axis, and keys that go with it, that sentences tell
 _MOST_PAIRS = 24

@@ -19,7 +19,7 @@ from runner.statistics.spec import bounds_of
 from runner.statistics.spec.history import merge_histories, settings
 from runner.statistics.spec.kept import within
 from runner.store import Sweep
-from runner.sweeps.measurements import Axis
+from runner.store.axes import Axis
 
 _WIDE = 10.0  # times the lower end: of a probability with a higher upper end not even the magnitude is known
 _FEW = "too few repetitions to tell"

@@ -12,8 +12,9 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import label_with_unit, quantity
 from runner.config.compose.units import key_unit
 from runner.reporting.metric_titles import COSTS, metric_label, title, whole_metrics
+from runner.store.axes import Axis
 from runner.sweeps.differing import UNITS
-from runner.sweeps.measurements import Axis, Measurements
+from runner.sweeps.measurements import Measurements
 from runner.sweeps.table import median_ends
 
 if TYPE_CHECKING:

@@ -9,8 +9,9 @@ import pytest
 
 from runner.statistics import median_interval
 from runner.store import write_sweep
+from runner.store.axes import Axis
 from runner.sweeps.job import run
-from runner.sweeps.measurements import Axis, Measurements
+from runner.sweeps.measurements import Measurements
 from runner.sweeps.table import table, write_table
 
 

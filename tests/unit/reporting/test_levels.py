@@ -9,7 +9,8 @@ from runner.base.errors import RunnerError
 from runner.reporting.comparison.pairs import MOST_PAIRS, compare, level_pairs
 from runner.reporting.comparison.sweeps import compare_levels
 from runner.statistics import compare_paired
-from runner.sweeps.measurements import Axis, Measurements
+from runner.store.axes import Axis
+from runner.sweeps.measurements import Measurements
 
 
 def grid(axes, value, seeds=(), repetitions=8):

@@ -15,7 +15,7 @@ from runner.reporting.export.markdown import escape_markdown as markdown_escaped
 from runner.reporting.export.markdown import markdown
 from runner.reporting.export.paper_table import of_sweep
 from runner.statistics import median_interval
-from runner.sweeps.measurements import Axis
+from runner.store.axes import Axis
 
 COMMAND = "runner -m controller=computed_torque,operational_space"
 NAMES = ["rms_tracking_error", "peak_torque"]

@@ -8,7 +8,7 @@ from support.paper_sweep import by_hand
 
 from runner.base.errors import RunnerError
 from runner.reporting.export.pooling import pool
-from runner.sweeps.measurements import Axis
+from runner.store.axes import Axis
 
 
 def test_seeds_are_put_together_and_nothing_else():

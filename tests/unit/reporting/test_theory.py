@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runner.reporting.sweep.maps import theory_lines, theory_text
-from runner.sweeps.measurements import Axis
+from runner.store.axes import Axis
 
 
 def axis(name, values):

@@ -10,7 +10,8 @@ import pytest
 from support.paper_sweep import by_hand
 
 from runner.reporting.export.pooling import as_csv, as_parquet, of_one, selection
-from runner.sweeps.measurements import Axis, Measurements
+from runner.store.axes import Axis
+from runner.sweeps.measurements import Measurements
 
 
 def test_a_selection_in_si_units():

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from runner.store.axes import Axis
 from runner.sweeps.differing import Difference, Resolved, in_words
-from runner.sweeps.measurements import Axis
 
 MACRO = {"name": "macro", "home": [0.0], "period": 0.01, "settling_band": 0.02}
 XARM7 = {"name": "xarm7", "home": [0.1], "period": 0.002, "settling_band": 0.001}

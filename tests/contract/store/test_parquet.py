@@ -7,7 +7,7 @@ import numpy as np
 import pyarrow
 import pytest
 
-from runner.store import arrow_columns
+from runner.store import parquet
 from runner.store.parquet import float_column, list_column, text_column, truth_column, whole_column
 
 
@@ -35,7 +35,7 @@ def test_lists_lack_numbers_and_may_lack_themselves():
 
 
 def test_texts_beyond_what_a_column_addresses_are_refused(monkeypatch):
-    monkeypatch.setattr(arrow_columns, "_MOST_BYTES", 10)
+    monkeypatch.setattr(parquet, "_MOST_BYTES", 10)
     assert len(text_column(["12345"] * 2)) == 2
     with pytest.raises(ValueError, match="more than 2 GB"):
         text_column(["12345", "123456"])
