@@ -71,7 +71,7 @@ def count_steps(arm: RobotOutline, plant: PlantConfig, controller: ControllerCon
         periods = {"plant.servo.period": servo, **periods}
     fastest = min(periods, key=lambda name: periods[name])
     tick = periods[fastest]
-    step = PLANTS.default_step(plant.kind, tick, len(arm.stages)) if plant.step is None else plant.step
+    step = PLANTS.features(plant.kind).default_step(tick, len(arm.stages)) if plant.step is None else plant.step
     problems = []
     if fastest != "plant.servo.period" and "plant.servo.period" in periods:
         problems.append(

@@ -1,7 +1,7 @@
 """Optional features of controller modules and configs, beyond `CONFIG` and `build`; registry of controllers."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Protocol, runtime_checkable
 
 from runner.base.arrays import FloatArray
@@ -9,7 +9,7 @@ from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.force.admittance_filter import Admittance
 from runner.plugins.guard import Attribute, Guard, Method, array, checked, find_fault, refuse
-from runner.plugins.registry import KindConfig, Registry
+from runner.plugins.registry import Features, KindConfig, Registry
 from runner.robots.robot import Robot
 
 
@@ -22,41 +22,28 @@ class ControllerConfig(KindConfig, Protocol):
         ...
 
 
-@runtime_checkable
-class FollowsPaths(Protocol):
-    """A module that says whether its controllers bring a perfect arm along any path that the arm can follow.
+def _no_posture(config: Any, robot: Robot, start: FloatArray) -> FloatArray | None:
+    return None
 
-    Where they do, a path that they leave is refused before the run, with the reason.
+
+@dataclass(frozen=True)
+class ControllerFeatures(Features):
+    """Optional members of the module of a controller.
+
+    Attributes:
+        FOLLOWS_PATHS: True if its laws bring a perfect arm along any path that the arm can follow. A path that they
+            would leave is rejected before the run, with the reason.
+        FOLLOWS_JOINTS: True if its laws follow a motion of the joints, if the desired motion is one. Their reference
+            then has shape (3, nq): joint positions, velocities and accelerations. `build` then takes `joints`, and
+            makes the loops of such a law if that is True.
+        start_posture: Function of the config, the robot and the start of the tip, shape (3,), in m, that returns the
+            joint positions at the start, shape (nq,), in rad, or None for no preference. It raises a LinAlgError if
+            there is no posture.
     """
 
-    FOLLOWS_PATHS: bool
-
-
-@runtime_checkable
-class ChoosesStart(Protocol):
-    """A module that chooses the posture in which the arm starts."""
-
-    def start_posture(self, config: ControllerConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
-        """Return joint positions, shape (nq,), in rad, with the tip at start, shape (3,), in m; None for no wish.
-
-        Raises:
-            numpy.linalg.LinAlgError: where there are none.
-        """
-        ...
-
-
-@runtime_checkable
-class FollowsJoints(Protocol):
-    """A module whose laws follow a motion of the joints where the desired motion is one; all others follow the tip's.
-
-    The reference of such a law has shape (3, nq): joint positions, velocities and accelerations.
-    """
-
-    FOLLOWS_JOINTS: bool
-
-    def build(self, config: ControllerConfig, robot: Robot, joints: bool = False) -> tuple[Loop, ...]:
-        """Make the loops; with `joints` they are those of a law that follows joints, and say so."""
-        ...
+    FOLLOWS_PATHS: bool = False
+    FOLLOWS_JOINTS: bool = False
+    start_posture: Callable[[Any, Robot, FloatArray], FloatArray | None] = _no_posture
 
 
 @runtime_checkable
@@ -166,38 +153,30 @@ def tell_limits(loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
 class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
     """The kinds of controllers."""
 
+    FEATURES = ControllerFeatures
+
     def build_for(self, config: ControllerConfig, robot: Robot, joints: bool) -> tuple[Loop, ...]:
         """Make the loops of a config, of a law of ours that follows joints where the desired motion is one of joints.
 
         Raises:
             ConfigError: see `build`.
         """
-        module = self.module(config.kind)
-        if joints and self.is_ours(config.kind) and isinstance(module, FollowsJoints) and module.FOLLOWS_JOINTS:
-            loops: tuple[Loop, ...] = module.build(config, robot, joints=True)
+        if joints and self.is_ours(config.kind) and self.features(config.kind).FOLLOWS_JOINTS:
+            loops: tuple[Loop, ...] = self.module(config.kind).build(config, robot, joints=True)
             return loops
         return self.build(config, robot)
 
-    def follows_paths(self, kind: str) -> bool:
-        """Tell whether a kind follows any path that the arm can follow; see FollowsPaths."""
-        module = self.module(kind)
-        return isinstance(module, FollowsPaths) and bool(module.FOLLOWS_PATHS)
-
     def start_posture(self, config: ControllerConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
-        """Return where the arm stands at a trajectory's start, or None where the kind has no wish; see ChoosesStart.
+        """Return the joint positions at the start of a trajectory, or None for no preference; see ControllerFeatures.
 
         Raises:
             ConfigError: where a module of the user's gives no posture of the robot.
             numpy.linalg.LinAlgError: where there is none.
         """
-        module = self.module(config.kind)
-        if not isinstance(module, ChoosesStart):
-            return None
-        wanted: FloatArray | None
+        features: ControllerFeatures = self.features(config.kind)
         if self.is_ours(config.kind):
-            wanted = module.start_posture(config, robot, start)
-            return wanted
-        wanted = self.ask(config, module.start_posture, robot, start)
+            return features.start_posture(config, robot, start)
+        wanted = self.ask(config, features.start_posture, robot, start)
         fault = None if wanted is None else find_fault(wanted, robot.home.shape)
         if fault:
             raise ConfigError(f"controller.kind: start_posture of '{config.kind}' gave {fault}")

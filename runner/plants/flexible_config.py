@@ -80,7 +80,7 @@ class FlexibleJointsConfig(StrictModel):
         return Flexibility(springs, motors, damping, self._find_brake_time(arm, flexible), torsion_feedback)
 
     def modes(self, arm: Robot, q: FloatArray) -> list[Mode]:
-        """Return how a robot's joints ring about a posture with their motors held, by frequency; see HasModes."""
+        """Return how a robot's joints ring about a posture with their motors held, by frequency; see find_modes."""
         flexibility = self.by_joint(arm)
         on = flexibility.flexible
         M = links_of(arm.model, on).mass_matrix(q)[np.ix_(on, on)]

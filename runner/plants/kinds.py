@@ -1,5 +1,7 @@
 """Optional features of plant modules and configs, beyond `CONFIG` and `build`; registry of plants."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, Literal, Protocol, runtime_checkable
 
@@ -14,7 +16,7 @@ from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.plant import Plant, unwrapped
 from runner.plants.servo import ServoConfig
 from runner.plugins.guard import Asked, Attribute, Guard, Method, array, checked, refuse
-from runner.plugins.registry import KindConfig, Registry
+from runner.plugins.registry import Features, KindConfig, Registry
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 
@@ -57,53 +59,34 @@ class HasServo(Protocol):
 
 
 @runtime_checkable
-class ContactsImplicitly(Protocol):
-    """A module whose plants make contacts themselves, and says whether in each step, from the velocity at its end."""
-
-    IMPLICIT_CONTACT: bool
-
-
-@runtime_checkable
-class MovesExactly(Protocol):
-    """A module that says whether a step moves positions exactly under a held force, or by the velocity at its end."""
-
-    def moves_exactly(self, config: PlantConfig) -> bool:
-        """Tell it of a config."""
-        ...
-
-
-@runtime_checkable
-class MovesByRungeKutta(Protocol):
-    """A module whose plants are the classical Runge-Kutta scheme on a motion, so that runs may be compiled whole."""
-
-    def motion(self, config: PlantConfig, robot: Robot) -> Motion | None:
-        """Return what a plant moves; None where this plant is more than rigid bodies with friction."""
-        ...
-
-
-@runtime_checkable
-class HasModes(Protocol):
-    """A module whose plants are flexible, and tells how they ring; springs in joints are known by HasFlexibleJoints."""
-
-    def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-        """Return the modes of a robot about a posture with its motors held, by frequency; see find_modes."""
-        ...
-
-
-@runtime_checkable
 class IsFallback(Protocol):
     """A config of plants that may stand in for another kind, which is missing; None where nothing is missing."""
 
     in_place_of: str | None
 
 
-@runtime_checkable
-class ChoosesStep(Protocol):
-    """A module that chooses the integration step if the config gives none; the default is the control tick."""
+@dataclass(frozen=True)
+class PlantFeatures(Features):
+    """Optional members of the module of a plant.
 
-    def default_step(self, tick: float, stages: int) -> float:
-        """Return the step for a control tick, in s, and a number of stages, in s."""
-        ...
+    Attributes:
+        IMPLICIT_CONTACT: True if its plants compute the contact force of a wall in each step, from the velocity at the
+            end of the step.
+        default_step: Function of the control tick, in s, and the number of stages that returns the integration step,
+            in s, if the config gives none.
+        motion: Function of the config and the robot that returns the rigid bodies with friction that its plants
+            integrate by the classical Runge-Kutta scheme, or None if they do more. Such runs may be compiled.
+        modes: Function of the config, the robot and a posture that returns the modes of a flexible robot with its
+            motors held, by frequency; see find_modes. Springs in joints are known from the config.
+        moves_exactly: Function of the config that returns True if a step moves positions exactly under a constant
+            force, and False if by the velocity at its end.
+    """
+
+    IMPLICIT_CONTACT: bool = False
+    default_step: Callable[[float, int], float] = lambda tick, stages: tick
+    motion: Callable[[Any, Robot], Motion | None] = lambda config, robot: None
+    modes: Callable[[Any, Robot, FloatArray], list[Mode]] = lambda config, robot, q: []
+    moves_exactly: Callable[[Any], bool] = lambda config: False
 
 
 def _check_state(_: Any, asked: Asked, q: FloatArray, dq: FloatArray) -> None:
@@ -143,6 +126,8 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
     tick; those that follow joint positions the tick, in s, and the ticks from one command to the next.
     """
 
+    FEATURES = PlantFeatures
+
     def names(self) -> list[str]:
         """Return the known kinds; see Kinds. Without PyBullet bullet is none of them."""
         return [kind for kind in super().names() if kind != "bullet" or engines.has_pybullet()]
@@ -157,35 +142,20 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
             raise ConfigError(engines.bullet_missing())
         return super().module(kind)
 
-    def default_step(self, kind: str, tick: float, stages: int) -> float:
-        """Return the step of a kind if its config gives none, in s; see ChoosesStep."""
-        module = self.module(kind)
-        return module.default_step(tick, stages) if isinstance(module, ChoosesStep) else tick
-
     def motion(self, config: PlantConfig, robot: Robot) -> Motion | None:
-        """Return what a plant moves; None where it is not known to be moved by the Runge-Kutta scheme.
+        """Return what a plant integrates by the Runge-Kutta scheme, or None; see PlantFeatures.
 
         Raises:
             ConfigError: see find_motion.
         """
-        module = self.module(config.kind)
-        return module.motion(config, robot) if isinstance(module, MovesByRungeKutta) else None
+        found: Motion | None = self.features(config.kind).motion(config, robot)
+        return found
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-        """Return the modes of a built-in plant about a posture with its motors held, if it may ring; see HasModes."""
+        """Return the modes of a built-in plant about a posture with its motors held; none if it is rigid."""
         if not self.is_ours(config.kind):
             return []
         if isinstance(config, HasFlexibleJoints) and config.flexible_joints is not None:
             return config.flexible_joints.modes(robot, q)
-        module = self.module(config.kind)
-        return module.modes(config, robot, q) if isinstance(module, HasModes) else []
-
-    def moves_exactly(self, config: PlantConfig) -> bool:
-        """Tell whether a step moves positions exactly under a held force; see MovesExactly."""
-        module = self.module(config.kind)
-        return isinstance(module, MovesExactly) and module.moves_exactly(config)
-
-    def contacts_implicitly(self, kind: str) -> bool:
-        """Tell whether a kind makes contacts in each step, from the velocity at its end; see ContactsImplicitly."""
-        module = self.module(kind)
-        return isinstance(module, ContactsImplicitly) and bool(module.IMPLICIT_CONTACT)
+        found: list[Mode] = self.features(config.kind).modes(config, robot, q)
+        return found

@@ -178,5 +178,5 @@ def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) 
 
 
 def moves_exactly(config: MujocoConfig) -> bool:
-    """Tell whether the integrator is the Runge-Kutta scheme; see MovesExactly."""
+    """Tell whether the integrator is the Runge-Kutta scheme."""
     return config.integrator == "rk4"

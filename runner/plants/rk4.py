@@ -107,10 +107,10 @@ def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> 
 
 
 def motion(config: Rk4Config, robot: Robot) -> Motion | None:
-    """Return what the plant moves; None for flexible joints, which are not compiled; see MovesByRungeKutta."""
+    """Return what the plant moves; None for flexible joints, which are not compiled."""
     return None if config.flexible_joints is not None else find_motion(robot, config)
 
 
 def moves_exactly(config: Rk4Config) -> bool:
-    """Tell that the scheme is of fourth order; see MovesExactly."""
+    """Tell that the scheme is of fourth order."""
     return True

@@ -148,12 +148,12 @@ def build(config: Rk4FlexibleLinksConfig, robot: Robot, step: float, steps_per_t
 
 
 def modes(config: Rk4FlexibleLinksConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-    """Return how the links ring with the motors held; see HasModes."""
+    """Return how the links ring with the motors held."""
     chain = config.chain(robot)
     M = chain.mass_matrix(q)[np.ix_(chain.springs, chain.springs)]
     return find_modes(M, config.damping(robot), np.diag(chain.stiffness))
 
 
 def moves_exactly(config: Rk4FlexibleLinksConfig) -> bool:
-    """Tell that the scheme is of fourth order; see MovesExactly."""
+    """Tell that the scheme is of fourth order."""
     return True

@@ -7,21 +7,15 @@ their own kinds: see runner/plugins/discovery.py.
 
 import copy
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
 from functools import lru_cache
 from types import ModuleType
-from typing import Concatenate, Generic, Literal, ParamSpec, Protocol, TypeVar, runtime_checkable
+from typing import Any, Concatenate, Generic, Literal, ParamSpec, Protocol, TypeVar
 
 from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest
 from runner.base.former_names import explain_value
 from runner.plugins.discovery import added_parts, load
 from runner.schema.model import StrictModel
-
-
-@runtime_checkable
-class HasConfig(Protocol):
-    """The module of a kind, with the pydantic model of its config."""
-
-    CONFIG: type[StrictModel]
 
 
 class KindConfig(Protocol):
@@ -37,16 +31,21 @@ Commands = Literal["torque", "position"]
 """What a controller gives and a plant takes: torques of the joints, or their positions."""
 
 
-@runtime_checkable
-class CommandsJoints(Protocol):
-    """The module of a controller or plant that says what its kind gives or takes; without this it is torques."""
+@dataclass(frozen=True)
+class Features:
+    """Optional members of the module of a kind; each has the value that a module without it has.
 
-    COMMANDS: Commands
+    Attributes:
+        COMMANDS: What a controller gives or a plant takes.
+    """
+
+    COMMANDS: Commands = "torque"
 
 
-@lru_cache(maxsize=64)
-def _commands(module: ModuleType) -> Commands:
-    return module.COMMANDS if isinstance(module, CommandsJoints) else "torque"
+@lru_cache(maxsize=256)
+def _features(of_group: type[Features], module: ModuleType) -> Any:
+    names = [field.name for field in fields(of_group)]
+    return of_group(**{name: getattr(module, name) for name in names if hasattr(module, name)})
 
 
 C = TypeVar("C", bound=KindConfig, contravariant=True)
@@ -64,6 +63,8 @@ class Kinds:
         modules: Module name of each kind.
     """
 
+    FEATURES = Features
+
     def __init__(self, group: str, modules: Mapping[str, str]) -> None:
         self.group = group
         self._modules = dict(modules)
@@ -79,7 +80,7 @@ class Kinds:
             ConfigError: if the kind is unknown, or its module cannot be imported or has no such model.
         """
         module = self.module(kind)
-        model = module.CONFIG if isinstance(module, HasConfig) else None
+        model = vars(module).get("CONFIG")
         if not (isinstance(model, type) and issubclass(model, StrictModel)):
             raise ConfigError(
                 f"{self.group}.kind: module {module.__name__} of '{kind}' needs CONFIG, a class derived from "
@@ -93,7 +94,12 @@ class Kinds:
 
     def commands(self, kind: str) -> Commands:
         """Return what a kind of controllers gives, or a kind of plants takes."""
-        return _commands(self.module(kind))
+        commands: Commands = self.features(kind).COMMANDS
+        return commands
+
+    def features(self, kind: str) -> Any:
+        """Return the optional members of the module of a kind, an object of the class FEATURES of the registry."""
+        return _features(self.FEATURES, self.module(kind))
 
     def module(self, kind: str) -> ModuleType:
         """Return the module of a kind.

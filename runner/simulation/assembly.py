@@ -123,7 +123,7 @@ def find_start(config: RunConfig) -> FloatArray:
         q_start = path.q_start
     else:
         q_start = start_posture(config.controller, arm, path.start, config.ignore_base_rotation)
-    if CONTROLLERS.follows_paths(config.controller.kind):
+    if CONTROLLERS.features(config.controller.kind).FOLLOWS_PATHS:
         end = config.timing.ticks * config.timing.tick
         check_path(config.controller, arm, path, q_start, config.robot.settling_band, end)
     return q_start
@@ -190,7 +190,7 @@ def _make_touched_plant(config: RunConfig, wall: Wall) -> Plant:
     """Return the plant of an arm without a tool, whose tip touches a wall within its steps."""
     timing = config.timing
     plant = PLANTS.build(config.plant, config.arm, timing.step, 1)
-    lead = 0.5 if PLANTS.moves_exactly(config.plant) else 0.0
+    lead = 0.5 if PLANTS.features(config.plant.kind).moves_exactly(config.plant) else 0.0
     return WithTipContact(plant, config.arm.model, wall, timing.step, timing.steps_per_tick, lead)
 
 

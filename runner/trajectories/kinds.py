@@ -1,5 +1,7 @@
 """Optional features of trajectory configs and modules, and the registry of trajectories."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -7,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.plugins.guard import Asked, Guard, Method, checked, describe_fault, find_fault, read_only
-from runner.plugins.registry import KindConfig, Registry
+from runner.plugins.registry import Features, KindConfig, Registry
 from runner.trajectories.trajectory import Trajectory
 
 if TYPE_CHECKING:  # they import Pinocchio, which who reads a stored run does not need
@@ -31,13 +33,16 @@ class HasGoal(Protocol):
     """Tip position at the end, in m."""
 
 
-@runtime_checkable
-class MovesJoints(Protocol):
-    """A module whose trajectories may be motions of the joints, from which that of the tip follows."""
+@dataclass(frozen=True)
+class TrajectoryFeatures(Features):
+    """Optional members of the module of a trajectory.
 
-    def joint_motion(self, config: KindConfig, robot: "Robot") -> "JointMotion | None":
-        """Return the motion of a robot's joints; None where the config describes one of the tip."""
-        ...
+    Attributes:
+        joint_motion: Function of the config and the robot that returns the motion of the robot's joints that the config
+            describes, or None if it describes a motion of the tip.
+    """
+
+    joint_motion: "Callable[[Any, Robot], JointMotion | None]" = lambda config, robot: None
 
 
 class _ByRun(Method):
@@ -97,14 +102,15 @@ def guard_trajectory(trajectory: Any, *_: object) -> Any:
 class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):
     """The kinds of trajectories; `build` gives each the tip position at t = 0, shape (3,), in m."""
 
+    FEATURES = TrajectoryFeatures
+
     def joint_motion(self, config: KindConfig, robot: "Robot") -> "JointMotion | None":
-        """Return the motion of a robot's joints, where a kind of ours has one; see MovesJoints.
+        """Return the motion of a robot's joints that a built-in kind describes, or None; see TrajectoryFeatures.
 
         Raises:
-            ConfigError: where the config does not fit the robot.
+            ConfigError: if the config does not fit the robot.
         """
-        module = self.module(config.kind)
-        if not (self.is_ours(config.kind) and isinstance(module, MovesJoints)):
+        if not self.is_ours(config.kind):
             return None
-        motion: JointMotion | None = module.joint_motion(config, robot)
+        motion: JointMotion | None = self.features(config.kind).joint_motion(config, robot)
         return motion

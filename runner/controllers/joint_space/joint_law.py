@@ -120,7 +120,7 @@ class JointLaw(TorqueLaw[N], Generic[N, C]):
 def joint_law_builder(
     law: Callable[[RobotModel, C, FloatArray, bool], Controller],
 ) -> Callable[..., tuple[Loop, ...]]:
-    """Return the `build` of a module, from its law of (arm, config, home, whether joints lead); see FollowsJoints."""
+    """Return the `build` of a module, from its law of (arm, config, home, whether joints lead)."""
 
     def build(config: C, robot: Robot, joints: bool = False) -> tuple[Loop, ...]:
         """Make the one loop that a config describes; it commands every joint.

@@ -45,7 +45,7 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         ticks=round(law.period / timing.tick),
         delay=timing.late[0],
         interpolate=plant.servo.interpolate,
-        implicit=PLANTS.contacts_implicitly(plant.kind),
+        implicit=PLANTS.features(plant.kind).IMPLICIT_CONTACT,
         law=law.law,
         at_tip=law.wrench_frame == "tip",
         inertia=law.compensation == "gravity_and_inertia",
