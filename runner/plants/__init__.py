@@ -1,15 +1,7 @@
 """Plants (simulated arms): true motion from joint torques or commanded joint positions."""
 
 from runner.plants.kinds import GUARD, PlantConfig, Plants
-from runner.plants.plant import (
-    ContactPlant,
-    Plant,
-    PositionPlant,
-    ReportsContact,
-    TellsEndPoints,
-    ToolReactionPlant,
-    unwrapped,
-)
+from runner.plants.plant import Plant, PositionPlant, unwrapped
 
 PLANTS = Plants(
     "plant",
@@ -25,12 +17,8 @@ PLANTS = Plants(
 
 __all__ = [
     "PLANTS",
-    "ContactPlant",
     "Plant",
     "PlantConfig",
     "PositionPlant",
-    "ReportsContact",
-    "TellsEndPoints",
-    "ToolReactionPlant",
     "unwrapped",
 ]

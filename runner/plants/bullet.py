@@ -73,7 +73,7 @@ class BulletConfig(TorquePlantConfig):
     flexible_joints: FlexibleJointsConfig | None = None
 
 
-class Bullet:
+class Bullet(Plant):
     """An arm in PyBullet, torque-controlled, without motors, damping or speed limit; a wall is all that it can touch.
 
     PyBullet knows no armature: an arm that has one gets, in each step, the torques that give its accelerations.
@@ -183,8 +183,8 @@ class Bullet:
         states = pybullet.getJointStates(body, joints, client)
         self._put(self._state.data, 0, *[state[0] for state in states], *[state[1] for state in states])
 
-    def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> None:
-        """Put up a wall for the links that have a collision shape; see ContactPlant."""
+    def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> bool:
+        """Add a wall for the links that have a collision shape; see Plant."""
         client = self._client
         box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[1.0, 1.0, 0.5], physicsClientId=client)
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), normal).coeffs()
@@ -201,6 +201,7 @@ class Bullet:
             lateralFriction=0.0,
             physicsClientId=client,
         )
+        return True
 
     def tool_reaction(self) -> FloatArray | None:
         """Return Bullet's own reading of what the tool puts on the flange in the last step; None without a tool.
@@ -213,7 +214,7 @@ class Bullet:
         return -np.array(pybullet.getJointState(self._body, self._tool_mount, physicsClientId=self._client)[2])
 
     def contact_wrench(self) -> FloatArray:
-        """Return the wrench of the wall on the arm; see ContactPlant."""
+        """Return the wrench of the wall on the arm; see Plant."""
         wrench = np.zeros(6)
         if self._wall is not None:
             for contact in pybullet.getContactPoints(self._body, self._wall, physicsClientId=self._client):

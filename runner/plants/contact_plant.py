@@ -6,8 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
-from runner.plants.friction import friction_of
-from runner.plants.plant import Plant, push
+from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
 
 
@@ -22,7 +21,7 @@ class Surface(Protocol):
         ...
 
 
-class WithTipContact:
+class WithTipContact(PlantWrapper):
     r"""A plant of which the tip, a point, touches a surface: its force is held for an integration step.
 
     The force f(x, v) of a step from q_n is taken at
@@ -46,8 +45,8 @@ class WithTipContact:
     def __init__(
         self, plant: Plant, model: RobotModel, surface: Surface, step: float, steps_per_tick: int, lead: float
     ) -> None:
-        self._plant, self._surface = plant, surface
-        self.q, self.dq = plant.q, plant.dq
+        super().__init__(plant)
+        self._surface = surface
         self._model, self._tip = model.pin_model, model.tip_frame
         self._data = self._model.createData()
         self._step, self._steps_per_tick, self._lead = step, steps_per_tick, lead
@@ -56,20 +55,16 @@ class WithTipContact:
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state, and the surface where it stands to the tip there; see Plant."""
-        self._plant.reset(q, dq)
+        super().reset(q, dq)
         pin.forwardKinematics(self._model, self._data, q)
         self._surface.reset(pin.updateFramePlacement(self._model, self._data, self._tip).translation.copy())
         self._time = 0.0
         self._touch(0.0)
 
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
-        self._plant.set_gravity(gravity)
-
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
         for _ in range(self._steps_per_tick):
-            push(self._plant, tau, self._touch(self._lead * self._step))
+            self.plant.push(tau, self._touch(self._lead * self._step))
             self._time += self._step
         self._touch(0.0)
 
@@ -86,14 +81,5 @@ class WithTipContact:
         return load
 
     def contact_wrench(self) -> FloatArray:
-        """Return the wrench of the surface on the arm in the state that it has now; see ReportsContact."""
+        """Return the wrench of the surface on the arm in the state that it has now; see Plant."""
         return self._wrench
-
-    @property
-    def friction(self) -> FloatArray:
-        """What friction in the joints took from the torques in the last step; see TellsFriction."""
-        return friction_of(self._plant)
-
-    def close(self) -> None:
-        """Release what the plant holds."""
-        self._plant.close()

@@ -11,7 +11,7 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plants.computation import ComputationConfig
-from runner.plants.friction import friction_of, with_friction
+from runner.plants.friction import with_friction
 from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
 from runner.robots.model import RobotModel
@@ -157,7 +157,7 @@ def default_step(tick: float, stages: int) -> float:
     return tick / (10.0 if stages == 1 else 4.0)
 
 
-class Decoupled:
+class Decoupled(Plant):
     """Arms that ride on each other without feeling it.
 
     A carrier feels no rider. A rider's base is carried kinematically: it feels gravity as R^T g, renewed at each tick,
@@ -199,8 +199,8 @@ class Decoupled:
 
     @property
     def friction(self) -> FloatArray:
-        """What friction took from the torques in the last tick; see TellsFriction."""
-        return np.concatenate([friction_of(plant) for plant in self._plants])
+        """Friction of all plants; see Plant."""
+        return np.concatenate([plant.friction for plant in self._plants])
 
     def close(self) -> None:
         """Release what the plants hold."""

@@ -8,6 +8,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.plants.compiled_flexible import compile_flexible
+from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.modes import largest_rate
 
@@ -82,7 +83,7 @@ def runge_kutta(slope: Callable[[FloatArray], FloatArray], x: FloatArray, h: flo
     return x
 
 
-class FlexibleJoints:
+class FlexibleJoints(Plant):
     r"""An arm with flexible joints, by the classical Runge-Kutta scheme.
 
     .. math:: M(q) \ddot q + h(q, \dot q) = K (\theta - q) + D (\dot\theta - \dot q), \qquad
@@ -115,7 +116,7 @@ class FlexibleJoints:
         self.dtheta: FloatArray = np.zeros(model.nq)
         """Motor velocities after the gear, shape (nq,), in rad/s; likewise."""
         self.load: FloatArray = np.zeros(model.nq)
-        """What the world adds to the torques of the links in the next tick; see TakesLoad."""
+        """Torques of the world on the links in the next tick; see Plant."""
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the links into a state, and the motors where their springs carry the links' weight; see Plant."""
@@ -172,6 +173,3 @@ class FlexibleJoints:
         links = pin.computeMechanicalEnergy(self._model, self._data, self.q, self.dq)
         springs = 0.5 * float(self._stiffness @ bent**2)
         return float(links) + springs + 0.5 * float(self._motors @ self.dtheta[self._on] ** 2)
-
-    def close(self) -> None:
-        """Hold nothing, release nothing."""

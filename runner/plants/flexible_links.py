@@ -8,6 +8,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.lazy_modules import pin
 from runner.plants.flexible_joints import runge_kutta
+from runner.plants.plant import Plant
 from runner.robots.chain import Chain
 
 _MOST_STEPS = 50
@@ -15,7 +16,7 @@ _AT_REST = 1e-10  # N m
 _FARTHEST = 0.5  # rad, of a spring
 
 
-class FlexibleLinks:
+class FlexibleLinks(Plant):
     r"""A chain of rigid parts with springs between them, by the classical Runge-Kutta scheme on Pinocchio's dynamics.
 
     .. math:: M(x) \ddot x + h(x, \dot x) + K x + D \dot x = \tau
@@ -30,6 +31,8 @@ class FlexibleLinks:
         steps_per_tick: Integration steps for which the torques of one tick are held.
         ends: Frames at which the stages end, from the base outwards.
     """
+
+    bends = True
 
     def __init__(
         self,
@@ -108,12 +111,12 @@ class FlexibleLinks:
         return np.concatenate([speeds, pin.aba(self._model, self._data, places, speeds, forces)])
 
     def end_points(self) -> FloatArray:
-        """Return the end point of each stage, shape (stages, 3), in m; see TellsEndPoints."""
+        """Return the end point of each stage, shape (stages, 3), in m."""
         pin.framesForwardKinematics(self._model, self._data, self.places)
         return np.array([self._data.oMf[end].translation for end in self._ends])
 
     def tip_motion(self) -> FloatArray:
-        """Return position and velocity of the tip, shape (2, 3), in m and m/s; see TellsEndPoints."""
+        """Return position and velocity of the tip, shape (2, 3), in m and m/s."""
         model, data, tip = self._model, self._data, self._ends[-1]
         pin.forwardKinematics(model, data, self.places, self.speeds)
         place = pin.updateFramePlacement(model, data, tip)
@@ -125,6 +128,3 @@ class FlexibleLinks:
         kinetic = float(self.speeds @ (M @ self.speeds)) - 0.5 * float(np.diag(M) @ self.speeds**2)
         weight = float(pin.computePotentialEnergy(self._model, self._data, self.places))
         return kinetic + weight + 0.5 * float(self._K @ self.places**2)
-
-    def close(self) -> None:
-        """Hold nothing, release nothing."""

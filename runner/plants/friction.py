@@ -1,15 +1,12 @@
 """Dry and viscous joint friction of a torque-driven arm."""
 
-from typing import Protocol, runtime_checkable
-
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import lapack, pin
-from runner.plants.plant import Plant, PlantWrapper, ReportsContact
+from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
 
-_NO_CONTACT = np.zeros(6)
 _PIVOTS = 100  # at most; an arm of ten joints takes one where nothing starts or stops, else a few
 _ROUNDING = 1e-12  # of the torques that act
 
@@ -19,7 +16,7 @@ def with_friction(plant: Plant, model: RobotModel, viscous: FloatArray, coulomb:
     return Frictional(plant, model, viscous, coulomb, tick) if viscous.any() or coulomb.any() else plant
 
 
-class Frictional:
+class Frictional(PlantWrapper):
     r"""A plant with friction in its joints, by backward Euler over the plant's tick h.
 
     .. math:: (M + h b) \dot q^+ = M \dot q + h (\tau - V - G - \mu), \quad
@@ -38,27 +35,28 @@ class Frictional:
     """
 
     def __init__(self, plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
-        self.plant = plant
-        """What friction brakes."""
-        self._contacts = plant if isinstance(plant, ReportsContact) else None
-        self.q, self.dq = plant.q, plant.dq
+        super().__init__(plant)
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()
         self._tick = tick
         self._damping = tick * viscous
         self._viscous, self._coulomb = viscous, coulomb
         self._direction = np.zeros(model.nq)
-        self.friction: FloatArray = np.zeros(model.nq)
-        """What it took from the torques in the last tick; see TellsFriction."""
+        self._friction = np.zeros(model.nq)
+
+    @property
+    def friction(self) -> FloatArray:
+        """Torques of friction in the last tick; see Plant."""
+        return self._friction
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state; see Plant."""
-        self.plant.reset(q, dq)
+        super().reset(q, dq)
         self._direction[:] = 0.0
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
-        self.plant.set_gravity(gravity)
+        super().set_gravity(gravity)
         self._model.gravity.linear = gravity
 
     def advance(self, tau: FloatArray) -> None:
@@ -71,21 +69,17 @@ class Frictional:
         _, columns, _ = lapack.dposv(M + np.diag(self._damping), np.column_stack([pushed, h * np.eye(len(tau))]))
         speed, mobility = columns[:, 0], columns[:, 1:]
         mu, self._direction = stopping_torques(mobility, speed, self._coulomb, self._direction)
-        self.friction = self._viscous * (speed - mobility @ mu) + mu
-        self.plant.advance(tau - self.friction)
+        self._friction = self._viscous * (speed - mobility @ mu) + mu
+        self.plant.advance(tau - self._friction)
 
     def _contact_torque(self) -> FloatArray:
         """Return the joint torques of contacts that the plant made in the last tick, shape (nq,), in N m."""
-        wrench = _NO_CONTACT if self._contacts is None else self._contacts.contact_wrench()
-        if not wrench.any():
+        wrench = self.plant.contact_wrench()
+        if wrench is None or not wrench.any():
             return np.zeros(len(self.q))
         pin.computeJointJacobians(self._model, self._data, self.q)
         torque: FloatArray = pin.getJointJacobian(self._model, self._data, self._model.nq, pin.WORLD).T @ wrench
         return torque
-
-    def close(self) -> None:
-        """Release what the plant holds."""
-        self.plant.close()
 
 
 def stopping_torques(
@@ -124,22 +118,3 @@ def stopping_torques(
         first = wrong[0]
         direction[first] = np.sign(mu[first]) if held[first] else 0.0
     return np.clip(mu, -limit, limit), direction
-
-
-@runtime_checkable
-class TellsFriction(Protocol):
-    """A plant that tells the friction of its joints."""
-
-    @property
-    def friction(self) -> FloatArray:
-        """What friction took from the torques in the last tick, shape (nq,), in N m."""
-        ...
-
-
-def friction_of(plant: Plant) -> FloatArray:
-    """Return what friction took from the torques of a plant in the last tick, shape (nq,), in N m."""
-    while not isinstance(plant, TellsFriction):
-        if not isinstance(plant, PlantWrapper):
-            return np.zeros(len(plant.q))
-        plant = plant.plant
-    return plant.friction

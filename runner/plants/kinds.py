@@ -13,9 +13,9 @@ from runner.base.errors import ConfigError, SimulationError
 from runner.plants.computation import ComputationConfig
 from runner.plants.decoupled import Motion
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.plant import Plant, unwrapped
+from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
-from runner.plugins.guard import Asked, Attribute, Guard, Method, array, checked, refuse
+from runner.plugins.guard import Asked, Attribute, Guard, Method, checked, refuse
 from runner.plugins.registry import Features, KindConfig, Registry
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
@@ -97,13 +97,21 @@ def _check_state(_: Any, asked: Asked, q: FloatArray, dq: FloatArray) -> None:
             raise SimulationError(f"{type(asked.part).__name__}.{name} has the shape {found}; it must be {q.shape}")
 
 
-def _check_reaction(answer: Any, asked: Asked) -> FloatArray | None:
-    """Return the reaction in the mount of a tool, if there is one."""
+def _check_wrench(answer: Any, asked: Asked) -> FloatArray | None:
+    """Return a wrench, if there is one."""
     return None if answer is None else checked(answer, (6,), asked)
+
+
+def _innermost(part: Any) -> Any:
+    """Return the plant of the user that moves the arm, inside his wrappers."""
+    while hasattr(part, "plant"):
+        part = part.plant
+    return part
 
 
 GUARD = Guard(
     "plant",
+    Plant,
     q=Attribute(),
     dq=Attribute(),
     tau=Attribute(optional=True),
@@ -112,9 +120,9 @@ GUARD = Guard(
     set_gravity=Method(),
     advance=Method(),
     close=Attribute(),
-    add_wall=Method(optional=True, owner=unwrapped, fail=refuse),
-    contact_wrench=Method(array(6), optional=True, owner=unwrapped),
-    tool_reaction=Method(_check_reaction, optional=True, owner=unwrapped),
+    add_wall=Method(lambda answer, *_: answer is not False, optional=True, owner=_innermost, fail=refuse),
+    contact_wrench=Method(_check_wrench, optional=True, owner=_innermost),
+    tool_reaction=Method(_check_wrench, optional=True, owner=_innermost),
 )
 """Checks of a user-supplied plant."""
 

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.plants.computation import ComputationConfig
-from runner.plants.plant import Plant
+from runner.plants.plant import Plant, PositionPlant
 from runner.plants.servo import SetPoints
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -32,7 +32,7 @@ class KinematicConfig(StrictModel):
     computation: ComputationConfig
 
 
-class Kinematic:
+class Kinematic(PositionPlant):
     """Joint positions that follow their commands exactly, moving evenly, up to the joints' speed limits.
 
     Its torques are what inverse dynamics asks for that motion under the world's load; no limit acts on them.
@@ -69,9 +69,6 @@ class Kinematic:
         ddq = (dq - self.dq) / self._tick
         self.tau[:] = pin.rnea(self._model, self._data, self.q, dq, ddq) - self.load
         self.q[:], self.dq[:] = self._set_points.position, dq
-
-    def close(self) -> None:
-        """Hold nothing, release nothing."""
 
 
 CONFIG = KinematicConfig

@@ -4,6 +4,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.plants.flexible_joints import FlexibleJoints
+from runner.plants.plant import PlantWrapper
 from runner.robots.model import RobotModel
 
 
@@ -46,7 +47,7 @@ class MotorSide:
         return self._plant.flexibility.torsion_feedback * (self._plant.dq - self._plant.dtheta)
 
 
-class MotorFriction:
+class MotorFriction(PlantWrapper):
     r"""Flexible joints whose motors are braked by friction, by backward Euler over the tick h.
 
     .. math:: (B + h b) \dot\theta^+ = B \dot\theta + h (\tau - K (\theta - q) - D (\dot\theta - \dot q) - \mu), \quad
@@ -63,30 +64,21 @@ class MotorFriction:
     """
 
     def __init__(self, plant: FlexibleJoints, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
-        self.plant = plant
-        """What friction brakes."""
-        self.q, self.dq, self.load = plant.q, plant.dq, plant.load
+        super().__init__(plant)
+        self._springs = plant
         self._viscous, self._coulomb, self._tick = viscous, coulomb, tick
-        self.friction: FloatArray = np.zeros(len(plant.q))
-        """What it took from the motors' torques in the last tick; see TellsFriction."""
+        self._friction = np.zeros(len(plant.q))
 
-    def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state; see Plant."""
-        self.plant.reset(q, dq)
-
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
-        self.plant.set_gravity(gravity)
+    @property
+    def friction(self) -> FloatArray:
+        """Torques of friction in the last tick; see Plant."""
+        return self._friction
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the motors' torques for one tick, less friction; see Plant."""
-        plant, h, on = self.plant, self._tick, self.plant.flexibility.flexible
+        plant, h, on = self._springs, self._tick, self._springs.flexibility.flexible
         B, b, c = plant.flexibility.motors[on], self._viscous[on], self._coulomb[on]
         free = (B * plant.dtheta[on] + h * (tau - plant.spring_torque())[on]) / (B + h * b)
         mu = np.clip(free * (B + h * b) / h, -c, c)
-        self.friction[on] = b * (free - h * mu / (B + h * b)) + mu
-        plant.advance(tau - self.friction)
-
-    def close(self) -> None:
-        """Release what the plant holds."""
-        self.plant.close()
+        self._friction[on] = b * (free - h * mu / (B + h * b)) + mu
+        plant.advance(tau - self._friction)

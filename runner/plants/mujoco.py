@@ -54,7 +54,7 @@ class MujocoConfig(TorquePlantConfig):
     flexible_joints: FlexibleJointsConfig | None = None
 
 
-class Mujoco:
+class Mujoco(Plant):
     """A serial arm in MuJoCo, torque-controlled, without damping or speed limit; a wall is all that it can touch.
 
     Args:
@@ -109,8 +109,8 @@ class Mujoco:
         self._tau[:] = tau
         mujoco.mj_step(self._model, self._data, self._steps_per_tick)
 
-    def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> None:
-        r"""Put up a wall for the links that have a collision shape; see ContactPlant.
+    def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> bool:
+        r"""Add a wall for the links that have a collision shape; see Plant.
 
         Backward Euler on spring and damper, as Bullet has them, is MuJoCo's contact
 
@@ -131,9 +131,10 @@ class Mujoco:
             model.pair_solimp[pair, :2] = d
             model.pair_solref[pair] = -(1.0 - d) * mobility * np.array([stiffness, h * stiffness + damping])
         model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+        return True
 
     def contact_wrench(self) -> FloatArray:
-        """Return the wrench of the wall on the arm; see ContactPlant."""
+        """Return the wrench of the wall on the arm; see Plant."""
         wrench, data = np.zeros(6), self._data
         for index, contact in enumerate(data.contact):
             mujoco.mj_contactForce(self._model, data, index, self._wrench)
@@ -160,9 +161,6 @@ class Mujoco:
         mujoco.mj_fwdPosition(self._model, data)
         mujoco.mj_fullM(self._model, data, M)
         return M
-
-    def close(self) -> None:
-        """Hold nothing, release nothing."""
 
 
 CONFIG = MujocoConfig

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.plants.plant import Plant
+from runner.plants.plant import Plant, PlantWrapper
 
 
-class PayloadChanges:
+class PayloadChanges(PlantWrapper):
     """Plants of one arm with one payload after another.
 
     At a change the arm goes on from where it is and as fast as it is: the new payload has the speed that the tip has,
@@ -20,18 +20,14 @@ class PayloadChanges:
     """
 
     def __init__(self, plants: Sequence[Plant], ticks: Sequence[int]) -> None:
+        super().__init__(plants[0])
         self._plants, self._ticks = plants, ticks
-        self._tick = self._now = 0
-        self.q, self.dq = plants[0].q.copy(), plants[0].dq.copy()
-
-    @property
-    def plant(self) -> Plant:
-        """The plant that moves now."""
-        return self._plants[self._now]
+        self._tick = 0
+        self.q, self.dq = self.q.copy(), self.dq.copy()
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state, with its first payload; see Plant."""
-        self._tick = self._now = 0
+        self._tick, self.plant = 0, self._plants[0]
         self._put(q, dq)
 
     def set_gravity(self, gravity: FloatArray) -> None:
@@ -41,9 +37,9 @@ class PayloadChanges:
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
-        now = int(np.searchsorted(self._ticks, self._tick, side="right"))
-        if now != self._now:
-            self._now = now
+        now = self._plants[int(np.searchsorted(self._ticks, self._tick, side="right"))]
+        if now is not self.plant:
+            self.plant = now
             self._put(self.q, self.dq)
         self.plant.advance(tau)
         self.q[:], self.dq[:] = self.plant.q, self.plant.dq

@@ -29,7 +29,7 @@ class Rk4Config(TorquePlantConfig):
     flexible_joints: FlexibleJointsConfig | None = None
 
 
-class Rk4:
+class Rk4(Plant):
     """An arm integrated by the classical Runge-Kutta scheme.
 
     Its accelerations are compiled code's where that is to be had, else those of Pinocchio's articulated-body algorithm.
@@ -86,9 +86,6 @@ class Rk4:
             total += a3
             total += a4
             v += (h / 6.0) * total
-
-    def close(self) -> None:
-        """Hold nothing, release nothing."""
 
 
 CONFIG = Rk4Config

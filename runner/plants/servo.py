@@ -5,7 +5,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import lapack, pin
-from runner.plants.plant import Plant
+from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel
 from runner.schema.units import JointStiffness, Seconds
@@ -135,7 +135,7 @@ class ServoLaw:
         return tau
 
 
-class JointServo:
+class JointServo(PlantWrapper):
     """Position servos, by ServoLaw, around a plant that takes torques; these are clipped at the effort limits.
 
     Args:
@@ -161,23 +161,21 @@ class JointServo:
         ticks_per_command: int,
         delay: int = 0,
     ) -> None:
-        self.plant = plant
-        """What the servos drive, by torques."""
-        self.q, self.dq = plant.q, plant.dq
+        super().__init__(plant)
         self.tau = np.zeros(model.nq)
-        self.load = np.zeros(model.nq)
+        self.load: FloatArray = np.zeros(model.nq)
         self._law = ServoLaw(model, config, home)
         self._limits = limits
         self._set_points = SetPoints(ticks_per_command, config.period, model.velocity_limits, config.interpolate, delay)
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state, its set-points where it stands; see Plant."""
-        self.plant.reset(q, dq)
+        super().reset(q, dq)
         self._set_points.reset(q)
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Take another gravity vector; see Plant."""
-        self.plant.set_gravity(gravity)
+        super().set_gravity(gravity)
         self._law.set_gravity(gravity)
 
     def advance(self, command: FloatArray) -> None:
@@ -186,7 +184,3 @@ class JointServo:
         tau = self._law.torques(self.q, self.dq, self._set_points.position, self._set_points.velocity)
         np.clip(tau, -self._limits, self._limits, out=self.tau)
         self.plant.advance(self.tau + self.load)
-
-    def close(self) -> None:
-        """Release what the plant holds."""
-        self.plant.close()

@@ -62,7 +62,7 @@ class Method:
 
     Attributes:
         check: Function of the answer, an `Asked` and the arguments that returns the checked answer.
-        optional: Whether a part may lack the name. The proxy then lacks it as well.
+        optional: Whether a part may lack the name. The proxy then has the default of the base class, if any.
         owner: Function that returns the owner of the method from the part.
         fail: Function of an `Asked` and the message that handles a fault.
     """
@@ -127,11 +127,12 @@ class Guard:
 
     Args:
         group: Config group of the kind.
+        base: Base class of the proxy, for the defaults of optional members.
         members: Rule for each method or attribute, by name.
     """
 
-    def __init__(self, group: str, **members: Method) -> None:
-        self.group, self._members = group, members
+    def __init__(self, group: str, base: type = object, /, **members: Method) -> None:
+        self.group, self._base, self._members = group, base, members
 
     def __call__(self, part: Any, *_: object) -> Any:
         """Return a part behind the checks."""
@@ -141,7 +142,7 @@ class Guard:
             if not member.optional or hasattr(owner, name):
                 bound = member.bind(Asked(self, owner, name))
                 found[name] = staticmethod(bound) if callable(bound) else bound
-        return type("Guarded", (Guarded,), found)()
+        return type("Guarded", (Guarded, self._base), found)()
 
 
 def unguarded(part: Any) -> Any:

@@ -18,7 +18,7 @@ from runner.environments import ENVIRONMENTS
 from runner.environments.external_wrench import Interaction
 from runner.environments.wall import Wall
 from runner.metrics import MetricContext
-from runner.plants import PLANTS, Plant, PositionPlant
+from runner.plants import PLANTS, Plant
 from runner.plants.contact_plant import WithTipContact
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
@@ -156,7 +156,7 @@ def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> LoopProgram | Compil
     return compile_commands(commands) if loop_program is None else loop_program
 
 
-def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall | None = None) -> Plant | PositionPlant:
+def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall | None = None) -> Plant:
     """Return the plant, behind joint servos where it takes torques and loops of a period command joint positions."""
     arm, timing = config.arm, config.timing
     ticks_per_command = round(period / timing.tick)

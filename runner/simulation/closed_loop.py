@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from runner.base.arrays import FloatArray
 from runner.controllers import Loop
 from runner.environments.external_wrench import Interaction
-from runner.plants import Plant, PositionPlant
+from runner.plants import Plant
 from runner.plants.motors import MotorSide
 from runner.plugins.registry import Commands
 from runner.robots.robot import Robot
@@ -36,7 +36,7 @@ class ClosedLoop:
     """
 
     robot: Robot
-    plant: Plant | PositionPlant
+    plant: Plant
     loops: tuple[Loop, ...]
     trajectory: Trajectory
     limits: FloatArray

@@ -8,7 +8,6 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.controllers import Controller, Loop, PositionController
 from runner.plants import Plant, PositionPlant
-from runner.plants.plant import push
 from runner.sensing import Encoders
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.recorder import Recorder
@@ -92,7 +91,7 @@ class TorqueInput:
     def advance(self, k: int, load: FloatArray | None) -> None:
         """Move the plant; see PlantInput."""
         command = self._timing.at(self._commands, k)
-        self._plant.advance(command) if load is None else push(self._plant, command, load)
+        self._plant.advance(command) if load is None else self._plant.push(command, load)
 
 
 class PositionInput:

@@ -14,7 +14,7 @@ from runner.controllers.kinds import ChecksStability
 from runner.environments import Environment
 from runner.environments.external_wrench import Interaction
 from runner.environments.wall import Wall
-from runner.plants import PLANTS, ContactPlant, Plant, ReportsContact, ToolReactionPlant, unwrapped
+from runner.plants import PLANTS, Plant
 from runner.sensing import WristSensor
 from runner.simulation.closed_loop import ClosedLoop
 
@@ -50,18 +50,16 @@ def add_wall(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
         late = math.ceil(config.timing.late[0] * config.timing.tick / config.controller.period - 1e-9)
         controller, values = config.controller, wall.config
         check_wall(controller.law, controller.period, values.stiffness, values.damping, late)
-    within = unwrapped(plant)
-    if not isinstance(within, ContactPlant):
+    wall.reset(config.path.start)
+    tool = config.robot.tool
+    ball = (0.0 if tool is None else tool.tip_radius) * wall.normal  # it is the ball's centre that is led
+    if not plant.add_wall(wall.point - ball, wall.normal.copy(), wall.config.stiffness, wall.config.damping):
         return wall
     if wall.config.friction:
         raise ConfigError(
             f"environment.friction: {wall.config.friction:g} found, and plant={config.plant.kind} makes the "
             "contact of a tool without friction; take 0, robot.tool=null (the tip touches), or plant=rk4"
         )
-    wall.reset(config.path.start)
-    tool = config.robot.tool
-    ball = (0.0 if tool is None else tool.tip_radius) * wall.normal  # it is the ball's centre that is led
-    within.add_wall(wall.point - ball, wall.normal.copy(), wall.config.stiffness, wall.config.damping)
     return None
 
 
@@ -78,9 +76,7 @@ class Contact:
     """
 
     def __init__(self, closed: ClosedLoop, interaction: Interaction, wrist: WristSensor) -> None:
-        moved = unwrapped(closed.plant)
-        self._contacts = moved if isinstance(moved, ReportsContact) else None
-        self._reactions = moved if isinstance(moved, ToolReactionPlant) else None
+        self._plant = closed.plant
         self._interaction = interaction
         self._wrist = wrist
         self._controllers = [loop.wrench_feedback for loop in closed.loops if loop.wrench_feedback is not None]
@@ -90,11 +86,11 @@ class Contact:
     def update(self, k: int, time: float, q: FloatArray, dq: FloatArray) -> FloatArray:
         """Take the state at tick k, and return the joint torques of the world; see Interaction.update."""
         interaction, signals = self._interaction, self._signals
-        contact = _NOTHING if self._contacts is None else self._contacts.contact_wrench()
-        torques = interaction.update(time, q, dq, contact)
+        contact = self._plant.contact_wrench()
+        torques = interaction.update(time, q, dq, _NOTHING if contact is None else contact)
         reading = self._wrist.read(k, interaction.load)
         signals.external[k], signals.load[k], signals.reading[k] = interaction.external, interaction.load, reading
-        reaction = None if self._reactions is None else self._reactions.tool_reaction()
+        reaction = self._plant.tool_reaction()
         if reaction is not None:
             signals.reaction[k] = interaction.to_flange_axes(reaction)
         for controller in self._controllers:

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.trace import Failure, Trace
-from runner.plants import TellsEndPoints, unwrapped
 from runner.robots.robot import end_points
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.contact import Contact
@@ -87,9 +86,8 @@ class Recorder:
         self.q, self.dq, self.commands, self.torques = (np.zeros((rows, nq)) for _ in range(4))
         self.q[0] = closed.q_start
         self.end_points: FloatArray | None = None
-        moved = unwrapped(closed.plant)
-        self._bends = moved if isinstance(moved, TellsEndPoints) else None
-        if self._bends is not None:
+        self._bends = closed.plant.bends
+        if self._bends:
             self.end_points = np.zeros((len(closed.robot.stages), rows, 3))
         self._checked = 0
         self.clock = np.zeros(rows, dtype=np.int64)
@@ -102,8 +100,8 @@ class Recorder:
         self.clock[k] = self.now()
         self.q[k] = q = self._plant.q
         self.dq[k] = dq = self._plant.dq
-        if self._bends is not None and self.end_points is not None:
-            self.end_points[:, k] = self._bends.end_points()
+        if self._bends and self.end_points is not None:
+            self.end_points[:, k] = self._plant.end_points()
         return q, dq
 
     def keep_command(self, k: int) -> None:

@@ -9,8 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.config.cross_checks import computation_of, endpoint_ticks
 from runner.config.run import RunConfig
 from runner.controllers.kinds import ReadsJointTorques
-from runner.plants import Plant, PositionPlant, TellsEndPoints, unwrapped
-from runner.plants.friction import friction_of
+from runner.plants import Plant
 from runner.robots.model import RobotModel
 from runner.sensing import (
     JOINT_TORQUE_SENSORS,
@@ -41,12 +40,8 @@ class MeasuredTip:
         nominal: The nominal robot.
     """
 
-    def __init__(
-        self, sensor: EndpointSensor, plant: Plant | PositionPlant, true: RobotModel, nominal: RobotModel
-    ) -> None:
+    def __init__(self, sensor: EndpointSensor, plant: Plant, true: RobotModel, nominal: RobotModel) -> None:
         self._sensor, self._plant, self._true, self._nominal = sensor, plant, true, nominal
-        moved = unwrapped(plant)
-        self._bent = moved if isinstance(moved, TellsEndPoints) else None
 
     def correct(self, tick: int, q: FloatArray, dq: FloatArray, desired: FloatArray) -> FloatArray:
         """Return the motion that the law is to ask of the tip as the encoders tell it.
@@ -58,8 +53,8 @@ class MeasuredTip:
             desired: Desired motion of the tip, shape (3, 3): position, velocity, acceleration.
         """
         if self._sensor.due(tick):
-            straight, bent = self._plant, self._bent
-            true = _moves(self._true, straight.q, straight.dq) if bent is None else bent.tip_motion()
+            plant = self._plant
+            true = plant.tip_motion() if plant.bends else _moves(self._true, plant.q, plant.dq)
             self._sensor.measure(tick, true, _moves(self._nominal, q, dq))
         corrected = desired.copy()
         corrected[:2] -= self._sensor.correction(tick)
@@ -133,7 +128,7 @@ class JointTorques:
         """Keep what acted from tick k to the next one."""
         if not self._readers:
             return
-        acted = self._recorder.timing.at(self._recorder.commands, k) - friction_of(self._closed.plant)
+        acted = self._recorder.timing.at(self._recorder.commands, k) - self._closed.plant.friction
         for reader in self._readers:
             reader.sum, reader.count = reader.sum + acted, reader.count + 1
 

@@ -5,6 +5,7 @@ import pinocchio as pin
 from scipy.integrate import solve_ivp
 
 from runner.base.arrays import FloatArray
+from runner.plants import Plant
 from runner.robots.model import RobotModel
 
 _LEAST = 100.0 * np.finfo(float).eps  # the relative tolerance that SciPy takes
@@ -12,7 +13,7 @@ _STAGES, _STEP = 8, 0.0025  # of the collocation; its longest step, in s
 _ITERATIONS, _SETTLED = 60, 4e-16  # at most; the change relative to the state at which its stages are taken as solved
 
 
-class _Arm:
+class _Arm(Plant):
     """The state of an arm that stands on the ground; see Plant.
 
     Args:
@@ -26,10 +27,6 @@ class _Arm:
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Put the arm into a state; see Plant."""
         self.q[:], self.dq[:] = q, dq
-
-    def set_gravity(self, gravity: FloatArray) -> None:
-        """Refuse: the arm stands on the ground."""
-        raise NotImplementedError("the gravity of a rider's base")
 
 
 class Adaptive(_Arm):

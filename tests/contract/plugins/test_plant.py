@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from runner.plants import PLANTS
-from runner.plants.plant import push
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 
@@ -38,16 +37,19 @@ def test_a_plant_that_raises_is_a_failure_that_names_the_place(checked_config, c
     assert trace.q.tolist() == [[0.1, 0.2, 0.3]] * 3
 
 
-def test_a_guarded_plant_has_what_the_plant_has_and_no_more():
+def test_a_guarded_plant_has_the_defaults_of_what_the_plant_lacks():
     plant = PLANTS.guard(Plant())
     assert plant.q.tolist() == [0.1, 0.2, 0.3]
-    assert not hasattr(plant, "add_wall")
+    assert plant.add_wall(np.zeros(3), np.zeros(3), 1.0, 0.0) is False
+    assert plant.contact_wrench() is None
+    assert plant.tool_reaction() is None
+    assert plant.friction.tolist() == [0.0, 0.0, 0.0]
 
 
 def test_a_plant_without_a_load_gets_the_torques_of_the_world_with_those_of_the_motors():
     plant, given = Plant(), []
     plant.advance = given.append
-    push(PLANTS.guard(plant), np.array([1.0, 2.0, 3.0]), np.full(3, 0.5))
+    PLANTS.guard(plant).push(np.array([1.0, 2.0, 3.0]), np.full(3, 0.5))
     assert [tau.tolist() for tau in given] == [[1.5, 2.5, 3.5]]
 
 

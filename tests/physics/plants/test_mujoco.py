@@ -7,7 +7,6 @@ import pytest
 from support import strangers
 
 from runner.base.errors import ConfigError
-from runner.plants import ContactPlant, ToolReactionPlant
 from runner.plants.mujoco import Mujoco, build, default_step
 from runner.robots import RobotModel
 
@@ -100,8 +99,6 @@ def test_joints_in_another_order_are_refused():
 
 def test_it_makes_contacts_and_feels_tools():
     plant = make(pendulum(), "rod")
-    assert isinstance(plant, ContactPlant)
-    assert isinstance(plant, ToolReactionPlant)
     assert plant.tool_reaction() is None
     assert not plant.contact_wrench().any()
 
