@@ -14,7 +14,8 @@ from runner.controllers import ControllerConfig, Loop
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch import NotchConfig
 from runner.plants import PLANTS, PlantConfig
-from runner.plugins.registry import Commands, KindConfig
+from runner.plugins.features import Commands
+from runner.plugins.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

@@ -8,8 +8,9 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.force.admittance_filter import Admittance
+from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Attribute, Guard, Method, array, checked, find_fault, refuse
-from runner.plugins.registry import Features, KindConfig, Registry
+from runner.plugins.registry import KindConfig, Registry
 from runner.robots.robot import Robot
 
 
@@ -153,7 +154,9 @@ def tell_limits(loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
 class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
     """The kinds of controllers."""
 
-    FEATURES = ControllerFeatures
+    def features(self, kind: str) -> ControllerFeatures:
+        """Return the optional members of the module of a kind."""
+        return read_features(ControllerFeatures, self.module(kind))
 
     def build_for(self, config: ControllerConfig, robot: Robot, joints: bool) -> tuple[Loop, ...]:
         """Make the loops of a config, of a law of ours that follows joints where the desired motion is one of joints.
@@ -173,7 +176,7 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
             ConfigError: where a module of the user's gives no posture of the robot.
             numpy.linalg.LinAlgError: where there is none.
         """
-        features: ControllerFeatures = self.features(config.kind)
+        features = self.features(config.kind)
         if self.is_ours(config.kind):
             return features.start_posture(config, robot, start)
         wanted = self.ask(config, features.start_posture, robot, start)

@@ -15,8 +15,9 @@ from runner.plants.decoupled import Motion
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
+from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Asked, Attribute, Guard, Method, checked, refuse
-from runner.plugins.registry import Features, KindConfig, Registry
+from runner.plugins.registry import KindConfig, Registry
 from runner.robots.modes import Mode
 from runner.robots.robot import Robot
 
@@ -134,7 +135,9 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
     tick; those that follow joint positions the tick, in s, and the ticks from one command to the next.
     """
 
-    FEATURES = PlantFeatures
+    def features(self, kind: str) -> PlantFeatures:
+        """Return the optional members of the module of a kind."""
+        return read_features(PlantFeatures, self.module(kind))
 
     def names(self) -> list[str]:
         """Return the known kinds; see Kinds. Without PyBullet bullet is none of them."""
@@ -156,8 +159,7 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         Raises:
             ConfigError: see find_motion.
         """
-        found: Motion | None = self.features(config.kind).motion(config, robot)
-        return found
+        return self.features(config.kind).motion(config, robot)
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
         """Return the modes of a built-in plant about a posture with its motors held; none if it is rigid."""
@@ -165,5 +167,4 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
             return []
         if isinstance(config, HasFlexibleJoints) and config.flexible_joints is not None:
             return config.flexible_joints.modes(robot, q)
-        found: list[Mode] = self.features(config.kind).modes(config, robot, q)
-        return found
+        return self.features(config.kind).modes(config, robot, q)

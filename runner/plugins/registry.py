@@ -7,14 +7,13 @@ their own kinds: see runner/plugins/discovery.py.
 
 import copy
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
-from functools import lru_cache
 from types import ModuleType
-from typing import Any, Concatenate, Generic, Literal, ParamSpec, Protocol, TypeVar
+from typing import Concatenate, Generic, ParamSpec, Protocol, TypeVar
 
 from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest
 from runner.base.former_names import explain_value
 from runner.plugins.discovery import added_parts, load
+from runner.plugins.features import Commands, Features, read_features
 from runner.schema.model import StrictModel
 
 
@@ -25,27 +24,6 @@ class KindConfig(Protocol):
     def kind(self) -> str:
         """Name of the kind."""
         ...
-
-
-Commands = Literal["torque", "position"]
-"""What a controller gives and a plant takes: torques of the joints, or their positions."""
-
-
-@dataclass(frozen=True)
-class Features:
-    """Optional members of the module of a kind; each has the value that a module without it has.
-
-    Attributes:
-        COMMANDS: What a controller gives or a plant takes.
-    """
-
-    COMMANDS: Commands = "torque"
-
-
-@lru_cache(maxsize=256)
-def _features(of_group: type[Features], module: ModuleType) -> Any:
-    names = [field.name for field in fields(of_group)]
-    return of_group(**{name: getattr(module, name) for name in names if hasattr(module, name)})
 
 
 C = TypeVar("C", bound=KindConfig, contravariant=True)
@@ -62,8 +40,6 @@ class Kinds:
         group: Name of the config group, such as "controller".
         modules: Module name of each kind.
     """
-
-    FEATURES = Features
 
     def __init__(self, group: str, modules: Mapping[str, str]) -> None:
         self.group = group
@@ -94,12 +70,7 @@ class Kinds:
 
     def commands(self, kind: str) -> Commands:
         """Return what a kind of controllers gives, or a kind of plants takes."""
-        commands: Commands = self.features(kind).COMMANDS
-        return commands
-
-    def features(self, kind: str) -> Any:
-        """Return the optional members of the module of a kind, an object of the class FEATURES of the registry."""
-        return _features(self.FEATURES, self.module(kind))
+        return read_features(Features, self.module(kind)).COMMANDS
 
     def module(self, kind: str) -> ModuleType:
         """Return the module of a kind.

@@ -48,7 +48,7 @@ _TABLE = """
         flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links flexible_wrapper=flexible_around
         friction kinds=plants.kinds kinematic motors=sensing.motors mujoco mujoco_model payload_changes
         plant=plants.plant rk4 rk4_flexible_links servo
-    plugins: guard metric_units registry
+    plugins: features guard metric_units registry
     robots: __init__=robots.__init__ cantilever chain denavit_hartenberg description
         inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses mjcf_urdf model
         modes mounting robot=robots.robot task_space tool_link tree workspace

@@ -8,8 +8,9 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
+from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Asked, Guard, Method, checked, describe_fault, find_fault, read_only
-from runner.plugins.registry import Features, KindConfig, Registry
+from runner.plugins.registry import KindConfig, Registry
 from runner.trajectories.trajectory import Trajectory
 
 if TYPE_CHECKING:  # they import Pinocchio, which who reads a stored run does not need
@@ -102,7 +103,9 @@ def guard_trajectory(trajectory: Any, *_: object) -> Any:
 class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):
     """The kinds of trajectories; `build` gives each the tip position at t = 0, shape (3,), in m."""
 
-    FEATURES = TrajectoryFeatures
+    def features(self, kind: str) -> TrajectoryFeatures:
+        """Return the optional members of the module of a kind."""
+        return read_features(TrajectoryFeatures, self.module(kind))
 
     def joint_motion(self, config: KindConfig, robot: "Robot") -> "JointMotion | None":
         """Return the motion of a robot's joints that a built-in kind describes, or None; see TrajectoryFeatures.
@@ -110,7 +113,4 @@ class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):
         Raises:
             ConfigError: if the config does not fit the robot.
         """
-        if not self.is_ours(config.kind):
-            return None
-        motion: JointMotion | None = self.features(config.kind).joint_motion(config, robot)
-        return motion
+        return self.features(config.kind).joint_motion(config, robot) if self.is_ours(config.kind) else None

@@ -171,7 +171,7 @@ def test_the_command_line_says_of_an_own_file_what_python_says(cli, tmp_path, co
 def test_an_own_config_folder_that_does_not_exist_is_named(cli, tmp_path):
     ending = cli("--config-dir", tmp_path / "nowhere", "robot=macro")
     assert ending.code == 2
-    assert ending.err == f"runner: --config-dir: no folder {tmp_path}/nowhere\n"
+    assert ending.err == f"runner: --config-dir: no such folder ('{tmp_path}/nowhere').\n"
 
 
 @pytest.mark.parametrize("place", [".", "robots"])
