@@ -158,16 +158,7 @@ def _range(band: "Band") -> str:
 
 
 def _check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | None) -> int:
-    """Print a line for each bound of some runs; return 1 if one is broken or there are too few repetitions.
-
-    Args:
-        runs: The runs, with the same spec.
-        cells: Names of their cells; none for one run.
-        at_most: Highest allowed probability of failing; None if no repetition may fail.
-
-    Raises:
-        RunnerError: if a run lacks a metric of its spec.
-    """
+    """Print a line for each bound of some runs; return 1 if one is broken or there are too few repetitions."""
     from runner.reporting.spec_blocks import HEADER
 
     rows, good = [], []

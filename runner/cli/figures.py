@@ -105,11 +105,7 @@ def _of_study(name: str, outputs: Path) -> "tuple[Document, Path]":
 
 
 def _tell_failure(run: "Run") -> None:
-    """Print that a run failed, and the end of its trace.
-
-    Raises:
-        RunnerError: if the run has no trace to draw.
-    """
+    """Print that a run failed, and the end of its trace; raise an error if it has no trace to draw."""
     if run.status == "ok":
         return
     times = run.trace()["t"] if (run.folder / "trace.parquet").exists() else ()

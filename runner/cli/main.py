@@ -134,11 +134,7 @@ def dispatch(words: Sequence[str]) -> int:
 
 
 def _explain(error: Exception) -> int:
-    """Print an unexpected error; return the exit code.
-
-    Raises:
-        OSError: if the error is an OSError and no plug-in caused it.
-    """
+    """Print an unexpected error and return the exit code; raise an OSError that no plug-in caused."""
     from runner.plugins.discovery import has_users_parts
 
     if user_place(error) and has_users_parts():
@@ -227,11 +223,7 @@ def _run_command(name: str, words: Sequence[str]) -> int:
 
 
 def _run_overrides(words: Sequence[str]) -> int:
-    """Simulate the run or the sweep of a line.
-
-    Raises:
-        RunnerError: if the line begins with a word that is neither a command nor an override.
-    """
+    """Simulate the run or the sweep of a line; reject a first word that is neither a command nor an override."""
     first = words[0]
     if first in FORMER_COMMANDS:
         raise RunnerError(f"{first} is now called {FORMER_COMMANDS[first]}.")

@@ -36,18 +36,6 @@ _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
 
 
 @dataclass(frozen=True)
-class _Way:
-    """Options of a study: folder of runs and reports, overrides of the engine, command, profile, code, plug-ins."""
-
-    outputs: Path
-    overrides: Sequence[str]
-    command: str
-    profile: str = ""
-    code: bool = False
-    parts: "Sequence[UserPlugin]" = ()
-
-
-@dataclass(frozen=True)
 class _Reproduced:
     """Result of a study: its report, its runs by name, the reasons for missing runs, and the expected caveats."""
 
@@ -87,15 +75,13 @@ def run(options: Namespace) -> int:
     if options.study not in (AUDIT, "all"):
         find_study(options.study, (AUDIT, "all"))  # rejects an unknown name before anything is read
     plugins = [word for text in named_parts() for word in ("--plugin", text)]
-    command = shlex.join(["runner", *plugins, "reproduce", *options.words])
-    workers = [] if options.jobs is None else [f"hydra.sweeper.workers={options.jobs}"]
-    way = _Way(
-        options.output, [*options.overrides, *workers], command, options.profile, options.code, _parts(options.study)
-    )
+    options.command = shlex.join(["runner", *plugins, "reproduce", *options.words])
+    options.overrides += [] if options.jobs is None else [f"hydra.sweeper.workers={options.jobs}"]
+    options.parts = _parts(options.study)
     made = {}
-    for study in _chosen(options.study, way):
-        name, made[name] = _reproduce(study, way)
-        print(way.outputs / "reports" / name, file=sys.stderr if options.json else None)
+    for study in _chosen(options):
+        name, made[name] = _reproduce(study, options)
+        print(options.output / "reports" / name, file=sys.stderr if options.json else None)
     if options.json:
         print(_conclusions(made), end="")
     fallen = _tell_fallen(made) if options.check else False
@@ -111,25 +97,20 @@ def _parts(study: str) -> "tuple[UserPlugin, ...]":
     return read_user_plugins(in_use())
 
 
-def _chosen(text: str, way: _Way) -> "list[Study | None]":
-    """Return the named study, or all studies, those with the fewest runs first; None stands for the audit.
-
-    In this order the first report appears early.
-
-    Raises:
-        RunnerError: if there is no such study; lists the existing studies.
-    """
+def _chosen(options: Namespace) -> "list[Study | None]":
+    """Return the named study, or all studies, those with the fewest runs first; None stands for the audit."""
     from runner.study.study import load_study
 
+    text, code, profile = options.study, options.code, options.profile
     if text == AUDIT:
         return [None]
     if text != "all":
-        return [load_study(text, way.code, way.profile, (AUDIT, "all"), way.parts)]
-    studies = [study for name in study_names() if (study := load_study(name, way.code, way.profile)).manifest.in_all]
+        return [load_study(text, code, profile, (AUDIT, "all"), options.parts)]
+    studies = [study for name in study_names() if (study := load_study(name, code, profile)).manifest.in_all]
     return [None, *sorted(studies, key=lambda study: len(study.jobs()))]
 
 
-def _reproduce(study: "Study | None", way: _Way) -> "tuple[str, _Reproduced]":
+def _reproduce(study: "Study | None", options: Namespace) -> "tuple[str, _Reproduced]":
     from runner import store
     from runner.reporting.render import write_report
     from runner.store.atomic import write_atomically
@@ -137,9 +118,9 @@ def _reproduce(study: "Study | None", way: _Way) -> "tuple[str, _Reproduced]":
 
     name = AUDIT if study is None else study.name
     progress.set_title(name)
-    folder = way.outputs / "reports" / name
-    store.prepare(way.outputs)
-    made = _audit(folder) if study is None else _reproduce_study(study, way)
+    folder = options.output / "reports" / name
+    store.prepare(options.output)
+    made = _audit(folder) if study is None else _reproduce_study(study, options)
     print("writing the report ...", file=sys.stderr)
     write_report(made.document, folder)
     if study is not None and study.tuned:
@@ -176,18 +157,18 @@ def _conclusions(made: Mapping[str, _Reproduced]) -> str:
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
-def _reproduce_study(study: "Study", way: _Way) -> _Reproduced:
+def _reproduce_study(study: "Study", options: Namespace) -> _Reproduced:
     """Simulate the runs of a study, and create its document."""
     from runner.reporting.markup import literal
     from runner.study.check import formulas_at
     from runner.study.claims import late_claims
     from runner.study.execute import make_all
 
-    study.measure(way.outputs)
-    runs, calibrations = make_all(study, way.outputs, way.overrides, way.command)
+    study.measure(options.output)
+    runs, calibrations = make_all(study, options.output, options.overrides, options.command)
     missing = runs.missing | calibrations.missing
     document = study.document(runs, calibrations)
-    late = late_claims(way.outputs, study, runs)
+    late = late_claims(options.output, study, runs)
     document = replace(document, notes=[*document.notes, *map(literal, late)])
     for line in late:
         print(f"runner: {study.name}: {line}", file=sys.stderr)

@@ -76,13 +76,7 @@ def simulate(words: Sequence[str]) -> int:
 
 
 class _Line:
-    """Overrides of a command line, as typed or as passed by Hydra to its task or to the sweeper of the runner.
-
-    Attributes:
-        overrides: Overrides; None if the line simulates nothing.
-        many: Whether the line is a sweep.
-        root: Name of the primary config.
-    """
+    """Overrides of a line, as typed or as Hydra passes them to its task or sweeper; None if it simulates nothing."""
 
     def __init__(self, overrides: Sequence[str] | None = None, many: bool = False) -> None:
         self.overrides, self.many, self.root = overrides, many, "config"
@@ -108,13 +102,7 @@ class _Line:
 
 
 def _simulate(words: Sequence[str], config_dirs: Sequence[Path], command: str) -> int:
-    """Simulate the run or the sweep of a command line; print its folder as the last line.
-
-    Args:
-        words: Overrides, and flags of Hydra.
-        config_dirs: The user's config folders.
-        command: The command line; it is stored with a sweep.
-    """
+    """Simulate the run or the sweep of a line with flags of Hydra; print its folder as the last line."""
     from runner.config.compose.compose import compose
     from runner.config.compose.composer import Composer
 

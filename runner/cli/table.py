@@ -58,11 +58,7 @@ def run(options: Namespace) -> int:
 
 
 def _format(options: Namespace) -> str:
-    """Return the requested format, by its name or by the suffix of the file; empty if none is requested.
-
-    Raises:
-        RunnerError: if there is no such format, or Parquet would go to a terminal.
-    """
+    """Return the requested format, by its name or by the suffix of the file; empty if none is requested."""
     chosen: str = (options.format or [""])[0]
     if not chosen and options.output is not None:
         chosen = _ENDINGS.get(options.output.suffix.lower(), "")

@@ -260,11 +260,7 @@ def _part(sweep: Sweep, cells: Sequence[int]) -> Sweep:
 
 
 def _with_finer(measurements: Measurements, outputs: Path) -> Measurements:
-    """Return measurements with the metrics on a finer step of the plant, for the cells that have them stored.
-
-    Raises:
-        DamagedError: If a file is damaged.
-    """
+    """Return measurements with the metrics on a finer step of the plant, for the cells that have them stored."""
     known = finer_names(outputs)
     rows = [(cell, read_finer(outputs, name)) for cell, name in enumerate(measurements.hashes) if name in known]
     if not rows:

@@ -162,10 +162,7 @@ def _plugin_words(word: str) -> Iterator[str]:
 
 
 def _stored_folders(word: str, kinds: Sequence[Kind]) -> Iterator[str]:
-    """Yield the folders in ./outputs with some kinds of stored results, and the word `latest`.
-
-    If there are many, only their parent folder is yielded until it is typed.
-    """
+    """Yield stored folders in ./outputs, or their parent folder if there are many, and the word `latest`."""
     yield WORD
     for kind in kinds:
         above = f"outputs/{KINDS[kind].folder}/"
@@ -179,13 +176,7 @@ def _stored_folders(word: str, kinds: Sequence[Kind]) -> Iterator[str]:
 
 
 def _files(word: str, suffix: str = "", folders_only: bool = False) -> Iterator[str]:
-    """Yield the paths that complete a typed path; folders end with a slash.
-
-    Args:
-        word: The typed word.
-        suffix: Required suffix of a file name.
-        folders_only: Whether to yield only folders.
-    """
+    """Yield the paths that complete a typed path, with a suffix or only folders; folders end with a slash."""
     name = word.rpartition("/")[2]
     parent = word.removesuffix(name)
     for entry in _entries(parent or "."):

@@ -9,15 +9,8 @@ import numpy as np
 from runner.base.dotted_keys import split_override
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.markup import literal
-from runner.reporting.sweep import (
-    axes,
-    distributions,
-    effects,
-    failures,
-    maps,
-    spec,
-    tradeoff,
-)
+from runner.reporting.sweep import distributions, effects, maps, spec, tradeoff
+from runner.reporting.sweep.cells import axes_section, caveats_section, failures_section, has_caveats
 from runner.reporting.sweep.question import find_question, pairs_section, range_told, sentences, too_few
 from runner.reporting.sweep.subject import Subject, choose
 from runner.store import Sweep
@@ -44,8 +37,8 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     """
     subject = choose(measure_sweep(sweep), metrics)
     measurements = subject.measurements
-    doubts = [failures.caveats_section(subject)] if failures.has_caveats(subject) else []
-    sections = [*doubts, axes.section(subject, sweep.command)]
+    doubts = [caveats_section(subject)] if has_caveats(subject) else []
+    sections = [*doubts, axes_section(subject, sweep.command)]
     if sweep.spec:
         sections.append(spec.section(subject, sweep))
     ranked = subject.ranked
@@ -63,7 +56,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         low, high = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
         sections.append(distributions.extremes_section(subject, low, high))
     if measurements.failed:
-        sections.append(failures.section(subject))
+        sections.append(failures_section(subject))
     sections.append(_all_runs(subject, sweep, runs_address))
     sections.append(Section("Provenance", (Provenance(_made_by(subject, sweep)),)))
     return Document(

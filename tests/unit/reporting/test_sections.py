@@ -7,7 +7,7 @@ import pytest
 from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.reporting.document import Curves, Maps, Notice, Table, Text
-from runner.reporting.sweep import axes, distributions, effects, failures, maps
+from runner.reporting.sweep import cells, distributions, effects, maps
 from runner.reporting.sweep.effects import cells_with_intervals
 from runner.reporting.sweep.subject import choose
 from runner.sweeps.differing import Difference
@@ -23,7 +23,7 @@ def three_axes():
 
 
 def test_axes_are_told_with_their_values_and_the_command():
-    made = axes.section(two_axes(), "runner -m noise.position=1e-4,1e-3,1e-2")
+    made = cells.axes_section(two_axes(), "runner -m noise.position=1e-4,1e-3,1e-2")
     (table,) = blocks(made, Table)
     assert table.rows[1] == ["torque_limits.max (N m)", "4", "20, 40, 60, 80"]
     assert table.origin.command.startswith("runner -m")
@@ -38,16 +38,16 @@ def test_what_differs_beyond_the_axes_stands_beside_them():
         Difference("robot.home", (), [("", "x" * 80)]),
     ]
     subject = choose(replace(plain.measurements, differences=found))
-    _, table = blocks(axes.section(subject, ""), Table)
+    _, table = blocks(cells.axes_section(subject, ""), Table)
     assert table.caption.startswith("Also differs: config values that are not the same in all cells")
     assert table.rows[0] == ["controller.period (s)", "noise.position", "0.0001, 0.001: 0.01; 0.01: 0.001"]
     assert table.rows[1][1:] == ["none", "x" * 57 + "..."]
-    assert len(blocks(axes.section(plain, ""), Table)) == 1
+    assert len(blocks(cells.axes_section(plain, ""), Table)) == 1
 
 
 def test_failures_and_few_repetitions_are_said_at_once():
     sample = {"rms": noisy(lambda noise, limit: 1.0 + noise, repetitions=5)}
-    failure, warning = blocks(axes.section(two_axes(failed=[0], **sample), ""), Notice)
+    failure, warning = blocks(cells.axes_section(two_axes(failed=[0], **sample), ""), Notice)
     assert failure.title == "1 of 12 runs failed"
     assert warning.title == "Too few repetitions for intervals: 5 of 6"
 
@@ -200,7 +200,7 @@ def test_cells_stand_in_order():
 
 
 def test_failed_runs_are_listed_with_where_they_lie():
-    by_axis, runs = failures.section(two_axes(failed=[0, 4])).blocks
+    by_axis, runs = cells.failures_section(two_axes(failed=[0, 4])).blocks
     assert ["torque_limits.max", "20", "2 of 3"] in by_axis.rows
     assert ["noise.position", "0.001", "1 of 4"] in by_axis.rows
     assert [row[1:] for row in runs.rows] == [

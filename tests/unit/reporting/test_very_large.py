@@ -6,7 +6,7 @@ from support.sample_sweep import measurements
 
 from runner.reporting.charts.thinning import POINTS
 from runner.reporting.document import Curves, Table, Text
-from runner.reporting.sweep import distributions, effects, failures, maps, tradeoff
+from runner.reporting.sweep import cells, distributions, effects, maps, tradeoff
 from runner.reporting.sweep.subject import MOST_GROUPS, choose, group_levels
 
 SEEDS = 3000
@@ -85,7 +85,7 @@ def test_distributions_are_of_groups_not_of_single_seeds(subject):
 
 
 def test_of_many_failures_some_are_listed(subject):
-    by_axis, runs = of_kind(failures.section(subject), Table)
+    by_axis, runs = of_kind(cells.failures_section(subject), Table)
     assert len([row for row in by_axis.rows if row[0] == "seed"]) == 40
     assert [row[2] for row in by_axis.rows if row[0] == "controller.natural_frequency"] == [f"300 of {SEEDS}"]
     assert len(runs.rows) == 40
