@@ -9,11 +9,10 @@ import json
 import math
 import sys
 from argparse import ArgumentTypeError, Namespace
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import RunnerError
 from runner.base.quantities import plain_number
 from runner.base.sanitize import align_columns, one_line
@@ -22,14 +21,7 @@ from runner.store.kinds import kind_of, open_stored
 
 if TYPE_CHECKING:
     from runner.recordings.compare import RecordingComparison
-    from runner.reporting.answers import Answer, Asked
-    from runner.reporting.comparison.differences import Value
-    from runner.reporting.comparison.sweeps import SweepComparison
     from runner.store import Run, Sweep
-    from runner.sweeps.measurements import Measurements
-
-# Possible causes of a difference besides the config; date, machine and command do not affect the physics.
-_PROVENANCE = ("commit", "versions", "plant_step")
 
 
 class StoredOrRecording(Stored):
@@ -76,6 +68,7 @@ def run(options: Namespace) -> int:
 def _compare(options: Namespace) -> None:
     """Print a comparison of levels, runs or sweeps."""
     from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, measure_compared
+    from runner.reporting.comparison.text import level_lines, run_lines, sweep_lines
     from runner.store.axes import find_axis
     from runner.store.run import Run
     from runner.store.sweep import Sweep
@@ -104,14 +97,14 @@ def _compare(options: Namespace) -> None:
                 find_axis(first.axes, name, f"--{option}")
         by_axis = {axis: compare_levels(first, axis, options.within or None, metrics) for axis in options.by}
         answers = [answer for some in by_axis.values() for answer in some]
-        texts = ["\n".join(_level_lines(first, axis, some)) for axis, some in by_axis.items()]
+        texts = ["\n".join(level_lines(first, axis, some)) for axis, some in by_axis.items()]
     elif sweeps or options.json:
         found = [compare_sweeps(first, other, metrics) for other in others]
         answers = [answer for one in found for answer in one.answers]
-        texts = ["\n".join(_sweep_lines(one)) for one in found]
+        texts = ["\n".join(sweep_lines(one)) for one in found]
     else:
         check_metrics(metrics, [name for side in sides for name in side.values])
-        texts = ["\n".join(_run_lines((runs[0], run), (first, other), metrics))
+        texts = ["\n".join(run_lines((runs[0], run), (first, other), metrics))
                  for run, other in zip(runs[1:], others, strict=True)]  # fmt: skip
     print(_json_text(answer_rows(answers)) if options.json else "\n\n".join(texts))
 
@@ -121,164 +114,6 @@ def _json_text(rows: Sequence[Mapping[str, Any]]) -> str:
     infinite = (math.inf, -math.inf)
     finite = [{key: None if value in infinite else value for key, value in row.items()} for row in rows]
     return json.dumps(finite, indent=2, allow_nan=False)
-
-
-def _level_lines(side: "Measurements", axis: str, answers: "Sequence[Answer]") -> Iterator[str]:
-    from runner.reporting.answers import EXPLAINED, HEADER
-    from runner.reporting.comparison.pairs import label_text
-    from runner.reporting.comparison.sweeps import NOISE_ALONE, format_count, noise_alone
-
-    yield one_line(f"{side.folder}  {len(side.hashes)} cells, by {axis}; repetitions in each: {side.repetitions}")
-    if side.missing:
-        left = format_count(side.missing, "cell is", "cells are")
-        yield one_line(f"{left} not stored; continue with: {side.command}")
-    if side.failed:
-        yield f"{format_count(side.failed, 'cell', 'cells')} failed; a failed repetition counts as beyond every number"
-    along = [one for one in side.differences if axis in one.axes or not one.axes]
-    if along:
-        yield f"the levels of {axis} differ in more than {axis}; what follows may be due to any of these:"
-        yield align_columns([[one.key, "; ".join(f"{at}: {text}" for at, text in one.values)] for one in along])
-    else:
-        yield f"the levels of {axis} differ in {axis} alone"
-    yield _caveat_table([row[1:] for row in _caveats(side)])
-    yield ""
-    yield from (one_line(answer.sentence()) for answer in answers if answer.rank < 2 and not answer.at)
-    rows = [["at", axis, "metric", "unit", *HEADER, "the second is"]]
-    for answer in answers:
-        at = label_text(answer.at) if answer.at else "all"
-        rows.append([at, ", ".join(answer.names), answer.metric, answer.unit, *answer.plain_cells])
-    yield align_columns(rows, indent="")
-    yield ""
-    yield EXPLAINED
-    if side.repetitions > 1 and noise_alone(config for config, _ in side.configs):
-        yield NOISE_ALONE
-
-
-def _sweep_lines(found: "SweepComparison") -> Iterator[str]:
-    from runner.reporting.answers import EXPLAINED, HEADER
-    from runner.reporting.comparison.pairs import label_text
-    from runner.reporting.comparison.sweeps import NOISE_ALONE, POOLED, counts_by_sign, size_told
-
-    pairs, differences = found.pairs, found.differences
-    a, b = pairs.first, pairs.second
-    for side in (pairs.a, pairs.b):
-        yield one_line(f"{side.name}  {side.folder}  {size_told(side)}")
-    yield ""
-    yield one_line(differences.in_words(a, b))
-    if values := [*differences.options, *differences.values]:
-        yield align_columns([["key", a, b, "at"], *map(_value, values)])
-    made_by = [["made by", a, b, ""], *map(_value, differences.provenance)]
-    yield f"provenance differs:\n{align_columns(made_by)}" if differences.provenance else "same provenance"
-    yield from map(one_line, found.cells_told())
-    yield _caveat_table([*_caveats(pairs.a), *_caveats(pairs.b)])
-    yield ""
-    yield from (answer.sentence() for answer in found.answers if answer.rank < 2)
-    yield f"every metric {'in the one cell' if len(pairs) == 1 else f'over all {len(pairs)} cells'}, on the same seeds"
-    header = ["metric", "unit", a, b, f"{b} - {a}"]
-    rows = [[*header, *HEADER[1:], f"{b} is", "cells below, above 0"]]
-    for answer in found.answers:
-        rows.append([*_head(answer), *answer.plain_cells, "{}, {}".format(*counts_by_sign(answer))])
-    yield align_columns(rows, indent="")
-    if found.cells:
-        yield ""
-        yield f"largest differences in one cell, relative to the metric (chosen from {found.candidates}, not tested):"
-        rows = [[label_text(one.at), *_head(one), plain_number(one.comparison.difference)] for one in found.cells]
-        yield align_columns([["cell", *header], *rows])
-    yield ""
-    yield f"{POOLED} {EXPLAINED}"
-    if found.noise_alone:
-        yield NOISE_ALONE
-
-
-def _run_lines(
-    runs: "tuple[Run, Run]", sides: "tuple[Measurements, Measurements]", metrics: Sequence[str]
-) -> Iterator[str]:
-    from runner.reporting.comparison.differences import find_differences
-    from runner.reporting.comparison.pairs import match
-    from runner.store.stored import simulated_part
-
-    a, b = (side.name for side in sides)
-    for side, run in zip(sides, runs, strict=True):
-        yield one_line(f"{side.name}  {run.folder}  {run.failure or run.status}")
-    yield ""
-    yield one_line(find_differences(match(*sides)).in_words(a, b))
-    yield _changed_keys("config", [simulated_part(run.config) for run in runs], [a, b])
-    if runs[0].urdf != runs[1].urdf:
-        yield "  the text of robot.urdf differs"
-    made_by = [{key: run.provenance[key] for key in _PROVENANCE if key in run.provenance} for run in runs]
-    yield _changed_keys("provenance", made_by, [a, b])
-    yield _caveat_table([[side.name, str(one["rule"]), str(one["text"])] for side in sides for one in side.caveats[0]])
-    yield ""
-    header = ["metric", "unit", a, b, f"{b} - {a}", f"{b} / {a}"]
-    yield align_columns([header, *_metric_rows(sides, metrics)], indent="")
-    yield ""
-    yield from _paired_lines(sides, metrics)
-
-
-def _changed_keys(what: str, both: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
-    """Return a table of the dotted keys in which two mappings differ, or a message that they are equal."""
-    a, b = ({dotted(place): _shown(value) for place, value in leaves(one, lists=False)} for one in both)
-    rows = [[key, a.get(key, "(absent)"), b.get(key, "(absent)")] for key in {**a, **b} if a.get(key) != b.get(key)]
-    return f"{what} differs:\n{align_columns([['key', *names], *rows])}" if rows else f"same {what}"
-
-
-def _shown(value: Any) -> str:
-    return value if isinstance(value, str) else json.dumps(value)
-
-
-def _metric_rows(sides: "Sequence[Measurements]", metrics: Sequence[str]) -> Iterator[list[str]]:
-    """Yield the medians of each metric in two runs, their difference and their ratio."""
-    import numpy as np
-
-    for name in dict.fromkeys(metrics or [name for side in sides for name in side.values]):
-        unit = next(side.units[name] for side in sides if name in side.units)
-        a, b = (float(side.medians(name)[0]) if name in side.values else np.nan for side in sides)
-        shown = (a, b, b - a, b / a if a and np.isfinite(a) else np.nan)
-        yield [name, unit, *(plain_number(value if np.isfinite(value) else None) for value in shown)]
-
-
-def _paired_lines(sides: "tuple[Measurements, Measurements]", metrics: Sequence[str]) -> Iterator[str]:
-    """Yield the paired comparison of two runs on the same seeds, or the reason why there is none."""
-    from runner.reporting.answers import EXPLAINED, HEADER
-    from runner.reporting.comparison.pairs import match
-    from runner.reporting.comparison.sweeps import NOISE_ALONE, answer, noise_alone
-    from runner.statistics import SMALLEST_SAMPLE
-
-    a, b = sides
-    pairs = match(a, b)
-    count = min(a.repetitions, b.repetitions)
-    both = [name for name in metrics or a.values if name in a.values and name in b.values]
-    if not pairs.share_seeds.all():
-        yield f"not compared in pairs: seed {a.seeds[0]} and seed {b.seeds[0]} share no noise"
-    elif count < SMALLEST_SAMPLE:
-        yield f"not compared in pairs: {count} repetitions in common, and {SMALLEST_SAMPLE} are needed"
-    elif not both:
-        yield "not compared in pairs: no metric is in both"
-    else:
-        answers = answer([pairs], both, metrics)
-        yield from (one.sentence() for one in answers if one.rank < 2)
-        header = ["metric", "unit", f"{b.name} - {a.name}", *HEADER[1:], f"{b.name} is"]
-        yield align_columns([header, *([one.metric, one.unit, *one.plain_cells] for one in answers)])
-        yield EXPLAINED
-        if noise_alone(config for side in sides for config, _ in side.configs):
-            yield NOISE_ALONE
-
-
-def _caveats(side: "Measurements") -> list[list[str]]:
-    return [[side.name, rule, f"{count} of {len(side.hashes)} cells", text]
-            for rule, count, _, text in side.caveats_by_rule()]  # fmt: skip
-
-
-def _caveat_table(rows: Sequence[Sequence[str]]) -> str:
-    return f"caveats:\n{align_columns(rows)}" if rows else "no caveats"
-
-
-def _value(value: "Value") -> list[str]:
-    return [value.key, value.a, value.b, value.cells]
-
-
-def _head(one: "Asked") -> list[str]:
-    return [one.metric, one.unit, *map(plain_number, one.comparison.medians)]
 
 
 def _explain_alone(thing: "Run | Sweep") -> str:

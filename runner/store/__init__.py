@@ -9,9 +9,8 @@ if TYPE_CHECKING:
     from runner.store.identity import run_hash, run_hashes
     from runner.store.kinds import open_stored
     from runner.store.run import Run, judge_run, open_run
-    from runner.store.seal import DamagedError, SchemaError
+    from runner.store.seal import DamagedError, SchemaError, simulated_part
     from runner.store.shards import Outcome
-    from runner.store.stored import simulated_part
     from runner.store.sweep import Sweep, open_runs, open_sweep, write_grid, write_sweep
     from runner.store.writing import prepare, write_run
 
@@ -47,9 +46,8 @@ _MODULES = {
     "kinds": "open_stored",
     "identity": "run_hash run_hashes",
     "run": "Run judge_run open_run",
-    "seal": "DamagedError SchemaError",
+    "seal": "DamagedError SchemaError simulated_part",
     "shards": "Outcome",
-    "stored": "simulated_part",
     "sweep": "Sweep open_runs open_sweep write_grid write_sweep",
     "writing": "prepare write_run",
 }

@@ -9,8 +9,7 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from runner.store.seal import DamagedError
-from runner.store.stored import MEND, Stored, check_job, read_job, write_job
+from runner.store.seal import MEND, DamagedError, Stored, check_job, read_job, write_job
 
 _RECORD = "result.json"
 _NEEDED = ("estimates", "truth", "errors", "deviations", "measures", "consistency", "postures", "provenance")

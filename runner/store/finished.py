@@ -15,9 +15,8 @@ from runner.base.errors import StoreError
 from runner.store.atomic import write_atomically
 from runner.store.names import Names, best_of_each, look_up
 from runner.store.run import Run, open_run
-from runner.store.seal import DamagedError, read_json, sealed_json
+from runner.store.seal import DamagedError, check_job, read_json, sealed_json
 from runner.store.shards import Outcome, Outcomes, open_row, outcome, read_outcomes, shard_files
-from runner.store.stored import check_job
 
 FINER = "finer"
 _REMEDY = "delete it: `runner compare` computes it again"

@@ -11,7 +11,7 @@ from runner.base.engines import installed_versions
 from runner.plugins.discovery import GROUPS, added_parts, source_files
 from runner.store.names import Names
 from runner.store.physics import content_digest, physics_digest
-from runner.store.stored import simulated_part
+from runner.store.seal import simulated_part
 from runner.symbolic.engine import evaluator
 
 _OWN = ("kinematic", "none", "rk4", "rk4_flexible_links")  # built-in plants without an external engine

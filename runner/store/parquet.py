@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 
 from runner.base import limits
 from runner.base.arrays import FloatArray
-from runner.store.seal import DamagedError
-from runner.store.stored import MEND
+from runner.store.seal import MEND, DamagedError
 
 if TYPE_CHECKING:
     import pyarrow

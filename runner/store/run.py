@@ -17,8 +17,7 @@ from runner.config.composed import Composed
 from runner.store.kinds import kind_of
 from runner.store.parquet import VALUES_FILE, open_parquet, read_column, read_table
 from runner.store.record import Metrics, find_faults
-from runner.store.seal import DamagedError
-from runner.store.stored import MEND, Stored, read_job, write_job
+from runner.store.seal import MEND, DamagedError, Stored, read_job, write_job
 
 if TYPE_CHECKING:
     import pandas as pd

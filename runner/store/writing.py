@@ -20,8 +20,7 @@ from runner.statistics.spec import bounds_of, judge
 from runner.store.atomic import write_atomically
 from runner.store.parquet import VALUES_FILE, float_column, values_parquet
 from runner.store.run import Run
-from runner.store.seal import JsonTexts, encode_finite
-from runner.store.stored import write_job
+from runner.store.seal import JsonTexts, encode_finite, write_job
 
 
 def prepare(outputs: Path) -> None:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from runner.base.cache import Memory
 from runner.base.dotted_keys import dotted, leaves, split_override
 from runner.store.run import Run
-from runner.store.stored import simulated_part
+from runner.store.seal import simulated_part
 
 if TYPE_CHECKING:
     from runner.store.axes import Axis

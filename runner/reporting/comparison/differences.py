@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from runner.reporting.comparison.pairs import Pairs, label_text
-from runner.store.stored import simulated_part
+from runner.store.seal import simulated_part
 from runner.sweeps.differing import DISTANCE, entries, is_of_option
 from runner.sweeps.measurements import Measurements
 

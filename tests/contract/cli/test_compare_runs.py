@@ -7,7 +7,7 @@ from fixtures.stored import SHORT
 from support.engines import ASKED
 
 import runner
-from runner.store.stored import write_job
+from runner.store.seal import write_job
 
 
 def change(folder, edit):

@@ -232,7 +232,7 @@ def test_the_metrics_come_last(cli, tmp_path, monkeypatch):
         written.append(path.name)
         write_atomically(path, content, **how)
 
-    monkeypatch.setattr("runner.store.stored.write_atomically", write)
+    monkeypatch.setattr("runner.store.seal.write_atomically", write)
     cli(*SHORT)
     assert written == ["trace.parquet", "config.yaml", "robot.urdf", "metrics.json"]
 

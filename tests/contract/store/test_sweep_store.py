@@ -7,9 +7,8 @@ from fixtures.stored import RUNS
 
 from runner.base.errors import StoreError
 from runner.store import Run, Sweep, open_runs, open_stored, open_sweep, write_sweep
-from runner.store.seal import sealed_json
+from runner.store.seal import sealed_json, write_job
 from runner.store.shards import write_shard
-from runner.store.stored import write_job
 
 
 @pytest.fixture

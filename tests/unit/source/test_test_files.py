@@ -94,7 +94,6 @@ SHARED = {
     "store/finished": "contract/sweeps/test_outcomes.py",
     "store/physics": "unit/store/test_physics_modules.py",
     "store/run": "contract/store/test_runs.py",
-    "store/stored": "contract/store/test_store.py",
     "store/sweep": "contract/store/test_sweep_store.py",
     "store/writing": "contract/store/test_store.py",
     "symbolic/arm": "physics/symbolic/test_algebra.py",
