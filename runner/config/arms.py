@@ -17,11 +17,11 @@ from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, r
 from runner.robots.inertials import Payload, armature_file, set_file
 from runner.robots.joint_dynamics import dynamics_of
 from runner.robots.model import RobotModel
-from runner.robots.mounting import Mount, mount
+from runner.robots.mounting import mount
 from runner.robots.robot import Robot, Stage
-from runner.robots.tool_link import TOOL_TIP, ToolBody, mount_tool
+from runner.robots.tool_link import TOOL_TIP, mount_tool
 from runner.robots.tree import check_tip, is_mjcf, limit_of, tree_of
-from runner.schema.values import expand
+from runner.schema.values import MountConfig, expand
 from runner.sensing.force_torque import ForceTorqueConfig
 
 _KEPT = 8
@@ -52,7 +52,7 @@ class ArmOutline:
     path: Path
     urdf: str
     prefix: str
-    place: Mount | None
+    place: MountConfig | None
     joint_names: tuple[str, ...]
     joint_units: tuple[str, ...]
     effort_limits: tuple[float, ...]
@@ -177,7 +177,7 @@ def _build(outline: RobotOutline, gravity: float, sensor: tuple[float, float] | 
             if arm is last:
                 urdf = with_payloads(urdf, _payloads(config, own_tip, sensor))
                 if config.tool is not None:
-                    urdf, own_tip = mount_tool(urdf, own_tip, ToolBody(**config.tool.model_dump())), TOOL_TIP
+                    urdf, own_tip = mount_tool(urdf, own_tip, config.tool), TOOL_TIP
             model = RobotModel(urdf, own_tip, gravity)
         whole, base_frame = (urdf, None) if arm.place is None else mount(whole, urdf, arm.prefix, arm.place)
         tip, joints = arm.prefix + own_tip, slice(first, first + model.nq)
@@ -285,11 +285,11 @@ def _payloads(config: RobotConfig, flange: str, sensor: tuple[float, float] | No
     return payloads
 
 
-def _find_mount(key: str, arm: ArmConfig, below: str, first: bool) -> Mount | None:
+def _find_mount(key: str, arm: ArmConfig, below: str, first: bool) -> MountConfig | None:
     """Return the mount of an arm on the arm below, whose names have a prefix; None for the first arm."""
     place = arm.mount if isinstance(arm, StageConfig) else None
     if first and place is not None:
         raise ConfigError(f"{key}.mount: the first stage is fixed to the ground; allowed: null")
     if not first and place is None:
         raise ConfigError(f"{key}.mount: missing; a stage above the first needs frame, translation and rotation")
-    return None if place is None else Mount(below + place.frame, place.translation, place.rotation)
+    return None if place is None else place.model_copy(update={"frame": below + place.frame})

@@ -15,22 +15,27 @@ from runner.schema.units import (
     JointTorque,
     Kilograms,
     Metres,
-    MomentOfInertia,
-    Radians,
     RadiansPerSecond,
     Seconds,
 )
-from runner.schema.values import FrictionConfig, NonNegativePerStage, PositivePerStage, TorquePerStage
+from runner.schema.values import (
+    LONGEST_NAME,
+    FrictionConfig,
+    MountConfig,
+    Name,
+    NonNegativePerStage,
+    PositivePerStage,
+    ToolConfig,
+    TorquePerStage,
+    Vector,
+)
 
-Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
-_LONGEST_NAME = 200
-Name = Annotated[str, Field(min_length=1, max_length=_LONGEST_NAME)]
 FileName = Annotated[str, Field(min_length=1)]
 
 
 def _armature(value: Any) -> float | list[float] | str:
     numbers = value if isinstance(value, list) else [value]
-    if isinstance(value, str) and 0 < len(value) <= _LONGEST_NAME and value[0].isalpha():
+    if isinstance(value, str) and 0 < len(value) <= LONGEST_NAME and value[0].isalpha():
         return value
     if all(isinstance(n, int | float) and not isinstance(n, bool) and 0.0 <= n < math.inf for n in numbers):
         return [float(n) for n in numbers] if isinstance(value, list) else float(value)
@@ -67,20 +72,6 @@ class ArmConfig(StrictModel):
     masses: Kilograms[dict[str, PositiveFloat]]
     armature: JointInertia[Armature]
     velocity_limits: JointSpeed[dict[str, PositiveFloat]]
-
-
-class MountConfig(StrictModel):
-    """Mount of an arm on the arm below.
-
-    Attributes:
-        frame: Link of the arm below on which the root link is fixed, by its name in that arm.
-        translation: Origin of the root in that link's frame, in m.
-        rotation: Roll, pitch, yaw of the root in that link's frame, in rad.
-    """
-
-    frame: Name
-    translation: Metres[Vector]
-    rotation: Radians[Vector]
 
 
 class StageConfig(ArmConfig):
@@ -131,24 +122,6 @@ class PayloadConfig(StrictModel):
     def largest(self) -> float:
         """Largest mass during the run, in kg."""
         return max([self.mass, *(change.mass for change in self.schedule)])
-
-
-class ToolConfig(StrictModel):
-    """A rigid tool on the flange, which both the plant and the controllers' model contain; its tip is controlled.
-
-    Attributes:
-        mass: Mass of the tool, in kg.
-        centre_of_mass: Centre of mass in the flange frame, in m.
-        inertia: Principal moments about the centre of mass, along the axes of the flange frame, in kg m^2.
-        tip: Tip of the tool (tool centre point) in the flange frame, in m.
-        tip_radius: Radius of the ball at the tip that touches walls, in m.
-    """
-
-    mass: Kilograms[PositiveFloat]
-    centre_of_mass: Metres[Vector]
-    inertia: MomentOfInertia[Annotated[list[PositiveFloat], Field(min_length=3, max_length=3)]]
-    tip: Metres[Vector]
-    tip_radius: Metres[PositiveFloat]
 
 
 class RobotConfig(StrictModel):

@@ -3,7 +3,6 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from runner.base.errors import ConfigError
 from runner.config.arms import RobotOutline
@@ -17,36 +16,31 @@ from runner.trajectories import Trajectory
 _MAX_STEPS = 100_000  # of the plant in a tick
 
 
-class Steps(NamedTuple):
+@dataclass(frozen=True)
+class Steps:
     """Time steps of loops and plant.
 
     Attributes:
         tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
         step: Integration step of the plant, in s.
-        per_tick: Integration steps in one tick.
-    """
-
-    tick: float
-    step: float
-    per_tick: int
-
-
-@dataclass(frozen=True)
-class Timing:
-    """The times of a run.
-
-    Attributes:
-        tick: Period of the fastest loop, in s: of the controller, or of the servo below it.
-        step: Integration step of the plant, in s.
         steps_per_tick: Integration steps in one tick.
-        late: Delay of the commands of each control loop, in ticks, without jitter.
-        even: True if every command acts, and all commands of a loop have the same delay.
-        ticks: Number of ticks of the run.
     """
 
     tick: float
     step: float
     steps_per_tick: int
+
+
+@dataclass(frozen=True)
+class Timing(Steps):
+    """The times of a run: its time steps, delays and length.
+
+    Attributes:
+        late: Delay of the commands of each control loop, in ticks, without jitter.
+        even: True if every command acts, and all commands of a loop have the same delay.
+        ticks: Number of ticks of the run.
+    """
+
     late: tuple[int, ...]
     even: bool
     ticks: int

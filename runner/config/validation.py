@@ -108,7 +108,7 @@ def _build(groups: Parts, arm: Robot, steps: Steps, problems: Problems) -> Parts
         "commands": CONTROLLERS.commands(controller.kind),
         "path": path,
         "joint_torques": groups["joint_torque_sensor"].by_joint(arm),
-        "timing": Timing(*steps, require(late), computation_of(plant).is_even, require(ticks)),
+        "timing": Timing(**vars(steps), late=require(late), even=computation_of(plant).is_even, ticks=require(ticks)),
         "ignore_base_rotation": ignore_base_rotation,
     }
 

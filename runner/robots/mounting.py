@@ -2,27 +2,12 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from runner.base.errors import ConfigError, nearest
+from runner.schema.values import MountConfig
 
 
-@dataclass(frozen=True)
-class Mount:
-    """Where an arm is mounted.
-
-    Attributes:
-        frame: Link of the carrying arm on which the mounted arm's root link is fixed.
-        translation: Origin of the mounted root in that link's frame, (3,), in m.
-        rotation: Roll, pitch, yaw of the mounted root in that link's frame, (3,), in rad.
-    """
-
-    frame: str
-    translation: Sequence[float]
-    rotation: Sequence[float]
-
-
-def mount(macro: str, mini: str, prefix: str, place: Mount) -> tuple[str, str]:
+def mount(macro: str, mini: str, prefix: str, place: MountConfig) -> tuple[str, str]:
     """Return the URDF of an arm that carries another, and the name of the rider's root link in it.
 
     The rider's links and joints take the prefix; the carrier's keep their names.

@@ -2,38 +2,19 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
 from runner.robots.inertials import impossible_inertia
+from runner.schema.values import ToolConfig
 
 TOOL, TOOL_TIP, TOOL_MOUNT = "tool", "tool_tip", "tool_mount"
 """Names of the tool's link, of the massless one at its tip, the tool centre point, and of the joint to the flange."""
 
 
-@dataclass(frozen=True)
-class ToolBody:
-    """A rigid tool, in the flange's frame.
-
-    Attributes:
-        mass: In kg.
-        centre_of_mass: Shape (3,), in m.
-        inertia: Principal moments about the centre of mass, along the flange's axes, shape (3,), in kg m^2.
-        tip: The tool centre point, shape (3,), in m.
-        tip_radius: Radius of the ball at its tip that touches walls, in m.
-    """
-
-    mass: float
-    centre_of_mass: Sequence[float]
-    inertia: Sequence[float]
-    tip: Sequence[float]
-    tip_radius: float
-
-
-def mount_tool(urdf: str, flange: str, tool: ToolBody) -> str:
+def mount_tool(urdf: str, flange: str, tool: ToolConfig) -> str:
     """Return a URDF's text with a tool fixed on a link.
 
     Args:

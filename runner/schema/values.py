@@ -1,18 +1,22 @@
-"""Config values per joint of a stage and per stage of a robot: one value for all, or one for each."""
+"""Config of joint friction, mounts and tools, and config values per joint of a stage and per stage of a robot."""
 
 import math
 from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BeforeValidator, NonNegativeFloat, PositiveFloat
+from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.errors import ConfigError, nearest
 from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
-from runner.schema.units import JointDamping, JointTorque
+from runner.schema.units import JointDamping, JointTorque, Kilograms, Metres, MomentOfInertia, Radians
 
 T = TypeVar("T")
 
+LONGEST_NAME = 200
+"""Largest length of a name, in characters."""
+Name = Annotated[str, Field(min_length=1, max_length=LONGEST_NAME)]
+Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 PositivePerJoint = PositiveFloat | list[PositiveFloat]
 NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]
 
@@ -27,6 +31,38 @@ class FrictionConfig(StrictModel):
 
     viscous: JointDamping[NonNegativePerJoint]
     coulomb: JointTorque[NonNegativePerJoint]
+
+
+class MountConfig(StrictModel):
+    """Mount of an arm on the arm below.
+
+    Attributes:
+        frame: Link of the arm below on which the root link is fixed, by its name in that arm.
+        translation: Origin of the root in that link's frame, in m.
+        rotation: Roll, pitch, yaw of the root in that link's frame, in rad.
+    """
+
+    frame: Name
+    translation: Metres[Vector]
+    rotation: Radians[Vector]
+
+
+class ToolConfig(StrictModel):
+    """A rigid tool on the flange, which both the plant and the controllers' model contain; its tip is controlled.
+
+    Attributes:
+        mass: Mass of the tool, in kg.
+        centre_of_mass: Centre of mass in the flange frame, in m.
+        inertia: Principal moments about the centre of mass, along the axes of the flange frame, in kg m^2.
+        tip: Tip of the tool (tool centre point) in the flange frame, in m.
+        tip_radius: Radius of the ball at the tip that touches walls, in m.
+    """
+
+    mass: Kilograms[PositiveFloat]
+    centre_of_mass: Metres[Vector]
+    inertia: MomentOfInertia[Annotated[list[PositiveFloat], Field(min_length=3, max_length=3)]]
+    tip: Metres[Vector]
+    tip_radius: Metres[PositiveFloat]
 
 
 def expand(key: str, value: float | list[float], joints: Sequence[str]) -> list[float]:

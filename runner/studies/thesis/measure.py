@@ -13,7 +13,7 @@ from runner.config.compose.compose import compose
 from runner.config.robot import StagedRobotConfig
 from runner.config.validation import validate
 from runner.robots import RobotModel
-from runner.robots.mounting import Mount, mount
+from runner.robots.mounting import mount
 from runner.simulation import provenance
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
@@ -55,12 +55,12 @@ def _chains() -> list[RobotModel]:
     if not isinstance(config.robot, StagedRobotConfig):
         raise TypeError("robot=combined has stages")
     place = config.robot.stages["mini"].mount
+    assert place is not None  # noqa: S101 - it has one
     macro, mini = (stage.urdf for stage in config.arm.stages)
     whole, tip, models = macro, "tip", [RobotModel(macro, "tip")]
     for stage in range(2, _STAGES + 1):
         prefix = f"stage{stage}_"
-        translation, rotation = (place.translation, place.rotation) if place else ((0.0,) * 3, (0.0,) * 3)
-        whole, _ = mount(whole, mini, prefix, Mount(tip, translation, rotation))
+        whole, _ = mount(whole, mini, prefix, place.model_copy(update={"frame": tip}))
         tip = f"{prefix}tip"
         models.append(RobotModel(whole, tip))
     return models

@@ -10,9 +10,10 @@ from support.arms import checked
 from runner.base.errors import ConfigError
 from runner.robots import RobotModel
 from runner.robots.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames
-from runner.robots.mounting import Mount, mount
+from runner.robots.mounting import mount
+from runner.schema.values import MountConfig
 
-AT_TIP = Mount("tip", [0.0, 0.0, 0.0], [np.pi / 2, 0.0, np.pi / 2])
+AT_TIP = MountConfig(frame="tip", translation=[0.0, 0.0, 0.0], rotation=[np.pi / 2, 0.0, np.pi / 2])
 # Recovered Table 5.1, and torques and tip positions of the printed equations at one state.
 TABLE_5_1 = tuple(
     DenavitHartenbergRow(np.deg2rad(theta), d, a, np.deg2rad(alpha))
@@ -73,7 +74,9 @@ def test_mounting_changes_neither_text(macro_urdf, mini_urdf):
     ],
 )
 def test_the_rider_stands_where_the_mount_says(macro_urdf, mini_urdf, mini, frame, translation, rotation):
-    urdf, root = mount(macro_urdf, mini_urdf, "mini_", Mount(frame, translation, rotation))
+    urdf, root = mount(
+        macro_urdf, mini_urdf, "mini_", MountConfig(frame=frame, translation=translation, rotation=rotation)
+    )
     model = RobotModel(urdf, "mini_tip")
     step = np.eye(4)
     step[:3, :3], step[:3, 3] = pin.rpy.rpyToMatrix(*rotation), translation
@@ -87,7 +90,7 @@ def test_the_rider_stands_where_the_mount_says(macro_urdf, mini_urdf, mini, fram
 
 def test_a_missing_frame_names_the_nearest(macro_urdf, mini_urdf):
     with pytest.raises(ConfigError) as raised:
-        mount(macro_urdf, mini_urdf, "mini_", Mount("tpi", [0.0] * 3, [0.0] * 3))
+        mount(macro_urdf, mini_urdf, "mini_", MountConfig(frame="tpi", translation=[0.0] * 3, rotation=[0.0] * 3))
     assert raised.value.problems == (
         "robot.stages.mini.mount.frame: no link 'tpi' (did you mean tip?); links: base, link1, link2, link3, tip",
     )
@@ -95,7 +98,7 @@ def test_a_missing_frame_names_the_nearest(macro_urdf, mini_urdf):
 
 def test_names_that_would_stand_twice_are_refused(mounted, mini_urdf):
     with pytest.raises(ConfigError, match=r"robot\.stages\.mini: the link name mini_base stands in the carrying arm"):
-        mount(mounted[0], mini_urdf, "mini_", Mount("mini_tip", [0.0] * 3, [0.0] * 3))
+        mount(mounted[0], mini_urdf, "mini_", MountConfig(frame="mini_tip", translation=[0.0] * 3, rotation=[0.0] * 3))
 
 
 @pytest.mark.parametrize(

@@ -1,16 +1,17 @@
 """A tool on the flange."""
 
-from dataclasses import replace
-
 import numpy as np
 import pinocchio as pin
 import pytest
 
 from runner.base.errors import ConfigError
 from runner.robots.model import RobotModel
-from runner.robots.tool_link import ToolBody, find_tool, holding_wrench, mount_tool
+from runner.robots.tool_link import find_tool, holding_wrench, mount_tool
+from runner.schema.values import ToolConfig
 
-TOOL = ToolBody(0.25, [0.01, 0.0, 0.04], [2e-4, 2e-4, 3e-5], [0.02, 0.0, 0.1], 0.005)
+TOOL = ToolConfig(
+    mass=0.25, centre_of_mass=[0.01, 0.0, 0.04], inertia=[2e-4, 2e-4, 3e-5], tip=[0.02, 0.0, 0.1], tip_radius=0.005
+)
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +87,7 @@ def test_a_flange_that_is_no_link_is_refused(bare):
 @pytest.mark.parametrize("moments", [[1.0, 1e-3, 1e-3], [1e-3, 1e-3, 2.1e-3]])
 def test_a_tool_whose_inertia_no_body_has_is_refused(bare, moments):
     with pytest.raises(ConfigError, match=r"robot\.tool\.inertia: principal moments .* no body has one above the sum"):
-        mount_tool(bare.urdf, "flange", replace(TOOL, inertia=moments))
+        mount_tool(bare.urdf, "flange", TOOL.model_copy(update={"inertia": moments}))
 
 
 @pytest.mark.parametrize("plant", ["bullet", "rk4"])
