@@ -85,7 +85,6 @@ SHARED = {
     "simulation/loop": "physics/simulation/test_simulation.py",
     "simulation/provenance": "contract/store/test_store.py",
     "simulation/results": "contract/store/test_batch_records.py",
-    "plugins/features": "contract/plugins/test_plugins.py",
     "simulation/calibration": "contract/calibration/test_calibration_job.py",
     "simulation/run": "physics/simulation/test_blocks.py",
     "simulation/tick_time": "contract/sweeps/test_estimates_of_sweeps.py",
