@@ -1,18 +1,31 @@
-"""Playback of a motion as an offline viser recording: a shared player page and the scene."""
+"""Playback of a motion as an offline viser recording: a shared player page, and the scene without a server."""
 
+import asyncio
 import base64
+import contextlib
 import re
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
+from typing import cast
 
 import numpy as np
+import viser
 from numpy.typing import NDArray
 from viser import FrameHandle
+
+# viser offers recording only on a running server, so these parts of it are used that it does not export. The version
+# is pinned in constraints.txt, and a test renders a playback.
+from viser._scene_api import SceneApi
+from viser._viser import InitialCameraConfig
+from viser.infra import Message, StateSerializer, WebsockMessageHandler, WebsockServer
+from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 from runner.base.arrays import FloatArray
 from runner.reporting.charts import palette
 from runner.reporting.document import Body, Playback
-from runner.reporting.recorder import Recorder, recorder
 
 FRAME_RATE = 30.0
 """Most frames a second."""
@@ -94,7 +107,7 @@ def frames(playback: Playback) -> list[int]:
     return [int(index) for index in np.unique(np.searchsorted(times[:length], wanted - 1e-9))]
 
 
-def _set_stage(stage: Recorder, playback: Playback, chosen: list[int]) -> None:
+def _set_stage(stage: "Recorder", playback: Playback, chosen: list[int]) -> None:
     extent = _extent(playback, chosen)
     low, size = extent.low, extent.radius
     cell = 10.0 ** np.floor(np.log10(size))
@@ -124,7 +137,7 @@ def _set_stage(stage: Recorder, playback: Playback, chosen: list[int]) -> None:
     camera.look_at = extent.center
 
 
-def _add_body(stage: Recorder, body: Body, name: str) -> FrameHandle:
+def _add_body(stage: "Recorder", body: Body, name: str) -> FrameHandle:
     color = palette.rgb(body.color)
     node = stage.scene.add_frame(name, show_axes=False)
     for number, (start, end, radius) in enumerate(body.segments):
@@ -207,3 +220,45 @@ def _dashes(path: FloatArray | None) -> NDArray[np.float32]:
     even = np.linspace(0.0, length[-1], 2 * 60)
     resampled = np.stack([np.interp(even, length, points[:, axis]) for axis in range(3)], axis=1)
     return np.stack([resampled[:-1:2], resampled[1::2]], axis=1).astype(np.float32)
+
+
+class _Sink(WebsockMessageHandler):
+    """Takes the messages of a scene for the recording alone."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        loop = asyncio.new_event_loop()
+        loop.close()
+        # Nobody reads from it: a closed loop makes a buffer that has nobody to wake.
+        self._buffer = AsyncMessageBuffer(loop, persistent_messages=False)
+
+    def get_message_buffer(self) -> AsyncMessageBuffer:
+        return self._buffer
+
+
+class Recorder(viser.ViserServer):
+    """A viser server that was never started, with the scene and the first camera of a real one.
+
+    Attributes:
+        recording: What the scene has been told so far; `insert_sleep` parts the frames, `as_html` ends it.
+    """
+
+    def __init__(self, executor: ThreadPoolExecutor) -> None:
+        sink = _Sink()
+        self.recording: StateSerializer = sink.get_message_serializer(_of_scene)
+        self._websock_server = cast(WebsockServer, sink)
+        self._scene_lifecycle_lock = threading.RLock()
+        self._initial_camera = InitialCameraConfig(broadcast=sink.queue_message)
+        self.scene = SceneApi(self, thread_executor=executor, event_loop=sink.get_message_buffer().event_loop)
+        self.scene.set_up_direction("+z")
+
+
+@contextlib.contextmanager
+def recorder() -> Iterator[Recorder]:
+    """Open a scene to be recorded."""
+    with ThreadPoolExecutor(max_workers=1) as executor:
+        yield Recorder(executor)
+
+
+def _of_scene(message: Message) -> bool:
+    return message.include_in_scene_serialization

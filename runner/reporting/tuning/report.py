@@ -16,8 +16,14 @@ from runner.reporting.figures import cover
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import key_label
-from runner.reporting.tuning.sections import front_section, history_section, keys_section, trials_section
-from runner.reporting.tuning.subject import Subject, key_value
+from runner.reporting.tuning.sections import (
+    Subject,
+    front_section,
+    history_section,
+    key_value,
+    keys_section,
+    trials_section,
+)
 from runner.store import Sweep, open_run
 from runner.sweeps.measurements import Measurements, measure_sweep
 from runner.sweeps.tuning.study import Tuning, at_ends

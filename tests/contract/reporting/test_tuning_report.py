@@ -10,8 +10,7 @@ from runner.base.errors import StoreError
 from runner.reporting.document import Curves, Notice, Playback, RunList, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.tuning.report import tuning_document
-from runner.reporting.tuning.sections import history_section
-from runner.reporting.tuning.subject import Subject
+from runner.reporting.tuning.sections import Subject, history_section
 from runner.sweeps.tuning.objective import Objective, Trial
 from runner.sweeps.tuning.run import tune
 from runner.sweeps.tuning.study import at_ends
