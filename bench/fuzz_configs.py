@@ -20,7 +20,7 @@ from bench.fuzz_files import experiment
 from bench.fuzz_grammar import keys_of, mutated, override
 from runner.base.errors import RunnerError
 from runner.config.compose.compose import compose
-from runner.config.compose.options import group_options, groups
+from runner.config.compose.files import group_options, groups
 from runner.config.composed import Composed
 from runner.config.validation import validate
 from runner.simulation.run import simulate_run

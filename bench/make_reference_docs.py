@@ -19,7 +19,7 @@ from runner.base.paths import conf_dir
 from runner.calibration.procedures import CALIBRATIONS
 from runner.cli.main import COMMANDS, COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.config.groups import GROUPS
 from runner.config.judgement import Bound, CaveatsConfig
 from runner.config.limits import SweepConfig

@@ -17,7 +17,7 @@ import yaml
 from tqdm import tqdm
 
 from runner.base.engines import quiet_environment
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.store import Run, open_run
 from runner.store.baselines import baseline_path
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser, Stored
-from runner.config.compose.user_settings import outputs_dir
+from runner.config.compose.files import outputs_dir
 from runner.study.names import study_names
 
 if TYPE_CHECKING:

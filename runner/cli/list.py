@@ -11,7 +11,7 @@ from runner.base.errors import RunnerError, unknown
 from runner.base.former_names import TOPICS as FORMER_TOPICS
 from runner.base.sanitize import escaped, one_line
 from runner.cli.arguments import Parser
-from runner.config.compose.options import group_options, groups
+from runner.config.compose.files import group_options, groups
 
 if TYPE_CHECKING:
     from runner.reporting.published_claims import PublishedClaim

@@ -22,7 +22,7 @@ from runner.base.former_names import COMMANDS as FORMER_COMMANDS
 from runner.base.progress import show_progress
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
-from runner.config.compose.options import groups
+from runner.config.compose.files import groups
 
 GROUPS = {
     "Run experiments": ("run", "sweep", "status", "tune", "calibrate"),

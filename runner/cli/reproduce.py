@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser
-from runner.config.compose.user_settings import outputs_dir
+from runner.config.compose.files import outputs_dir
 from runner.plugins.discovery import in_use, named_parts
 from runner.store.kinds import note
 from runner.study.changes import FILE

@@ -18,7 +18,7 @@ from runner.base.errors import RunnerError
 from runner.base.paths import conf_dir
 from runner.base.sanitize import align_columns, one_line
 from runner.cli.arguments import Parser
-from runner.config.compose.user_settings import outputs_dir, user_overrides
+from runner.config.compose.files import outputs_dir, user_overrides
 from runner.store.kinds import WORD
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
-from runner.config.compose.user_settings import outputs_dir
+from runner.config.compose.files import outputs_dir
 from runner.study.changes import KINDS, Change, Value, changes, read_conclusions
 
 _TOLD = 20  # changes of a kind that are printed without --all

@@ -14,7 +14,7 @@ from typing import Literal
 from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.cli.arguments import Parser
-from runner.config.compose.user_settings import outputs_dir
+from runner.config.compose.files import outputs_dir
 from runner.store.kinds import FILES, KINDS
 
 State = Literal["good", "unfinished", "damaged"]

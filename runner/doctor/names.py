@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from runner.base.errors import RunnerError
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.doctor.finding import Finding
 
 _GENERAL = {

@@ -6,8 +6,7 @@ from contextlib import ExitStack
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.config.desired_motion import start_posture
-from runner.config.feasibility import check_path
+from runner.config.desired_motion import check_feasible, start_posture
 from runner.config.flexibility import find_motor_side, is_flexible, with_nominal_links, with_nominal_motors
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
@@ -125,7 +124,7 @@ def find_start(config: RunConfig) -> FloatArray:
         q_start = start_posture(config.controller, arm, path.start, config.ignore_base_rotation)
     if CONTROLLERS.features(config.controller.kind).FOLLOWS_PATHS:
         end = config.timing.ticks * config.timing.tick
-        check_path(config.controller, arm, path, q_start, config.robot.settling_band, end)
+        check_feasible(config.controller, arm, path, q_start, config.robot.settling_band, end)
     return q_start
 
 

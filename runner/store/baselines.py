@@ -20,8 +20,8 @@ from runner.base.errors import RunnerError, StoreError, nearest, unknown
 from runner.base.limits import Limit, read_text
 from runner.base.paths import studies_dir
 from runner.base.sanitize import escaped
+from runner.config.compose.files import described_files
 from runner.config.compose.messages import describe
-from runner.config.compose.options import described_files
 from runner.config.judgement import Bound
 from runner.plugins.metric_units import unit_of, units
 from runner.schema.model import StrictModel

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from runner.base.errors import RunnerError, StoreError
-from runner.config.compose.user_settings import outputs_dir
+from runner.config.compose.files import outputs_dir
 
 if TYPE_CHECKING:
     from runner.store.calibration import Calibration

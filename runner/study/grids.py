@@ -33,8 +33,8 @@ from pydantic import ValidationError
 from runner.base.bounded_yaml import STORED, read_yaml
 from runner.base.errors import RunnerError, nearest
 from runner.base.limits import read_text
+from runner.config.compose.files import refuse_settings
 from runner.config.compose.messages import describe
-from runner.config.compose.user_settings import refuse_settings
 from runner.schema.model import StrictModel
 from runner.study.code import UserPlugin
 from runner.study.grid import Grid, Level, Overrides

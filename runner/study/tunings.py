@@ -35,7 +35,7 @@ from pydantic import Field, PositiveInt, model_validator
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
-from runner.config.compose.user_settings import refuse_settings
+from runner.config.compose.files import refuse_settings
 from runner.plugins.metric_units import unit_of, units
 from runner.store.atomic import write_atomically
 from runner.study.code import UserPlugin

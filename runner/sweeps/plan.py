@@ -9,7 +9,7 @@ from typing import Any
 
 from runner.base.errors import ConfigError
 from runner.config.compose.composer import Composer
-from runner.config.compose.options import groups
+from runner.config.compose.files import groups
 from runner.config.compose.overrides import prepare
 from runner.config.composed import Composed
 from runner.schema.model import LARGEST_WHOLE

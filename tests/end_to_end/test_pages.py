@@ -5,7 +5,7 @@ import re
 import pytest
 from support.pages import ROOT, complaints, follow, has_python, pages, steps, wrong_snippets
 
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 
 README = ROOT / "README.md"
 FOLLOWED = [page for page in pages() if steps(page) or has_python(page)]

@@ -13,8 +13,7 @@ from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from runner.base.paths import conf_dir, package_dir, robots_dir
-from runner.config.compose.options import group_options, groups
-from runner.config.compose.user_settings import user_overrides
+from runner.config.compose.files import group_options, groups, user_overrides
 from runner.symbolic import cache
 
 _SIGN = re.compile(r"[+~]*")

@@ -27,10 +27,9 @@ from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
 from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.compose.options import groups
+from runner.config.compose.files import groups, user_overrides
 from runner.config.compose.overrides import force, prepare
 from runner.config.compose.sources import checked_sources
-from runner.config.compose.user_settings import user_overrides
 
 _KEPT = 512  # combinations of options, about 30 kB each
 _MOST = 1000  # files and folders in the config folders; if there are more, Hydra composes each time

@@ -12,7 +12,7 @@ from runner.base.bounded_yaml import explain_yaml
 from runner.base.errors import ConfigError, nearest
 from runner.base.former_names import explain_value
 from runner.base.sanitize import VALUE, one_line, quoted
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.config.compose.overrides import explain_parser
 
 _AMBIGUOUS = re.compile(r"Ambiguous value for argument '(.*)'$", re.M)

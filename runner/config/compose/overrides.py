@@ -7,9 +7,8 @@ from runner.base.bounded_yaml import CONFIG
 from runner.base.dotted_keys import calls_function
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
-from runner.config.compose.options import groups
+from runner.config.compose.files import SAYS_HOW, groups
 from runner.config.compose.units import with_numbers
-from runner.config.compose.user_settings import SAYS_HOW
 
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
 _OF_THE_PARSER = re.compile(

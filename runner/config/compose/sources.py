@@ -28,8 +28,7 @@ from runner.base.errors import ConfigError
 from runner.base.limits import ExcessError, read_text
 from runner.base.paths import check_inside, conf_dir, ships
 from runner.base.sanitize import quoted
-from runner.config.compose.options import place_in
-from runner.config.compose.user_settings import refuse_settings, settings_error
+from runner.config.compose.files import place_in, refuse_settings, settings_error
 
 _SCHEME = "checked"
 _USERS = "command-line"  # Hydra's name of where such a folder comes from

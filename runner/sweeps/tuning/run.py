@@ -15,7 +15,7 @@ from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.base.limits import TRIALS
 from runner.config.compose.composer import Composer
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.compose.options import groups
+from runner.config.compose.files import groups
 from runner.config.compose.overrides import prepare
 from runner.store.axes import is_simulated
 from runner.store.kinds import note

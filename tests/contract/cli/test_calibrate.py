@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 
 SHORT = ("repetitions=3",)
 

@@ -14,7 +14,7 @@ from support.engines import ASKED
 from support.printed import without_caveats
 
 from runner.cli.main import COMMANDS, GROUPS, GUIDE, build_parser
-from runner.config.compose.options import groups
+from runner.config.compose.files import groups
 from runner.store import open_sweep
 from runner.sweeps import job
 

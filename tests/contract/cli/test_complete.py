@@ -4,7 +4,7 @@ import pytest
 
 from runner.cli.list import TOPICS
 from runner.cli.main import COMMANDS
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.plugins.metric_units import units
 
 

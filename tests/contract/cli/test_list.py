@@ -1,7 +1,7 @@
 """`runner list`: every topic, own options, unknown names."""
 
 from runner.cli.list import TOPICS
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.plugins.metric_units import units
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from support.printed import without_caveats, without_results
 
-from runner.config.compose.options import group_options, groups
+from runner.config.compose.files import group_options, groups
 from runner.sweeps.job import run
 
 SWING = Path(__file__).parents[3] / "examples" / "swing.csv"

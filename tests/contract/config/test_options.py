@@ -1,6 +1,6 @@
 """Options of groups against the files in conf/ and in a folder of the user."""
 
-from runner.config.compose.options import described_files, group_options, groups
+from runner.config.compose.files import described_files, group_options, groups
 
 
 def test_the_groups_are_the_folders_of_conf():

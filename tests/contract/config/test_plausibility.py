@@ -4,7 +4,7 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.config.validation import validate
 from runner.schema.model import absurd
 

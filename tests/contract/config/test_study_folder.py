@@ -5,7 +5,7 @@ import pytest
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.compose.composer import Composer
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 
 EXPERIMENT = "# @package _global_\n# One.\ndefaults:\n  - override /robot: macro\n  - override /trajectory: goal\n"
 

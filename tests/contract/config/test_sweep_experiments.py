@@ -7,7 +7,7 @@ import yaml
 
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.config.validation import validate
 
 NAMES = [name for name in group_options("experiment") if name.startswith("sweep/")]

@@ -3,7 +3,7 @@
 import pytest
 from support.pages import ROOT
 
-from runner.config.compose.user_settings import KEYS
+from runner.config.compose.files import KEYS
 
 LINE = ("robot=macro", "plant=rk4", "duration=0.05")
 

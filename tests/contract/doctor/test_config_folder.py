@@ -12,7 +12,7 @@ import runner
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.config.validation import validate
 from runner.doctor.config_folder import write_folder
 from runner.doctor.examination import examine

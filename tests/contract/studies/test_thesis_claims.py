@@ -3,7 +3,7 @@
 import pytest
 from pydantic import ValidationError
 
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.plugins.metric_units import unit_of
 from runner.reporting.published_claims import CONTRADICTION, FACTOR, PublishedClaim, judge, load_claims
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.reporting.published_claims import CONTRADICTION, Extent, PublishedClaim, judge_motion, load_claims
 from runner.store.baselines import shipped_baselines
 

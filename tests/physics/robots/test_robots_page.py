@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from runner.config.compose.compose import compose
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.config.validation import validate
 
 PAGE = (Path(__file__).parents[3] / "docs" / "robots.md").read_text()

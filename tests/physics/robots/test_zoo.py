@@ -9,7 +9,7 @@ import yaml
 from runner.base.paths import robots_dir
 from runner.config.arms import build_robot, read_outline
 from runner.config.compose.compose import compose
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.config.robot import OneArmConfig, StagedRobotConfig
 
 ZOO = sorted(group_options("robot"))

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from runner.config.compose.compose import compose
-from runner.config.compose.options import group_options
+from runner.config.compose.files import group_options
 from runner.trajectories import TRAJECTORIES
 from runner.trajectories.shaped import Shifted
 

@@ -1,0 +1,156 @@
+"""Config files: options of the config groups, and the settings of the user.
+
+The user's file is `arm-control-runner/config.yaml` in XDG_CONFIG_HOME or ~/.config. The file has the keys KEYS, as on
+the command line: outputs folder, number of workers, and address of a Dask scheduler. Only the command line and this
+file may set them; third-party config files may not. The settings change no result, so that a command has the same
+meaning on another machine.
+"""
+
+import os
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+
+from runner.base.errors import ConfigError, nearest
+from runner.base.paths import STUDY_FILE, conf_dir
+from runner.base.sanitize import quoted
+
+_HEAD = 10_000  # characters to search for the first comment of a file
+
+
+def groups(config_dirs: Sequence[Path] = ()) -> list[str]:
+    """Return the sorted names of the config groups, without Hydra's own groups."""
+    found = {
+        entry.name
+        for folder in (*config_dirs, conf_dir())
+        if folder.is_dir()
+        for entry in folder.iterdir()
+        if entry.is_dir()
+    }
+    return sorted(found - {"hydra"})
+
+
+def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str]:
+    """Return the options of a group with their descriptions, sorted by name.
+
+    Args:
+        group: Name of the group, such as "robot".
+        config_dirs: Config folders of the user.
+
+    Returns:
+        Name of each option, such as "thesis/figure_3_5", and the first comment in its file except directives.
+    """
+    found: dict[str, str] = {}
+    for folder in (conf_dir(), *config_dirs):
+        files = described_files(folder / group)
+        found |= {option_in(folder, group, name): description for name, description in files.items()}
+    return dict(sorted(found.items()))
+
+
+def described_files(root: Path) -> dict[str, str]:
+    """Return the YAML files below a folder by name without suffix, each with its first comment, sorted by name."""
+    files = sorted(path for path in root.rglob("*.yaml") if path.is_file())
+    return {path.relative_to(root).with_suffix("").as_posix(): _first_comment(path) for path in files}
+
+
+def _first_comment(path: Path) -> str:
+    with path.open(errors="replace") as file:
+        for line in file.read(_HEAD).splitlines():
+            text = line.strip()
+            if text.startswith("#") and not text.startswith(("# @package", "# runner ")):
+                return text.lstrip("# ")
+    return ""
+
+
+_GROUP = "experiment"
+
+
+def place_in(folder: Path, config_path: str) -> str:
+    """Return the path of a config in a folder: experiment/x for experiment/NAME/x of the study NAME."""
+    own = _own(folder)
+    if own and (config_path == own or config_path.startswith(f"{own}/")):
+        return f"{_GROUP}{config_path.removeprefix(own)}"
+    return config_path
+
+
+def option_in(folder: Path, group: str, name: str) -> str:
+    """Return the option name of a file in a folder: NAME/x for the experiment x of the study NAME."""
+    return f"{folder.resolve().name}/{name}" if group == _GROUP and _own(folder) else name
+
+
+def _own(folder: Path) -> str:
+    """Return the prefix of a study's experiments; "" for another folder, or one that has a folder of that prefix."""
+    own = f"{_GROUP}/{folder.resolve().name}"
+    return own if (folder / STUDY_FILE).is_file() and not (folder / own).is_dir() else ""
+
+
+KEYS = ("outputs", "hydra.sweeper.workers", "hydra.sweeper.address")
+SAYS_HOW = re.compile(r"(?:^[+~]*|[@:])(?:_global_\.)?(hydra|outputs)(?![^./@:])")
+_AXES = "hydra.sweeper.params"
+
+
+def refuse_settings(given: Iterable[str], path: Path) -> None:
+    """Check that a third-party file does not control how or where runs are simulated.
+
+    Args:
+        given: Keys or overrides in the file.
+        path: The file.
+
+    Raises:
+        ConfigError: for `outputs` and every key of `hydra` except the axes of a sweep; names the line.
+    """
+    for text in given:
+        if SAYS_HOW.search(text.partition("=")[0].removeprefix(f"{_AXES}.")):
+            raise settings_error(text, path)
+
+
+def settings_error(text: str, path: Path) -> ConfigError:
+    """Return the error for a key or override in a third-party file that controls how or where runs are simulated."""
+    from runner.base.bounded_yaml import line_with
+
+    where = f"set it on the command line or in {settings_path()}; allowed here: keys of {_AXES}"
+    found = f"{line_with(text, path)}: {quoted(text)}"
+    return ConfigError(f"{found} controls how or where runs are simulated, which no file may do; {where}")
+
+
+def settings_path() -> Path:
+    """Return the path of the settings file, which may be missing."""
+    base = os.environ.get("XDG_CONFIG_HOME") or "~/.config"
+    return Path(os.path.expanduser(base)) / "arm-control-runner" / "config.yaml"  # noqa: PTH111 - never raises
+
+
+def user_settings() -> Mapping[str, str]:
+    """Return the settings by key.
+
+    Raises:
+        ConfigError: with file and line, for a file that cannot be read, an unknown key or an invalid value.
+    """
+    return _read(settings_path())
+
+
+def user_overrides() -> list[str]:
+    """Return the settings as overrides, which precede the typed overrides."""
+    return [f"{key}={value}" for key, value in user_settings().items()]
+
+
+def outputs_dir() -> Path:
+    """Return the outputs folder for a command line that names none."""
+    return Path(user_settings().get("outputs", "outputs"))
+
+
+@lru_cache(maxsize=1)
+def _read(path: Path) -> Mapping[str, str]:
+    if not path.exists():
+        return {}
+    from runner.base.bounded_yaml import line_with, read_yaml  # for the few who have such a file
+
+    try:
+        content = read_yaml(path.read_text(encoding="utf-8"), path) or {}
+    except (OSError, ValueError) as error:
+        raise ConfigError(f"cannot read {path}: {error}") from None
+    for key, value in content.items() if isinstance(content, dict) else [(str(content), None)]:
+        if key not in KEYS or not isinstance(value, str | int):
+            known = f"{nearest(key, KEYS)}; settings: {', '.join(KEYS)}"
+            raise ConfigError(f"{line_with(key, path)}: {quoted({key: value})} is not a setting{known}")
+    return {key: os.path.expanduser(str(value)) for key, value in content.items()}  # noqa: PTH111 - of a folder
