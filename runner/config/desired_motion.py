@@ -20,7 +20,6 @@ from runner.robots.task_space import distance_beside, task_basis
 from runner.trajectories import Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.trajectories.kinds import HasGoal, HasStart
-from runner.trajectories.trajectory import joint_reference
 
 _ROUNDING = 1e-12  # of the reach
 _BESIDE = 1e-9  # of the reach: largest distance of a path from the plane of a planar arm
@@ -157,7 +156,7 @@ def check_repeats(config: RunConfig) -> None:
 
 def _first_difference(config: RunConfig, times: FloatArray, unlike: FloatArray, same: float) -> str:
     first, largest = int(np.argmax(unlike > same)), int(unlike.argmax())
-    unit = "m" if joint_reference(config.path, times[:1]) is None else "rad"
+    unit = "m" if config.path.sample_joints(times[:1]) is None else "rad"
     return (
         f"is not the same that time later: first at {times[first]:g} s, and by up to {unlike[largest]:.3g} "
         f"{unit} at {times[largest]:g} s"
@@ -166,7 +165,7 @@ def _first_difference(config: RunConfig, times: FloatArray, unlike: FloatArray, 
 
 def _positions(config: RunConfig, times: FloatArray) -> FloatArray:
     """Return desired positions of the joints, or of the tip if the joints have none, shape (T, k)."""
-    joints = joint_reference(config.path, times)
+    joints = config.path.sample_joints(times)
     motion = config.path.sample(times) if joints is None else joints
     return motion[:, 0]
 

@@ -1,12 +1,51 @@
-"""Controller protocols and the control loop."""
+"""Base classes of control laws, and the control loop."""
 
 from dataclasses import dataclass
-from typing import Protocol, cast
+from typing import NamedTuple, Protocol, Self, cast
 
 from runner.base.arrays import FloatArray
 
 
-class Controller(Protocol):
+class VelocityGain(NamedTuple):
+    """K_v of a law at rest, tau = - K_v dq + ..., as a sum of two parts.
+
+    Attributes:
+        inertia: What multiplies diag M, in 1/s.
+        mass: What multiplies M, in 1/s; of a law of the tip, of its fastest task.
+        at_home: Whether diag M is that at home, or that at the posture.
+    """
+
+    inertia: float
+    mass: float
+    at_home: bool = True
+
+
+class ControlLaw:
+    """Defaults of what a control law may offer.
+
+    Attributes:
+        reads_joint_torques: True if it uses the joint torque sensors; see `read_joint_torques`.
+    """
+
+    reads_joint_torques = False
+
+    @property
+    def velocity_gain(self) -> VelocityGain | None:
+        """K_v, for the stability limit of its sampled velocity loop; None if it is not known."""
+        return None
+
+    def with_limits(self, limits: FloatArray) -> Self:
+        """Return the law that knows its torque limits, shape (n,), in N m; infinite where there is none."""
+        return self
+
+    def read_joint_torques(self, reading: FloatArray) -> None:
+        """Take the mean torques on the links since the last tick, of every joint, shape (nq,), in N m.
+
+        The sensors are read at each tick of its loop, except the first.
+        """
+
+
+class Controller(ControlLaw):
     """A control law, pure in (time, measurement, reference) apart from what `reset` clears."""
 
     def reset(self) -> None:
@@ -29,10 +68,10 @@ class Controller(Protocol):
         Raises:
             numpy.linalg.LinAlgError: where the law has no solution, such as at a singular posture.
         """
-        ...
+        raise NotImplementedError
 
 
-class PositionController(Protocol):
+class PositionController(ControlLaw):
     """A control law that tells the joints where to go, pure in its arguments apart from what `reset` clears."""
 
     def reset(self, q: FloatArray) -> None:
@@ -54,7 +93,7 @@ class PositionController(Protocol):
         Raises:
             numpy.linalg.LinAlgError: where the law has no solution.
         """
-        ...
+        raise NotImplementedError
 
 
 class WrenchFeedbackController(Protocol):

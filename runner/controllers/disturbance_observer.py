@@ -135,7 +135,7 @@ class MomentumObserver(TorqueFilter):
 
 
 class MeasuringController(FilteredController):
-    """A controller whose observer takes the torques that sensors in the joints read; see ReadsJointTorques.
+    """A controller whose observer takes the torques that sensors in the joints read.
 
     Args:
         controller: The controller.
@@ -143,12 +143,14 @@ class MeasuringController(FilteredController):
         model: The nominal robot.
     """
 
+    reads_joint_torques = True
+
     def __init__(self, controller: Controller, observer: "MomentumObserver", model: RobotModel) -> None:
         super().__init__(controller, observer, model)
         self._observer = observer
 
     def read_joint_torques(self, reading: FloatArray) -> None:
-        """Take the mean torques on the links since the last tick; see ReadsJointTorques."""
+        """Take the mean torques on the links since the last tick."""
         if self._memory is not None:
             self._memory = self._observer.measured(self._memory, reading)
 

@@ -6,7 +6,7 @@ from typing import Any, Protocol, runtime_checkable
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Controller, Loop
+from runner.controllers.controller import ControlLaw, Loop
 from runner.controllers.force.admittance_filter import Admittance
 from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Attribute, Guard, Method, array, checked, find_fault, refuse
@@ -45,24 +45,6 @@ class ControllerFeatures(Features):
     FOLLOWS_PATHS: bool = False
     FOLLOWS_JOINTS: bool = False
     start_posture: Callable[[Any, Robot, FloatArray], FloatArray | None] = _no_posture
-
-
-@runtime_checkable
-class SupportsTorqueLimits(Protocol):
-    """A controller that is told the torque limits of the joints it commands."""
-
-    def with_limits(self, limits: FloatArray) -> Controller:
-        """Return the controller that knows limits, shape (n,), in N m; infinite where there is none."""
-        ...
-
-
-@runtime_checkable
-class ReadsJointTorques(Protocol):
-    """A control law that is told what the joint torque sensors read, at its ticks but the first."""
-
-    def read_joint_torques(self, reading: FloatArray) -> None:
-        """Take the mean torques on the links since the last tick, of every joint, shape (nq,), in N m."""
-        ...
 
 
 @runtime_checkable
@@ -105,6 +87,7 @@ def guard_law(law: Any, joints: int) -> Any:
     """
     return Guard(
         "controller",
+        ControlLaw,
         reset=Method(),
         torque=Method(array(joints)),
         joint_positions=Method(array(joints)),
@@ -134,7 +117,7 @@ def guard_loops(loops: Any, _: object, robot: Robot) -> tuple[Loop, ...]:
 
 
 def tell_limits(loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
-    """Return loops with controllers that know their torque limits; see SupportsTorqueLimits.
+    """Return loops with controllers that know their torque limits; see ControlLaw.
 
     Args:
         loops: The loops.
@@ -143,12 +126,7 @@ def tell_limits(loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
     Raises:
         ConfigError: if a user-supplied controller fails.
     """
-    return tuple(
-        replace(loop, controller=loop.controller.with_limits(limits[loop.joints]))
-        if isinstance(loop.controller, SupportsTorqueLimits)
-        else loop
-        for loop in loops
-    )
+    return tuple(replace(loop, controller=loop.controller.with_limits(limits[loop.joints])) for loop in loops)
 
 
 class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):

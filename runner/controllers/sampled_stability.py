@@ -1,7 +1,7 @@
 """Stability limit of sampled velocity loops, in closed form."""
 
 from collections.abc import Sequence
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -9,34 +9,9 @@ from runner.base.cache import Memory
 from runner.controllers.controller import Loop
 from runner.robots.robot import Robot
 from runner.trajectories import Trajectory
-from runner.trajectories.trajectory import joint_reference
 
 _POSTURES = 9
 _MEMORY = Memory(64)  # runs of a sweep share arm and path
-
-
-class VelocityGain(NamedTuple):
-    """K_v of a law at rest, tau = - K_v dq + ..., as a sum of two parts.
-
-    Attributes:
-        inertia: What multiplies diag M, in 1/s.
-        mass: What multiplies M, in 1/s; of a law of the tip, of its fastest task.
-        at_home: Whether diag M is that at home, or that at the posture.
-    """
-
-    inertia: float
-    mass: float
-    at_home: bool = True
-
-
-@runtime_checkable
-class HasVelocityGain(Protocol):
-    """A control law that says by which gain it brakes its joints."""
-
-    @property
-    def velocity_gain(self) -> VelocityGain:
-        """K_v."""
-        ...
 
 
 class VelocityLoop(NamedTuple):
@@ -69,8 +44,8 @@ def velocity_loop(loops: Sequence[Loop], arm: Robot, path: Trajectory) -> Veloci
     """
     found: list[VelocityLoop] = []
     for loop in loops:
-        if isinstance(loop.controller, HasVelocityGain):
-            gain = loop.controller.velocity_gain
+        gain = loop.controller.velocity_gain
+        if gain is not None:
             coupling = _MEMORY.recall(_coupling, arm, path, gain.at_home) if gain.inertia else 1.0
             found.append(VelocityLoop(0.5 * loop.period * (gain.inertia * coupling + gain.mass), coupling))
     return max(found, default=None)
@@ -78,7 +53,7 @@ def velocity_loop(loops: Sequence[Loop], arm: Robot, path: Trajectory) -> Veloci
 
 def _coupling(arm: Robot, path: Trajectory, at_home: bool) -> float:
     """Return the largest lambda_max(M^-1 D), D = diag M at home or at the posture."""
-    moved = joint_reference(path, np.linspace(0.0, path.duration, _POSTURES))
+    moved = path.sample_joints(np.linspace(0.0, path.duration, _POSTURES))
     D, largest = arm.model.mass_matrix(arm.home).diagonal(), 0.0
     for q in (arm.home, *(() if moved is None else moved[:, 0])):
         M = arm.model.mass_matrix(q)

@@ -101,7 +101,7 @@ class FilteredLaw(TorqueLaw[FilteredNumbers]):
         return passed, np.concatenate([kept, seen])
 
 
-class FilteredController:
+class FilteredController(Controller):
     """A controller of any kind with a filter; see Controller.
 
     Args:

@@ -10,6 +10,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
+from runner.controllers.controller import Controller
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
 
@@ -172,7 +173,7 @@ class PinocchioArm:
 N = TypeVar("N", bound=tuple[Any, ...])
 
 
-class TorqueLaw(ABC, Generic[N]):
+class TorqueLaw(Controller, ABC, Generic[N]):
     """A torque law; a Controller by Pinocchio.
 
     A derived class writes `evaluate` with the arms' functions, `arm.backend` and NumPy's operators. What decides by an

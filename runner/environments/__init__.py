@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.sanitize import quoted
-from runner.environments.environment import Environment, LoadsJoints, PushesLinks
+from runner.environments.environment import Environment
 from runner.plugins.guard import Asked, Attribute, Guard, Method, array, find_fault, like, refuse
 from runner.plugins.registry import KindConfig, Registry
 
@@ -23,6 +23,7 @@ def _check_points(points: Any, _: Asked) -> dict[str, FloatArray]:
 
 _GUARD = Guard(
     "environment",
+    Environment,
     reset=Method(),
     wrench=Method(array(6)),
     points=Attribute(_check_points, optional=True, fail=refuse),
@@ -41,4 +42,4 @@ ENVIRONMENTS = Registry[KindConfig, [], Environment | None](
     _GUARD,
 )
 
-__all__ = ["ENVIRONMENTS", "Environment", "LoadsJoints", "PushesLinks"]
+__all__ = ["ENVIRONMENTS", "Environment"]

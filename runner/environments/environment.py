@@ -1,13 +1,19 @@
-"""Environment protocols: wrench on the tip, forces on links and torques on joints."""
+"""Base class of environments: wrench on the tip, forces on links and torques on joints."""
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol, runtime_checkable
 
 from runner.base.arrays import FloatArray
 
 
-class Environment(Protocol):
-    """The world around the tip, as the wrench that it puts on it."""
+class Environment:
+    """The world around the arm. An environment must define `reset` and `wrench`; the rest has defaults.
+
+    Attributes:
+        points: Where it pushes links of the arm, in addition to the tip: by the name of a link, a point in the frame of
+            that link, in m. It is read once, before the run.
+    """
+
+    points: Mapping[str, Sequence[float]] = {}
 
     def reset(self, tip: FloatArray) -> None:
         """Start with the tip at a position in the base frame, shape (3,), in m."""
@@ -23,45 +29,30 @@ class Environment(Protocol):
         Returns:
             Force in N and moment about the tip in N m, along the base's axes, shape (6,).
         """
-        ...
-
-
-@runtime_checkable
-class PushesLinks(Protocol):
-    """An environment that pushes links of the arm at points beside the tip."""
-
-    @property
-    def points(self) -> Mapping[str, Sequence[float]]:
-        """Where it pushes: by the name of a link, a point in that link's frame, in m. Asked once, before the run."""
-        ...
+        raise NotImplementedError
 
     def link_forces(self, time: float, positions: FloatArray, velocities: FloatArray) -> FloatArray:
-        """Return the forces at these points.
+        """Return the forces at `points`.
 
         Args:
             time: Time since the start, in s.
-            positions: Places of the points in the base frame, in their order, shape (n, 3), in m.
+            positions: Positions of the points in the base frame, in their order, shape (n, 3), in m.
             velocities: Their velocities, shape (n, 3), in m/s.
 
         Returns:
             Forces in N along the base's axes, shape (n, 3).
         """
-        ...
+        raise NotImplementedError
 
-
-@runtime_checkable
-class LoadsJoints(Protocol):
-    """An environment that loads the joints themselves, as a cable or a spring about a joint's axis does."""
-
-    def joint_torques(self, time: float, q: FloatArray, dq: FloatArray) -> FloatArray:
-        """Return the torques that it adds to those of the drives.
+    def joint_torques(self, time: float, q: FloatArray, dq: FloatArray) -> FloatArray | None:
+        """Return torques on the joints, such as those of a cable or of a spring about an axis; None if there are none.
 
         Args:
             time: Time since the start, in s.
-            q: True joint positions, shape (nq,), in rad; m where a joint slides.
-            dq: True joint velocities, shape (nq,), in rad/s; m/s where a joint slides.
+            q: True joint positions, shape (nq,), in rad; m if a joint is prismatic.
+            dq: True joint velocities, shape (nq,), in rad/s; m/s if a joint is prismatic.
 
         Returns:
-            Shape (nq,), in N m; N where a joint slides.
+            Shape (nq,), in N m; N if a joint is prismatic.
         """
-        ...
+        return None

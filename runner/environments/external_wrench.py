@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
-from runner.environments import Environment, LoadsJoints, PushesLinks
+from runner.environments import Environment
 from runner.environments.link_forces import LinkForces
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool, holding_wrench
@@ -30,9 +30,7 @@ class Interaction:
         self._model = pin.Model(robot.model.pin_model)
         self._data = self._model.createData()
         self._environment = environment
-        acts: object = environment
-        self._pushed = LinkForces(acts, self._model) if isinstance(acts, PushesLinks) else None
-        self._loads = acts if isinstance(acts, LoadsJoints) else None
+        self._pushed = LinkForces(environment, self._model) if environment is not None and environment.points else None
         self._tick = tick
         self._tip = robot.model.tip_frame
         self._flange = self._model.getFrameId(robot.flange)
@@ -72,17 +70,18 @@ class Interaction:
         pin.computeJointJacobians(model, data)
         tip = pin.updateFramePlacement(model, data, self._tip)
         J = pin.getFrameJacobian(model, data, self._tip, pin.LOCAL_WORLD_ALIGNED)
-        applied = np.zeros(6)
+        applied, on_joints = np.zeros(6), None
         if self._environment is not None:
             applied = self._environment.wrench(time, tip.translation.copy(), J[:3] @ dq)
+            on_joints = self._environment.joint_torques(time, q, dq)
         self.external[:] = applied + contact
         self.external[3:] -= cross(tip.translation, contact[:3])
         self.load[:] = self._load_on_flange(tip)
         torques: FloatArray = J.T @ applied
         if self._pushed is not None:
             torques += self._pushed.torques(time, model, data, dq)
-        if self._loads is not None:
-            torques += self._loads.joint_torques(time, q, dq)
+        if on_joints is not None:
+            torques += on_joints
         return torques
 
     def to_flange_axes(self, wrench: FloatArray) -> FloatArray:

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
+from runner.environments.environment import Environment
 from runner.schema.model import StrictModel
 from runner.schema.units import Damping, Metres, Seconds, Stiffness
 from runner.trajectories.blend import quintic_blend
@@ -31,7 +32,7 @@ class HandConfig(StrictModel):
     damping: Damping[NonNegativeFloat]
 
 
-class Hand:
+class Hand(Environment):
     """The hand; see Environment. It moves as the rest-to-rest quintic does, and turns nothing."""
 
     def __init__(self, config: HandConfig) -> None:

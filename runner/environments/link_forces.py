@@ -6,7 +6,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
 from runner.base.lazy_modules import pin
 from runner.base.sanitize import quoted
-from runner.environments import PushesLinks
+from runner.environments import Environment
 from runner.sensing.wrench import cross_matrix
 
 
@@ -25,7 +25,7 @@ class LinkForces:
         ConfigError: if a link is none of the arm's.
     """
 
-    def __init__(self, environment: PushesLinks, model: "pin.Model") -> None:
+    def __init__(self, environment: Environment, model: "pin.Model") -> None:
         self._environment = environment
         links = [frame.name for frame in model.frames if frame.type == pin.FrameType.BODY]
         points = environment.points

@@ -37,7 +37,7 @@ class PushConfig(StrictModel):
     frequency: Hertz[NonNegativeFloat]
 
 
-class Push:
+class Push(Environment):
     """The push on the tip; see Environment."""
 
     def __init__(self, config: PushConfig) -> None:
@@ -45,9 +45,6 @@ class Push:
         self._start = config.start_time
         self._end = math.inf if config.duration is None else config.start_time + config.duration
         self._rate = 2.0 * math.pi * config.frequency
-
-    def reset(self, tip: FloatArray) -> None:
-        """Do nothing: it depends on the time alone."""
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return the wrench on the tip; see Environment.wrench."""
@@ -61,23 +58,20 @@ class Push:
         return math.sin(self._rate * since) if self._rate else 1.0
 
 
-class PushOnLink:
-    """The push on a link; see PushesLinks."""
+class PushOnLink(Environment):
+    """The push on a link; see Environment."""
 
     def __init__(self, config: PushConfig, link: str) -> None:
         self._push, self._force = Push(config), np.array(config.force)
         self.points = {link: (0.0, 0.0, 0.0)}
         """Where the force acts: a point in the link's frame, in m."""
 
-    def reset(self, tip: FloatArray) -> None:
-        """Do nothing: it depends on the time alone."""
-
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return that nothing acts on the tip; see Environment.wrench."""
         return np.zeros(6)
 
     def link_forces(self, time: float, positions: FloatArray, velocities: FloatArray) -> FloatArray:
-        """Return the force on the link; see PushesLinks."""
+        """Return the force on the link; see Environment."""
         return self._push.share(time) * self._force[None]
 
 

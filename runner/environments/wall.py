@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from runner.base.arrays import FloatArray
+from runner.environments.environment import Environment
 from runner.schema.model import StrictModel
 from runner.schema.units import Damping, Metres, Stiffness
 
@@ -45,7 +46,7 @@ class WallConfig(StrictModel):
         return normal
 
 
-class Wall:
+class Wall(Environment):
     r"""The wall, felt by the tip as a point; see Environment.
 
     The tip at a depth d > 0 is pushed out by k d + c dd, and never pulled. Friction is a spring and a damper like these

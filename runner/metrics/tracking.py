@@ -5,7 +5,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.trace import Traces
 from runner.metrics.family import MetricContext
-from runner.trajectories.trajectory import Trajectory, joint_reference
+from runner.trajectories.trajectory import Trajectory
 
 UNITS = {
     "max_tracking_error": "m",
@@ -74,7 +74,7 @@ def _within(times: FloatArray, after: float, until: float) -> slice:
 
 def _of_joints(traces: Traces, path: Trajectory, ticks: int) -> dict[str, FloatArray]:
     turn = np.array([unit == "rad" for unit in traces.joint_units])
-    desired = joint_reference(path, traces.t[:ticks])
+    desired = path.sample_joints(traces.t[:ticks])
     if desired is None or not turn.any():
         return {}
     error = (desired[:, 0] - traces.q[:, :ticks])[:, :, turn]

@@ -25,7 +25,6 @@ from runner.simulation.assembly import assemble_program, metric_context, reach_o
 from runner.simulation.compiled.closed_loop import LoopProgram, Signals, run_all
 from runner.simulation.failures import ended_well, find_failure
 from runner.simulation.results import Collector
-from runner.trajectories.trajectory import joint_reference
 
 _MOST_BYTES = 32e6  # of the signals of runs that are simulated together
 _GROWTH = math.log(1.25)  # of the longest run over the shortest that are simulated together
@@ -184,7 +183,7 @@ class BatchSimulator:
     def _shared(self, runs: Sequence[RunSpec], times: FloatArray, paths: Sequence[FloatArray]) -> FloatArray:
         """Return what ticks are given of time and path, of one run for all alike or of each."""
         commands, one = runs[0].loop_program.commands, len(runs) == 1
-        joints = [joint_reference(run.config.path, times) for run in runs] if commands.follow_joints else []
+        joints = [run.config.path.sample_joints(times) for run in runs] if commands.follow_joints else []
         return commands.shared(
             times, paths[0] if one else np.array(paths), (joints[0] if one else np.array(joints)) if joints else None
         )

@@ -15,7 +15,6 @@ from runner.simulation.compiled_loop import run_commands, run_program
 from runner.simulation.contact import Contact
 from runner.simulation.recorder import CommandTiming, Recorder, constant_delay
 from runner.simulation.sensors import JointTorques, MeasuredTip
-from runner.trajectories.trajectory import joint_reference
 
 __all__ = ["ClosedLoop", "simulate"]
 
@@ -51,7 +50,7 @@ def simulate(
     contact = None
     try:
         recorder.desired[:] = closed.trajectory.sample(recorder.times)
-        recorder.joints = joint_reference(closed.trajectory, recorder.times)
+        recorder.joints = closed.trajectory.sample_joints(recorder.times)
         if closed.interaction is not None and wrist is not None:
             contact = Contact(closed, closed.interaction, wrist)
         # A diverging run ends as a failure, not as a warning.

@@ -8,7 +8,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.config.cross_checks import computation_of, endpoint_ticks
 from runner.config.run import RunConfig
-from runner.controllers.kinds import ReadsJointTorques
+from runner.controllers.controller import ControlLaw
 from runner.plants import Plant
 from runner.robots.model import RobotModel
 from runner.sensing import (
@@ -94,7 +94,7 @@ def _moves(arm: RobotModel, q: FloatArray, dq: FloatArray) -> FloatArray:
 class _Reader:
     """A controller that reads the sensors at its ticks: the mean of what acted since the last one."""
 
-    controller: ReadsJointTorques
+    controller: ControlLaw
     every: int
     sum: FloatArray
     count: int = 0
@@ -114,7 +114,7 @@ class JointTorques:
         self._readers = [
             _Reader(loop.controller, closed.every(loop), np.zeros(recorder.commands.shape[1]))
             for loop in closed.loops
-            if sensor is not None and isinstance(loop.controller, ReadsJointTorques)
+            if sensor is not None and loop.controller.reads_joint_torques
         ]
 
     def tell(self, k: int) -> None:

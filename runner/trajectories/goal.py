@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres
 from runner.trajectories.nearest import distance_to_segment
-from runner.trajectories.trajectory import Trajectory
+from runner.trajectories.trajectory import OfTip, Trajectory
 from runner.trajectories.vectors import Point
 
 
@@ -28,7 +28,7 @@ class GoalConfig(StrictModel):
 
 
 @dataclass(frozen=True)
-class Goal:
+class Goal(OfTip):
     """A goal (thesis section 3.3.1); see Trajectory for the attributes."""
 
     start: FloatArray

@@ -11,7 +11,7 @@ from runner.base.errors import ConfigError, RunnerError
 from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Asked, Guard, Method, checked, describe_fault, find_fault, read_only
 from runner.plugins.registry import KindConfig, Registry
-from runner.trajectories.trajectory import Trajectory
+from runner.trajectories.trajectory import OfTip, Trajectory
 
 if TYPE_CHECKING:  # they import Pinocchio, which who reads a stored run does not need
     from runner.robots.robot import Robot
@@ -61,6 +61,7 @@ class _ByRun(Method):
 
 _GUARD = Guard(
     "trajectory",
+    OfTip,
     sample=Method(lambda motion, asked, times: checked(motion, (len(times), 3, 3), asked)),
     distance_to_path=_ByRun(lambda distances, asked, points: checked(distances, (len(points),), asked)),
 )

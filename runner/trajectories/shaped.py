@@ -9,14 +9,14 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.trajectories.impulses import Impulses
-from runner.trajectories.trajectory import Trajectory
+from runner.trajectories.trajectory import OfTip, Trajectory
 
 if TYPE_CHECKING:  # readers of stored runs use Shifted, and do without the simulator
     from runner.trajectories.joint_motion import JointMotion
 
 
 @dataclass(frozen=True)
-class DerivedMotion:
+class DerivedMotion(OfTip):
     """A desired motion of the tip made of another, which it follows in what it does not change; see Trajectory.
 
     Attributes:

@@ -1,6 +1,6 @@
 """Trajectory protocol."""
 
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 from runner.base.arrays import FloatArray
 
@@ -44,13 +44,28 @@ class Trajectory(Protocol):
         """
         ...
 
+    def sample_joints(self, times: FloatArray) -> FloatArray | None:
+        """Return the joint motion from which the motion of the tip follows, shape (T, 3, nq); None if there is none.
+
+        Rows are q, dq/dt and d2q/dt2, in rad, rad/s, rad/s^2; m if a joint is prismatic.
+        """
+        ...
+
+
+class OfTip:
+    """Default of a trajectory that is not derived from a joint motion."""
+
+    def sample_joints(self, times: FloatArray) -> FloatArray | None:
+        """Return None; see Trajectory."""
+        return None
+
 
 class _HasDuration(Protocol):
     @property
     def duration(self) -> float: ...
 
 
-class TrackedMotion:
+class TrackedMotion(OfTip):
     """Defaults of a motion of the tip that comes to rest; see Trajectory."""
 
     tracked = True
@@ -59,17 +74,3 @@ class TrackedMotion:
     def run_duration(self: _HasDuration) -> float:
         """One second more than the motion, so that the rest of the arm is visible."""
         return self.duration + 1.0
-
-
-@runtime_checkable
-class LeadsJoints(Protocol):
-    """A trajectory of the tip that follows from a desired motion of the joints."""
-
-    def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return q, dq/dt and d2q/dt2, shape (T, 3, nq): rows in rad, rad/s, rad/s^2; m where a joint slides."""
-        ...
-
-
-def joint_reference(path: Trajectory, times: FloatArray) -> FloatArray | None:
-    """Return the motion of the joints that a path follows from, shape (T, 3, nq); None where there is none."""
-    return path.sample_joints(times) if isinstance(path, LeadsJoints) else None

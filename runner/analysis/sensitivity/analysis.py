@@ -25,7 +25,6 @@ from runner.simulation.batch import BatchResult, BatchSimulator, RunSpec
 from runner.simulation.compiled.directed import tangents
 from runner.store import Run, simulated_part
 from runner.symbolic.engine import evaluator
-from runner.trajectories.trajectory import joint_reference
 
 
 @dataclass(frozen=True)
@@ -87,7 +86,7 @@ def analyse(composed: Composed, groups: Sequence[str] = GROUPS, repetition: int 
         why = "".join(f"; {', '.join(names)}: {reason}" for reason, names in slopes.left_out.items())
         raise RunnerError(f"the run depends on no parameter of {', '.join(groups)}{why}; allowed: {', '.join(GROUPS)}")
     loop_program = scene.loop_program
-    shared = loop_program.commands.shared(trace.t, trace.desired, joint_reference(scene.config.path, trace.t))
+    shared = loop_program.commands.shared(trace.t, trace.desired, scene.config.path.sample_joints(trace.t))
     moved = tangents(loop_program, scene.setting, slopes.settings, shared)
     acted = np.maximum(np.arange(len(trace.t)) - loop_program.delay, 0)
     change = Change(moved.q, moved.dq, moved.torque[:, acted], moved.end_points)

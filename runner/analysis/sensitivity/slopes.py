@@ -16,7 +16,7 @@ from runner.simulation.batch import RunSpec
 from runner.simulation.compiled.closed_loop import LoopProgram
 from runner.simulation.compiled.directed import Setting
 from runner.simulation.compiled.law import structure_cache_key
-from runner.trajectories.trajectory import Trajectory, joint_reference
+from runner.trajectories.trajectory import Trajectory
 
 _PART = 1.0 / 512.0  # of a parameter's value, between the nine at which numbers are taken
 _EIGHTH = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)  # exact for polynomials of up to that degree
@@ -124,7 +124,7 @@ def _fixed(loop_program: LoopProgram) -> list[str]:
 
 
 def _motion(path: Trajectory, times: FloatArray) -> FloatArray:
-    joints = joint_reference(path, times)
+    joints = path.sample_joints(times)
     return np.concatenate([np.ravel(part) for part in (path.sample(times), joints) if part is not None])
 
 

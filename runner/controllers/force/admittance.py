@@ -7,7 +7,7 @@ from pydantic import Field, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
-from runner.controllers.controller import Loop
+from runner.controllers.controller import Loop, PositionController
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
 from runner.controllers.force.wrist import Compensation, ToolCompensation
 from runner.controllers.kinematic.limited_motion import Approach, LimitedMotion
@@ -57,7 +57,7 @@ class AdmittanceConfig(StrictModel):
         return Admittance(np.array(self.mass), np.array(self.damping), np.array(self.stiffness))
 
 
-class AdmittanceControl:
+class AdmittanceControl(PositionController):
     r"""The law of AdmittanceFilter around a desired motion, led by a position-controlled arm.
 
     .. math:: M \ddot e + B \dot e + K e = f, \qquad x_c = x_d + e

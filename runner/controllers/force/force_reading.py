@@ -23,7 +23,7 @@ class ForceReading(Protocol):
         """Take the wrist sensor's reading, shape (6,); see WrenchFeedbackController."""
 
     def read_joint_torques(self, reading: FloatArray) -> None:
-        """Take the mean torques on the links since the last tick, shape (nq,); see ReadsJointTorques."""
+        """Take the mean torques on the links since the last tick, shape (nq,); see ControlLaw."""
 
     def wrench(self, q: FloatArray, dq: FloatArray) -> FloatArray:
         """Return force in N and moment about the tip in N m, along the base's axes, shape (6,)."""

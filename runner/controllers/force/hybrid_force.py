@@ -7,10 +7,9 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Loop
+from runner.controllers.controller import Controller, Loop, VelocityGain
 from runner.controllers.force.force_reading import ForceReading, JointTorqueReading, ReadingName, WristReading
 from runner.controllers.force.tip_force import ForceTask, TipForceConfig, find_force_task
-from runner.controllers.sampled_stability import VelocityGain
 from runner.robots.robot import Robot
 from runner.schema.units import Newtons, PerSecond, Stiffness
 from runner.sensing.force_torque import ForceTorqueConfig
@@ -42,7 +41,7 @@ class HybridForceConfig(TipForceConfig):
     sensor: ForceTorqueConfig
 
 
-class HybridForce:
+class HybridForce(Controller):
     r"""Force along a wall's normal n, motion along its face (Khatib 1987; Raibert and Craig 1981).
 
     .. math::
@@ -66,6 +65,8 @@ class HybridForce:
         ConfigError: where the arm cannot push along the normal, or that leaves no direction to move in.
     """
 
+    reads_joint_torques = True
+
     def __init__(self, task: ForceTask, config: HybridForceConfig, reading: ForceReading) -> None:
         self._tip, self._config, self._period, self._reading = task.tip, config, task.period, reading
         self._normal = _unit(config.normal)
@@ -76,7 +77,7 @@ class HybridForce:
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v of the motion along the wall; see HasVelocityGain."""
+        """K_v of the motion along the wall."""
         return self._tip.velocity_gain
 
     def reset(self) -> None:
@@ -89,7 +90,7 @@ class HybridForce:
         self._reading.update_wrench(reading)
 
     def read_joint_torques(self, reading: FloatArray) -> None:
-        """Take the joint torque sensors' reading; see ReadsJointTorques."""
+        """Take the joint torque sensors' reading; see ControlLaw."""
         self._reading.read_joint_torques(reading)
 
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:

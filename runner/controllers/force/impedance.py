@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat
 
 from runner.base.arrays import FloatArray
-from runner.controllers.controller import Loop
+from runner.controllers.controller import Controller, Loop
 from runner.controllers.force.tip_force import TipForce, TipForceConfig, find_force_task
 from runner.robots.robot import Robot
 from runner.schema.units import Damping, Stiffness
@@ -30,7 +30,7 @@ class ImpedanceConfig(TipForceConfig):
     tip_damping: Damping[Three]
 
 
-class Impedance:
+class Impedance(Controller):
     r"""A tip that gives way as a spring and a damper do, with the mass that it has (Hogan 1985).
 
     .. math::

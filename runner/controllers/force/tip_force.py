@@ -6,13 +6,12 @@ import numpy as np
 from pydantic import NonNegativeFloat
 
 from runner.base.arrays import FloatArray
-from runner.controllers.controller import Controller, Loop
+from runner.controllers.controller import Controller, Loop, VelocityGain
 from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.controllers.macro_mini.macro_mini import build as build_stages
 from runner.controllers.operational_space.tip_task import TipTask
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.controllers.operational_space.whole_body_posture import JointStiffness, PostureTask
-from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
@@ -120,7 +119,7 @@ class TipForce:
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v of the motion that F* asks for; see HasVelocityGain."""
+        """K_v of the motion that F* asks for."""
         return VelocityGain(0.0, float(self._task.numbers.k_v))
 
     @property

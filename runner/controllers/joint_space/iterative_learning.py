@@ -8,11 +8,11 @@ from pydantic import Field, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.controllers.controller import Controller, VelocityGain
 from runner.controllers.joint_space.computed_torque import ComputedTorque, ComputedTorqueConfig
 from runner.controllers.joint_space.joint_law import JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
 from runner.controllers.joint_space.joint_motion import JointMotion
-from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.model import RobotModel
 from runner.schema.units import Seconds
@@ -37,7 +37,7 @@ class IterativeLearningConfig(JointLawConfig):
     cutoff: PositiveFloat | None
 
 
-class IterativeLearning:
+class IterativeLearning(Controller):
     r"""Learning of the feedback torque (Arimoto, Kawamura and Miyazaki, Journal of Robotic Systems 1(2), 1984).
 
     .. math::
@@ -90,11 +90,11 @@ class IterativeLearning:
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v; see HasVelocityGain."""
+        """K_v."""
         return self._law.velocity_gain
 
     def with_limits(self, limits: FloatArray) -> "IterativeLearning":
-        """Return the law that is told its torque limits; see SupportsTorqueLimits."""
+        """Return the law that is told its torque limits; see ControlLaw."""
         told = copy(self)
         told._limits = limits
         told.reset()

@@ -5,10 +5,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.controllers.controller import VelocityGain
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
 from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
-from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
@@ -71,7 +71,7 @@ class JointPd(JointLaw[JointPdNumbers, JointPdConfig]):
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v; see HasVelocityGain."""
+        """K_v."""
         return VelocityGain(self.numbers.k_v, 0.0, self._at_home)
 
     def command(

@@ -6,10 +6,10 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
+from runner.controllers.controller import VelocityGain
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
 from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
-from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
@@ -82,11 +82,11 @@ class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v; see HasVelocityGain."""
+        """K_v."""
         return VelocityGain(self.numbers.k_v, 0.0)
 
     def with_limits(self, limits: FloatArray) -> "JointPid":
-        """Return the law that is told its torque limits; see SupportsTorqueLimits."""
+        """Return the law that is told its torque limits; see ControlLaw."""
         return self.with_numbers(limits=limits)
 
     def command(

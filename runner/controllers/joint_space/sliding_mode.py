@@ -6,11 +6,11 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
+from runner.controllers.controller import VelocityGain
 from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
 from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.joint_space.passivity import passive_dynamics
-from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
 from runner.schema.units import RadiansPerSecond
@@ -83,7 +83,7 @@ class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v within the layer; see HasVelocityGain."""
+        """K_v within the layer."""
         own = self.numbers
         gain = own.switching_gain[0] / (own.boundary_layer * own.damping[0])
         return VelocityGain((1.0 + gain) * own.rate, own.rate)

@@ -8,7 +8,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
-from runner.controllers.controller import Loop
+from runner.controllers.controller import Loop, PositionController
 from runner.controllers.kinematic.resolved_rate import ResolvedRate
 from runner.controllers.operational_space.null_space import NullSpaceConfig, NullSpaceTask
 from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
@@ -58,7 +58,7 @@ class DifferentialInverseKinematicsConfig(StrictModel):
     null_space: NullSpaceConfig
 
 
-class DifferentialInverseKinematics:
+class DifferentialInverseKinematics(PositionController):
     r"""Closed-loop inverse kinematics: joint velocities that lead the tip, integrated to joint positions.
 
     .. math:: \dot q = J^\# (\dot x_d + K (x_d - x)) + (1 - J^\# J) \dot q_0

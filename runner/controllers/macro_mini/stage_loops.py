@@ -6,8 +6,8 @@ from typing import Any, Literal, NamedTuple, TypeVar
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.controllers.controller import VelocityGain
 from runner.controllers.macro_mini.stage_law import StageLaw, StageNumbers
-from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, end_points
@@ -89,7 +89,7 @@ class StageLoop(TorqueLaw[N]):
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v; see HasVelocityGain."""
+        """K_v."""
         return VelocityGain(0.0, self.numbers.law.k_v)
 
     def start(self, q: FloatArray) -> FloatArray:

@@ -8,10 +8,9 @@ from pydantic import NonNegativeFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Loop
+from runner.controllers.controller import Loop, VelocityGain
 from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyLaw
-from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -117,7 +116,7 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v; see HasVelocityGain."""
+        """K_v."""
         return VelocityGain(0.0, float(self.numbers.k_v[0]))
 
     def evaluate(

@@ -6,10 +6,9 @@ from typing import Literal, NamedTuple
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.controllers.controller import Loop
+from runner.controllers.controller import Loop, VelocityGain
 from runner.controllers.operational_space.tip_task import TipNumbers, TipTask
 from runner.controllers.operational_space.whole_body_posture import JointStiffness, Posture, PostureNumbers, PostureTask
-from runner.controllers.sampled_stability import VelocityGain
 from runner.controllers.torque_law import Arm, TorqueLaw
 from runner.robots import RobotModel
 from runner.robots.robot import Robot
@@ -105,7 +104,7 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v; see HasVelocityGain."""
+        """K_v."""
         tip, posture = self.numbers
         spare = self.models[0].nq > len(tip.directions)
         return VelocityGain(0.0, max(tip.k_v, posture.k_v) if spare else tip.k_v)

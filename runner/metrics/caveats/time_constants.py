@@ -28,7 +28,6 @@ from runner.controllers.operational_space.whole_body import WholeBodyConfig
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.task_space import mass_along, tip_mobility
 from runner.schema.values import by_stage
-from runner.trajectories.trajectory import joint_reference
 
 _POSTURES = 32  # of the desired motion
 _ROUNDING = 1e-9
@@ -202,7 +201,7 @@ def _adaptation(run: RunConfig, q: FloatArray) -> float:
 def _desired_joints(run: RunConfig, q: FloatArray) -> FloatArray:
     """Return joint positions, velocities and accelerations of the desired motion, shape (T, 3, nq)."""
     times = np.linspace(0.0, run.path.duration, _POSTURES)
-    joints = joint_reference(run.path, times)
+    joints = run.path.sample_joints(times)
     if joints is not None:
         return joints
     inverse = np.linalg.pinv(run.arm.model.tip_jacobian(q)[:3], rcond=0.01)

@@ -9,7 +9,7 @@ import pytest
 from support.engines import ASKED
 
 from runner.base.errors import ConfigError
-from runner.environments import ENVIRONMENTS, LoadsJoints, PushesLinks
+from runner.environments import ENVIRONMENTS, Environment
 from runner.environments.external_wrench import Interaction
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor
@@ -17,7 +17,7 @@ from runner.simulation.sensors import make_encoders, make_wrist_sensor
 NOTHING = np.zeros(6)
 
 
-class Free:
+class Free(Environment):
     def reset(self, tip):
         pass
 
@@ -180,11 +180,14 @@ def test_points_that_are_none(checked_config, points):
         Interaction(checked_config("robot=macro").arm, ENVIRONMENTS.guard(Pushes([], points)), 1e-3)
 
 
-def test_the_guarded_offer_what_is_within():
-    for environment in (Free(), Pushes([]), Loads(None), Both()):
-        guarded = ENVIRONMENTS.guard(environment)
-        assert isinstance(guarded, PushesLinks) == isinstance(environment, PushesLinks)
-        assert isinstance(guarded, LoadsJoints) == isinstance(environment, LoadsJoints)
+def test_the_guarded_offer_what_is_within_and_defaults_for_the_rest():
+    class Duck:
+        reset, wrench = Free.reset, Free.wrench
+
+    bare, both = ENVIRONMENTS.guard(Duck()), ENVIRONMENTS.guard(Both())
+    assert (dict(bare.points), bare.joint_torques(0.0, np.zeros(3), np.zeros(3))) == ({}, None)
+    assert list(both.points) == ["link2"]
+    assert both.joint_torques(0.0, np.zeros(3), np.zeros(3)).tolist() == [2.0, 2.0, 2.0]
 
 
 def test_pinocchio_agrees_on_the_point(checked_config):

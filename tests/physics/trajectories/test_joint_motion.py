@@ -6,7 +6,6 @@ from support.arms import checked
 
 from runner.base.errors import ConfigError
 from runner.robots.robot import end_points
-from runner.trajectories.trajectory import joint_reference
 
 KINDS = ("joint_quintic", "joint_waypoints", "joint_sinusoids")
 ROBOTS = {
@@ -69,7 +68,7 @@ def test_its_own_path_has_no_distance_and_points_beside_it_have(path):
 
 
 def test_the_tip_s_own_trajectories_lead_no_joints():
-    assert joint_reference(path_of("robot=macro", "trajectory=quintic"), np.zeros(1)) is None
+    assert path_of("robot=macro", "trajectory=quintic").sample_joints(np.zeros(1)) is None
 
 
 def test_a_quintic_peaks_at_half_time():

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.controllers.controller import Loop
+from runner.controllers.controller import Controller, Loop
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import JointTorque, Seconds
@@ -27,7 +27,7 @@ class HeldTorquesConfig(StrictModel):
     torques: JointTorque[float | list[float]]
 
 
-class HeldTorques:
+class HeldTorques(Controller):
     """The law that does nothing with what is measured.
 
     Args:
@@ -36,9 +36,6 @@ class HeldTorques:
 
     def __init__(self, torques: FloatArray) -> None:
         self._torques = torques
-
-    def reset(self) -> None:
-        """Do nothing: the law has no memory."""
 
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the torques; see Controller.torque."""

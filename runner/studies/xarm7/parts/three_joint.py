@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.controllers.controller import Loop
+from runner.controllers.controller import Loop, PositionController
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import Radians, Seconds
@@ -41,7 +41,7 @@ class ThreeJointConfig(StrictModel):
         return Branch(_SIGNS[self.shoulder], _SIGNS[self.elbow])
 
 
-class ThreeJoint:
+class ThreeJoint(PositionController):
     """Joints 1, 2 and 4 from the desired tip position; joints 3, 5, 7 stay at zero and joint 6 where it is put.
 
     It is open loop: what is measured has no influence. Without feedforward the arm is a period late, as a command

@@ -8,7 +8,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Loop
+from runner.controllers.controller import Loop, PositionController
 from runner.controllers.operational_space.tip_task import TaskName, task_start
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -83,7 +83,7 @@ class PrintedJacobian:
         return right
 
 
-class AsPrinted:
+class AsPrinted(PositionController):
     r"""Resolved motion by the printed Jacobian and the printed pseudo-inverse.
 
     .. math:: q_c = q + h \, (J^T J)^{-1} J^T \, (\dot x_d + K (x_d - x))
