@@ -139,10 +139,16 @@ class Guard:
         found = {"part": part, "guard": self}
         for name, member in self._members.items():
             owner = member.owner(part)
-            if not member.optional or hasattr(owner, name):
+            if not member.optional or self._is_offered(owner, name):
                 bound = member.bind(Asked(self, owner, name))
                 found[name] = staticmethod(bound) if callable(bound) else bound
         return type("Guarded", (Guarded, self._base), found)()
+
+    def _is_offered(self, owner: Any, name: str) -> bool:
+        """Return True if a part has a member of its own, not only the default of the base class."""
+        if name in getattr(owner, "__dict__", {}):
+            return True
+        return hasattr(owner, name) and getattr(type(owner), name, None) is not getattr(self._base, name, None)
 
 
 def unguarded(part: Any) -> Any:
