@@ -16,13 +16,14 @@ from runner.reporting.published_claims import load_claims
 from runner.reporting.words import PRESET, in_words
 from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
-from runner.studies.thesis.compared import Compared, parting, step_of_both, takeaway
+from runner.studies.thesis.compared import Compared, parting, step_of_both
 from runner.studies.thesis.equations.truths.thesis_printed import compare
 from runner.study.job import PRESETS
-from runner.study.measured import Measured
+from runner.study.measured import Condition, Measured, finding
 from runner.study.prose.patterns import found
 from runner.study.run_values import cell, clock, measured, median, values
 
+DIFFERENT = 1.1  # ratio from which on two values are not called the same
 _MEANINGS = {
     "M": ("mass matrix, (3.17)", "kg m²"),
     "V": ("centrifugal and Coriolis torque, (3.19)", "N m"),
@@ -84,19 +85,48 @@ def law(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture
     return Picture(caption, block_diagram(graph), words, 0.68, origin(runs[run], number))
 
 
+def ratio(runs: Mapping[str, Run], number: str, metric: str, over: str = "full_equations") -> Measured:
+    """Return a metric of a published figure under one preset over that under another, which is named."""
+    experiment, other = _experiment(number), next(preset for preset in PRESET if preset != over)
+    first, second = (measured(runs[f"{experiment}/{own}"], metric, f"{metric}, {PRESET[own]}") for own in (other, over))
+    return first / second
+
+
+def both(runs: Mapping[str, Run], number: str, metric: str) -> list[str]:
+    """Return a metric of a published figure with the full equations, and as the thesis ran it, with its range."""
+    stored = (runs[f"{_experiment(number)}/{preset}"].metrics.get(metric) for preset in reversed(PRESETS))
+    return ["no value" if each is None or each.median is None else each.text for each in stored]
+
+
+def alike(value: Measured) -> list[Condition]:
+    """Return the conditions that a ratio is called the same as 1."""
+    return [value < DIFFERENT, value > 1.0 / DIFFERENT]
+
+
+def differs(*values: Measured) -> list[Condition]:
+    """Return the conditions that ratios are larger than what is called the same as 1."""
+    return [value > DIFFERENT for value in values]
+
+
 def reproduced(
-    runs: Mapping[str, Run], number: str, what: str, metrics: Sequence[str], until: float | None = None
+    runs: Mapping[str, Run],
+    number: str,
+    caption: str,
+    metrics: Sequence[str],
+    conditions: Sequence[Condition],
+    until: float | None = None,
 ) -> list[Block]:
     """Return one published figure, such as "3.5", with both presets in it, and what the plant's step is worth in it.
 
     Args:
         runs: The runs of the study by name.
         number: Number of the figure.
-        what: What moves, in a few words.
-        metrics: The metrics that its caption compares.
+        caption: What differs between the presets, and what moves.
+        metrics: The metrics that the caption compares.
+        conditions: The conditions for the caption; where one fails, a finding says so.
         until: End of the time axis, in s; None shows the whole runs.
     """
-    experiment = f"figure_{number.replace('.', '_')}"
+    experiment = _experiment(number)
     own = {words: runs[f"{experiment}/{preset}"] for preset, words in PRESET.items()}
     first = next(iter(own.values()))
     claims = [each for each in load_claims("thesis") if each.experiment == f"thesis/{experiment}" and each.printed]
@@ -111,8 +141,14 @@ def reproduced(
         panels += figure.enlarged()
     told = {each.metric: each.number for each in claims}
     text = " ".join(filter(None, [step_of_both(own, metrics), *parting(own, told)]))
-    caption = f"{takeaway(metrics, own)} {what}; curves of repetition 0, numbers are medians (smallest to largest)."
-    return [Curves(f"{caption} {figure.scales()}".strip(), panels, 3, origin(first, f"figure {number}")), Text(text)]
+    told_of = f"{caption}; curves of repetition 0, numbers are medians (smallest to largest). {figure.scales()}".strip()
+    curves = Curves(told_of, panels, 3, origin(first, f"figure {number}"))
+    wrong = [] if all(each.holds for each in conditions) else [finding(f"Figure {number}", caption, *conditions)]
+    return [curves, Text(text), *wrong]
+
+
+def _experiment(number: str) -> str:
+    return f"figure_{number.replace('.', '_')}"
 
 
 def printed(claim: int, end: int, words: str) -> Measured:

@@ -9,7 +9,8 @@ import pytest
 from runner.reporting.published_claims import load_claims
 from runner.reporting.words import PRESET
 from runner.store import Run
-from runner.studies.thesis.compared import APART, Compared, parting, step_of_both, takeaway
+from runner.studies.thesis import figures
+from runner.studies.thesis.compared import APART, Compared, parting, step_of_both
 
 CLAIMS = [claim for claim in load_claims("thesis") if claim.experiment == "thesis/figure_3_5"]
 
@@ -49,22 +50,19 @@ def both(first, second):
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "words"),
-    [
-        (0.008, 0.0004, "the tip rests 20 times closer to the goal, within 0.4 mm in place of 8 mm"),
-        (0.0004, 0.008, "the tip rests 20 times farther from it, within 8 mm in place of 0.4 mm"),
-        (0.0080, 0.0082, "the tip rests as close to the goal, within 8.2 mm beside 8 mm"),
-        (0.008, None, "the tip rests within no value in place of 8 mm"),
-    ],
+    ("rest", "closer", "alike"),
+    [(0.0004, True, False), (0.0079, False, True), (0.08, False, False), (None, False, False)],
 )
-def test_the_words_of_a_takeaway_follow_the_numbers(before, after, words):
-    told = takeaway(["steady_state_error"], both(run(rest=before), run(rest=after)))
-    assert told == f"With its full equations {words}."
-
-
-def test_a_takeaway_tells_metrics_in_the_order_asked_for():
-    told = takeaway(["settling_time", "max_axis_error"], both(run(settling=1.0), run(settling=2.0, error=0.1)))
-    assert "settles 2 times later, after 2 s in place of 1 s, and the tip strays 10 times less from its path" in told
+def test_a_caption_has_the_conditions_of_its_words(rest, closer, alike):
+    runs = {"figure_3_5/as_reported": run(), "figure_3_5/full_equations": run(rest=rest)}
+    ratio = figures.ratio(runs, "3.5", "steady_state_error")
+    assert all(each.holds for each in figures.differs(ratio)) == closer
+    assert all(each.holds for each in figures.alike(ratio)) == alike
+    shown = figures.both(runs, "3.5", "steady_state_error")
+    assert shown == [
+        "no value" if rest is None else runs["figure_3_5/full_equations"].metrics["steady_state_error"].text,
+        "8 mm",
+    ]
 
 
 @pytest.mark.parametrize(("ratio", "rows"), [(APART / 2.0, 1), (2.0 * APART, 2)])
