@@ -103,7 +103,7 @@ def estimate_all(plan: Plan, counts: Sequence[Counts]) -> dict[str, Amount]:
 def _runs(study: Study, tunings: Sequence[Tuning], chosen: Collection[str]) -> Iterable[Overrides]:
     """Return the runs of some laws; where no key is tuned, all gains of a law are the same."""
     same = {each.name for each in tunings if not each.ranges}
-    runs = (job.overrides for job in study.jobs().values() if not set(chosen).isdisjoint(job.overrides))
+    runs = (own for own in study.jobs().values() if not set(chosen).isdisjoint(own))
     return dict.fromkeys(without_gains(own) if any(name in same for name, _ in named(own)) else own for own in runs)
 
 

@@ -49,7 +49,7 @@ def make_all(
     missing = {name: each.missing for name, each in made.items() if each.missing}
     finished = store.Finished(outputs)
     stored = {name: finished.open(made[name].place) for name in jobs if name not in missing}
-    runs = {name: run.made_by(_command(study, jobs[name].overrides, run)) for name, run in stored.items()}
+    runs = {name: run.made_by(_command(study, jobs[name], run)) for name, run in stored.items()}
     found = {
         name: store.open_calibration(outputs / "calibrations" / made[name].place)
         for name in calibrations
@@ -85,5 +85,5 @@ def count_missing(study: Study, outputs: Path) -> int:
 
 
 def _items(study: Study) -> dict[str, Item]:
-    items = {name: Item(job.overrides) for name, job in study.jobs().items()}
+    items = {name: Item(own) for name, own in study.jobs().items()}
     return items | {name: Item(own, CALIBRATION) for name, own in study.calibrations().items()}

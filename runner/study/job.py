@@ -1,7 +1,6 @@
-"""Runs that a report needs, and stored results by name; missing and omitted results raise errors."""
+"""Stored results of a study by name; missing and omitted results raise errors."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TypeVar
 
 from runner.base.errors import RunnerError, nearest
@@ -10,20 +9,6 @@ from runner.store import Calibration, Run
 PRESETS = ("as_reported", "full_equations")
 Thing = TypeVar("Thing")
 Stored = TypeVar("Stored", Run, Calibration)
-
-
-@dataclass(frozen=True)
-class Job:
-    """A run that a report needs.
-
-    Attributes:
-        overrides: The overrides that make it.
-    """
-
-    overrides: tuple[str, ...]
-
-
-Jobs = dict[str, Job]
 
 
 class MissingError(RunnerError):

@@ -16,7 +16,7 @@ from runner.study.expected_caveats import ExpectedCaveat, read_expected
 from runner.study.grid import Overrides
 from runner.study.grids import FILE as RUNS
 from runner.study.grids import Grids
-from runner.study.job import Job, Jobs, distinct
+from runner.study.job import distinct
 from runner.study.manifest import Profile, read_manifest
 from runner.study.names import Location, find_study
 from runner.study.tunings import Gains, Tuning, named, put_in, read_gains
@@ -98,12 +98,12 @@ class Study:
         given = (word for part in self._given if part.override in overrides for word in part.options)
         return (*folders, *named, *given)
 
-    def jobs(self) -> Jobs:
-        """Return the runs that it needs, by name: those of runs.yaml, and those that `plan.py` works out."""
-        more: Jobs = self._planned("computed_runs", dict)
+    def jobs(self) -> dict[str, Overrides]:
+        """Return the overrides of the runs that it needs, by name: of runs.yaml and `plan.py`."""
+        more: dict[str, Overrides] = self._planned("computed_runs", dict)
         if self._profile is not None:
-            more = {name: Job(self._profile.repeated(job.overrides)) for name, job in more.items()}
-        own = {name: Job(put_in(overrides, self._gains)) for name, overrides in self._grids.runs.items()}
+            more = {name: self._profile.repeated(overrides) for name, overrides in more.items()}
+        own = {name: put_in(overrides, self._gains) for name, overrides in self._grids.runs.items()}
         return {**own, **more}
 
     def untuned(self) -> list[Tuning]:

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from support.thin_plans import Overrides, stand_ins
 
 from runner.studies.precision.measure import PLANT
-from runner.study.job import Job
 from runner.study.study import load_study
 
 FULL_ALONE = ("late_and_limited.md",)  # chapters of the benchmark's full profile alone
@@ -29,7 +28,7 @@ def cut(overrides: Overrides, duration: float) -> Overrides:
 
 def thesis_jobs() -> dict[str, Overrides]:
     """Return all runs of the thesis, with two repetitions in place of forty; the twins of another plant have one."""
-    return {name: _repeated(job.overrides) for name, job in load_study("thesis").jobs().items()}
+    return {name: _repeated(job) for name, job in load_study("thesis").jobs().items()}
 
 
 def _repeated(overrides: Overrides) -> Overrides:
@@ -50,20 +49,20 @@ def thesis_moments() -> dict[str, Overrides]:
     return moments
 
 
-def xarm7_studies() -> dict[str, Job]:
+def xarm7_studies() -> dict[str, Overrides]:
     """Return the runs of the studies on the xArm7, of which none is an experiment of the report's."""
     jobs = load_study("xarm7").jobs()
-    return {name: job for name, job in jobs.items() if not job.overrides[0].startswith("experiment=")}
+    return {name: job for name, job in jobs.items() if not job[0].startswith("experiment=")}
 
 
 def xarm7_moments() -> dict[str, Overrides]:
     """Return the runs of the studies on the xArm7, cut to a moment."""
-    return {name: cut(job.overrides, MOMENT) for name, job in xarm7_studies().items()}
+    return {name: cut(job, MOMENT) for name, job in xarm7_studies().items()}
 
 
 def meca500_jobs() -> dict[str, Overrides]:
     """Return all runs of the Meca500 report; those of contact, guiding and steps as short as shows what they do."""
-    jobs = {name: job.overrides for name, job in load_study("meca500").jobs().items()}
+    jobs = dict(load_study("meca500").jobs().items())
     lengths = {name: _MECA500.get(name.partition("/")[0]) for name in jobs}
     return {name: o if lengths[name] is None else cut(o, lengths[name]) for name, o in jobs.items()}
 
@@ -96,7 +95,7 @@ def benchmark_kinds() -> dict[str, Overrides]:
     kinds: dict[str, Overrides] = {}
     for profile in ("", "full"):
         for name, job in load_study("benchmark", profile=profile).jobs().items():
-            kept = tuple(o for o in job.overrides if not o.startswith("repetitions="))
+            kept = tuple(o for o in job if not o.startswith("repetitions="))
             kinds.setdefault(benchmark_kind(name), (*cut(kept, 0.01), "repetitions=1"))
     return kinds
 
@@ -107,13 +106,13 @@ def precision_kinds() -> dict[str, Overrides]:
     for name, job in load_study("precision").jobs().items():
         case, arm, plant, _ = name.split("/")
         if plant == PLANT:
-            kinds.setdefault(f"{case}/{arm}", cut(job.overrides, 0.016 if case == "free" else 0.02))
+            kinds.setdefault(f"{case}/{arm}", cut(job, 0.016 if case == "free" else 0.02))
     return kinds
 
 
 def planned(study: str) -> dict[str, Overrides]:
     """Return the runs of a study's plan, by name."""
-    return {name: job.overrides for name, job in load_study(study).jobs().items()}
+    return dict(load_study(study).jobs().items())
 
 
 def stood_in(study: str) -> tuple[dict[str, Overrides], dict[str, str]]:

@@ -10,7 +10,6 @@ from runner.controllers.force.admittance_stability import stiffest_wall
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.study.grid import Overrides
 from runner.study.grids import FILE, Grids
-from runner.study.job import Job, Jobs
 
 GRIDS = Grids(Path(__file__).with_name(FILE))
 REPORTED = GRIDS.value("step", "reported")  # s, between two reports of the real controller
@@ -38,7 +37,7 @@ def law() -> Admittance:
     return Admittance(*(np.repeat(values, 3) for values in _LAW.values()))
 
 
-def computed_runs() -> Jobs:
+def computed_runs() -> dict[str, Overrides]:
     """Return the runs whose overrides are computed, by name."""
     return {**_map(), **_rests()}
 
@@ -61,7 +60,7 @@ def calibrations(given: Mapping[str, Overrides]) -> dict[str, Overrides]:
     return jobs
 
 
-def _map() -> Jobs:
+def _map() -> dict[str, Overrides]:
     values = (f"controller.{key}={3 * [along] + 3 * [about]}".replace(" ", "") for key, (along, about) in _LAW.items())
     base = ("experiment=meca500/wall", *values, "environment.distance=0", "environment.damping=0",
             "controller.check_stability=false", "duration=1.2")  # fmt: skip
@@ -70,24 +69,24 @@ def _map() -> Jobs:
         bound = stiffest_wall(law(), period, 0, 0.0, 0)
         for share in _SHARES:
             own = (f"controller.period={period}", f"environment.stiffness={share * bound:.5g}")
-            jobs[f"map/kinematic/{period}/{share}"] = Job((*base, *own))
+            jobs[f"map/kinematic/{period}/{share}"] = (*base, *own)
     for period, tick, spring, wall in _SERVOS:
         servo = ("plant=default", f"plant.servo.period={tick}", f"plant.step={tick}",
                  f"plant.servo.stiffness={spring:g}", "trajectory.goal=[0.185,0.01,0.06]")  # fmt: skip
         case = f"{1e3 * period:g} ms, servos {1e3 * tick:g} ms, {spring:g}"
         for share in _SHARES:
             own = (f"controller.period={period}", f"environment.stiffness={share * wall:.5g}")
-            jobs[f"map/servos/{case}/{share}"] = Job((*base, *servo, *own))
+            jobs[f"map/servos/{case}/{share}"] = (*base, *servo, *own)
     return jobs
 
 
-def _rests() -> Jobs:
+def _rests() -> dict[str, Overrides]:
     """Return the tool weighed at rest in postures inside the joint limits, turned by half a turn at most."""
     model = RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange")
     low, high = np.clip(model.position_limits, -np.pi, np.pi)
     homes = np.random.default_rng(0).uniform(low, high, (ORIENTATIONS, 6))
-    jobs = {}
+    jobs: dict[str, Overrides] = {}
     for number, home in enumerate(homes):
         posture = f"robot.home={home.round(6).tolist()}".replace(" ", "")
-        jobs[f"rest/{number}"] = Job(("experiment=meca500/weighing", posture, "wrist_sensor=mini40", f"seed={number}"))
+        jobs[f"rest/{number}"] = ("experiment=meca500/weighing", posture, "wrist_sensor=mini40", f"seed={number}")
     return jobs

@@ -11,7 +11,7 @@ SWEEP = ("-m", "experiment=benchmark/macro,benchmark/planar", "hydra.sweeper.wor
 @pytest.mark.parametrize("arm", ["macro", "planar", "xarm7"])
 def test_an_experiment_is_what_the_benchmark_runs(arm):
     """Untuned computed torque on the circle, with all wrong at once; the names of the robot's defaults left aside."""
-    overrides = load_study("benchmark").jobs()[f"first/{arm}/computed_torque/circle/all/untuned"].overrides
+    overrides = load_study("benchmark").jobs()[f"first/{arm}/computed_torque/circle/all/untuned"]
     run, experiment = (compose(each).resolved for each in (overrides, [f"experiment=benchmark/{arm}"]))
     assert experiment == run
 

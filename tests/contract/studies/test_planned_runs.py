@@ -94,7 +94,7 @@ def test_a_study_has_its_runs(study, runs, calibrations):
     planned = load_study(study)
     jobs, calibrated = planned.jobs(), planned.calibrations()
     assert (len(jobs), len(set(calibrated.values()))) == (runs, calibrations)  # of some names one calibration
-    found = {name: job.overrides for name, job in jobs.items()} | dict(calibrated)
+    found = dict(jobs.items()) | dict(calibrated)
     assert {name: found[name] for name in SOME[study]} == SOME[study]
 
 

@@ -93,8 +93,7 @@ def test_runge_kutta_by_pinocchio_is_the_compiled_scheme(model: RobotModel) -> N
 def test_what_is_worked_out_of_a_case_is_of_fourth_order_and_two_methods_agree() -> None:
     jobs = STUDY.jobs()
     steps = {
-        step: validate(compose(cut(jobs[f"control/macro/Runge-Kutta/{step}"].overrides, 0.1)))
-        for step in ("0.01", "0.0025")
+        step: validate(compose(cut(jobs[f"control/macro/Runge-Kutta/{step}"], 0.1))) for step in ("0.01", "0.0025")
     }
     solved = measure._solved(steps)
     assert solved["energy"] is None

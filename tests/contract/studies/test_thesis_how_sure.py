@@ -112,7 +112,7 @@ def test_the_full_profile_raises_the_seeds_alone() -> None:
     assert {name for name in whole if name not in full} == {name for name in whole if name.startswith("sure/")}
     more = {name: job for name, job in full.items() if name not in whole}
     assert len(more) == 20
-    assert all(job.overrides[-1] == "repetitions=10000" and "plant=rk4" in job.overrides for job in more.values())
+    assert all(job[-1] == "repetitions=10000" and "plant=rk4" in job for job in more.values())
     assert all(full[name] == job for name, job in whole.items() if name in full)
 
 

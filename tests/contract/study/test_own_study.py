@@ -51,7 +51,7 @@ def made(tmp_path_factory):
     """The runs of the small study, by name."""
     root = tmp_path_factory.mktemp("made")
     jobs = load_study(str(a_study(root / "paper"))).jobs()
-    return {name: run(*job.overrides, f"outputs={root}") for name, job in jobs.items()}
+    return {name: run(*job, f"outputs={root}") for name, job in jobs.items()}
 
 
 def read(folder, runs, **options):
@@ -180,7 +180,7 @@ def test_a_profile_makes_other_levels(tmp_path):
     folder = a_study(tmp_path / "paper", study__yaml=about)
     jobs = load_study(str(folder), profile="quick").jobs()
     assert list(jobs) == ["goal/slow/0.2"]
-    assert jobs["goal/slow/0.2"].overrides[-2:] == ("duration=0.2", "repetitions=3")
+    assert jobs["goal/slow/0.2"][-2:] == ("duration=0.2", "repetitions=3")
     assert len(load_study(str(folder)).jobs()) == 4
     assert sorted(load_study(str(folder), profile="quick").dropped()) == sorted(load_study(str(folder)).jobs())
     with pytest.raises(RunnerError, match=r"no profile 'quik' \(did you mean quick\?\); profiles: quick"):

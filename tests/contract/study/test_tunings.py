@@ -112,8 +112,8 @@ def test_gains_go_from_trials_into_runs_and_what_is_not_tuned_stays(paper, tmp_p
 def test_stored_gains_are_taken_and_a_profile_tunes_anew(paper):
     write_gains(paper.folder, {"planar/pd": [{"controller.natural_frequency": 12.5}] * 3, "planar/held": [{}] * 3})
     jobs = paper().jobs()
-    assert jobs["moves/pd/tuned"].overrides[-1] == "controller.natural_frequency=12.5"
-    assert jobs["moves/held/tuned"].overrides == jobs["moves/held/untuned"].overrides
+    assert jobs["moves/pd/tuned"][-1] == "controller.natural_frequency=12.5"
+    assert jobs["moves/held/tuned"] == jobs["moves/held/untuned"]
     assert paper().untuned() == []
     assert len(paper(profile="anew").untuned()) == 2
 

@@ -59,7 +59,7 @@ def test_a_given_part_is_one_more_level_of_the_axis_that_takes_it(mine, part):
     assert list(runs) == [
         "laws/joint PD/0", "laws/joint PD/1", "laws/gravity_pd/0", "laws/gravity_pd/1", "alone"
     ]  # fmt: skip
-    assert runs["laws/gravity_pd/1"].overrides[-2:] == ("controller=gravity_pd", "seed=1")
+    assert runs["laws/gravity_pd/1"][-2:] == ("controller=gravity_pd", "seed=1")
 
 
 def test_of_listed_levels_it_is_one_more_value(tmp_path, part):

@@ -27,7 +27,7 @@ from runner.study.study import load_study
 def planned(shared_store):
     """Run a job of the plan by its name, with further overrides."""
     jobs = load_study("meca500").jobs()
-    return lambda name, *overrides: make_runs(shared_store, {name: (*jobs[name].overrides, *overrides)})[name]
+    return lambda name, *overrides: make_runs(shared_store, {name: (*jobs[name], *overrides)})[name]
 
 
 @pytest.mark.parametrize("axis", ["y", "rotation x"])

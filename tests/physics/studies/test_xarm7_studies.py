@@ -25,7 +25,7 @@ Make = Callable[[str], Run]
 @pytest.fixture(scope="module")
 def planned(shared_store: Path) -> Make:
     """Make a run of the plan, as it is planned."""
-    return lambda name: make_runs(shared_store, {name: xarm7_studies()[name].overrides})[name]
+    return lambda name: make_runs(shared_store, {name: xarm7_studies()[name]})[name]
 
 
 def test_the_printed_inverse_has_nothing_to_invert_and_the_right_one_is_right(xarm7: Any) -> None:
@@ -103,9 +103,7 @@ def test_the_torques_asked_for_are_linear_in_the_payload(planned: Make) -> None:
     names = [f"tau{joint}" for joint in range(1, 8)]
     light, heavy = (planned(f"payload/0.643/asked/{mass}").trace()[names].to_numpy() for mass in (0, 5))
     outputs = planned("payload/0.643/asked/0").folder.parent.parent
-    between = run(
-        *xarm7_studies()["payload/0.643/asked/0"].overrides[:-1], "robot.payload.mass=2", f"outputs={outputs}"
-    )
+    between = run(*xarm7_studies()["payload/0.643/asked/0"][:-1], "robot.payload.mass=2", f"outputs={outputs}")
     np.testing.assert_allclose(between.trace()[names].to_numpy(), light + 0.4 * (heavy - light), atol=1e-9)
 
 
