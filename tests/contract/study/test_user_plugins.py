@@ -110,7 +110,7 @@ def test_a_study_that_takes_none_refuses_it(cli, mine):
     assert ending.code == 2
     assert "paper: --plugin controller=gravity_pd: none of its runs takes a controller of yours" in ending.err
     ending = cli("reproduce", "all", "--plugin", f"controller=mine/{LAW}.py")
-    assert (ending.code, "reproduce all: --plugin gives a part to one study; name it" in ending.err) == (2, True)
+    assert (ending.code, "--plugin: not for several studies (all). Allowed: one study." in ending.err) == (2, True)
     assert not (mine.parent / "outputs").exists()
 
 
