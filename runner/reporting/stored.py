@@ -32,19 +32,21 @@ def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str
     Raises:
         RunnerError: if a folder is none of these, or damaged; for an unknown metric or format.
     """
-    document, folder = compose_report(folders, metrics)
-    folder = output or folder
+    document, folder = compose_report(folders, metrics, output)
     render.write_report(document, folder, formats)
     note(folder)
     return folder
 
 
-def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> tuple[Document, Path]:
+def compose_report(
+    folders: Sequence[Path], metrics: Sequence[str] = (), output: Path | None = None
+) -> tuple[Document, Path]:
     """Return the report on some runs, one tuning, or one or more sweeps, and the folder that it is written to.
 
     Args:
         folders: Those of the runs or sweeps, or that of the tuning.
         metrics: What sweeps are compared by.
+        output: Folder that it is written to; None for one in `reports/` of the outputs folder.
 
     Raises:
         RunnerError: If metrics are given for what is no sweep, or are none of its.
@@ -54,20 +56,21 @@ def compose_report(folders: Sequence[Path], metrics: Sequence[str] = ()) -> tupl
     sweeps = [thing for thing in things if isinstance(thing, store.Sweep)]
     runs = [thing for thing in things if isinstance(thing, store.Run)]
     first, reports = things[0], outputs_of(folders[0]) / "reports"
+    place = output or reports / "any"
     if len(things) > 1 and len(things) not in (len(sweeps), len(runs)):
         raise RunnerError("these results have no common report. Allowed: only runs, only sweeps, or one folder.")
     if metrics and not sweeps:
         raise RunnerError(f"--metrics: {folders[0]} is not a sweep. Allowed: only for sweeps.")
     names = [folder.resolve().name for folder in folders]
     if isinstance(first, Tuning):
-        document, name = tuning_document(first, reports / "any"), names[0]
+        document, name = tuning_document(first, place), names[0]
     elif runs:
         progress.begin("reading runs")
         document, name = run_document(runs), "".join(run.hash for run in runs)
     elif len(sweeps) == 1:
-        address = os.path.relpath(sweeps[0].outputs / "runs", reports / "any") + "/"
+        address = os.path.relpath(sweeps[0].outputs / "runs", place) + "/"
         document, name = sweep_document(sweeps[0], metrics, address), " ".join([sweeps[0].folder.name, *metrics])
     else:
         sides = [measure_stored(sweep, letter(place)) for place, sweep in enumerate(sweeps)]
         document, name = comparison_document(sides, metrics), " ".join(["compared", *names, *metrics])
-    return document, reports / hashlib.sha256(name.encode()).hexdigest()[:24]
+    return document, output or reports / hashlib.sha256(name.encode()).hexdigest()[:24]

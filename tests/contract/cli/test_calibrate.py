@@ -9,7 +9,7 @@ SHORT = ("repetitions=3",)
 
 @pytest.mark.parametrize("kind", group_options("calibration"))
 def test_every_calibration_prints_its_errors_and_its_folder(cli, tmp_path, kind):
-    ending = cli("calibrate", f"calibration={kind}", *SHORT)
+    ending = cli("calibrate", f"calibration={kind}", *SHORT, "-o", "outputs")
     assert (ending.code, ending.err) == (0, "")
     assert ending.folder.parent == tmp_path / "outputs" / "calibrations"
     assert ending.out.splitlines()[0].split()[:2] == ["error", "of"]

@@ -34,6 +34,12 @@ def test_a_run_is_reported_in_the_formats_chosen(cli, stored, flags, files):
     assert sorted(path.name for path in ending.folder.iterdir()) == files
 
 
+def test_a_report_is_written_where_it_is_asked_for(cli, sweep, tmp_path):
+    ending = cli("report", sweep, "--format", "html", "-o", tmp_path / "mine" / "page")
+    assert ending.folder == tmp_path / "mine" / "page"
+    assert "../../outputs/runs" in (ending.folder / "report.html").read_text()
+
+
 def test_a_report_can_be_made_from_a_copied_run(cli, stored, tmp_path):
     here = cli("report", stored, "--format", "html").folder.joinpath("report.html").read_bytes()
     copy = tmp_path / "elsewhere" / "runs" / stored.name
