@@ -87,7 +87,8 @@ def leads(ranked: Mapping[str, Sequence[Entry]]) -> dict[str, dict[tuple[str, st
     """
     pairs = {(name, a.law, b.law): (a, b) for name, laws in ranked.items() for a, b in itertools.combinations(laws, 2)}
     compared = {key: _compared(a, b) for key, (a, b) in pairs.items()}
-    drawn = {key: max(p_values) for key, each in compared.items() if (p_values := _p_values(each))}
+    known = {key: [one.p_value for one in each if one.p_value is not None] for key, each in compared.items()}
+    drawn = {key: max(own) for key, own in known.items() if own}
     p_values = list(drawn.values())
     corrected = dict(zip(drawn, zip(holm(p_values), holm_levels(p_values, ALPHA), strict=True), strict=True))
     made: dict[str, dict[tuple[str, str], Lead]] = {name: {} for name in ranked}
@@ -109,10 +110,6 @@ def _compared(a: Entry, b: Entry) -> list[Comparison]:
 def _paired(a: bytes, b: bytes) -> Comparison:
     """Return the comparison of two samples, which the same gains of two tunings, and halves of seeds, ask for again."""
     return compare_paired(np.frombuffer(a), np.frombuffer(b))
-
-
-def _p_values(compared: Sequence[Comparison]) -> list[float]:
-    return [each.p_value for each in compared if each.p_value is not None]
 
 
 def _lead(a: Entry, b: Entry, compared: Sequence[Comparison], decided: tuple[float, float] | None) -> Lead:

@@ -41,7 +41,10 @@ def what_changes(runs: Mapping[str, Run], caption: str) -> Table:
     """Return who is ahead with all wrong at once, as judged and where one thing is otherwise, with the first tuning."""
     arms = arms_of(runs)
     columns = [_column(runs, arm) for arm in arms]
-    rows = [[words, *(_told(column[words]) for column in columns)] for words in columns[0]]
+    rows = [
+        [words, *(f"{answer(column[words])} ({error_words(column[words].best)})" for column in columns)]
+        for words in columns[0]
+    ]
     return Table(caption, ["what is otherwise", *(ARMS[arm] for arm in arms)], rows, (), any_origin(runs))
 
 
@@ -74,7 +77,3 @@ def _column(runs: Mapping[str, Run], arm: str) -> dict[str, Cell]:
         "the first 2 s": of("first"),
         **{words: changed[change] for change, words in CHANGES.items() if change in changed},
     }
-
-
-def _told(cell: Cell) -> str:
-    return f"{answer(cell)} ({error_words(cell.best)})"

@@ -23,7 +23,7 @@ def impact(run: Run) -> dict[str, float]:
     touching = np.flatnonzero(force > 0.0)
     first = int(touching[0])
     last = first + int(np.argmax(force[first:] <= 0.0)) - 1
-    speed, h = joint_columns(run.trace(), "dq")[:, _ALONG], _step(run)
+    speed, h = joint_columns(run.trace(), "dq")[:, _ALONG], float(run.config["controller"]["period"])
     before, after = float(speed[first - 1]), float(speed[last + 1])
     peak, drive = float(force[first : last + 1].max()), float(run.config["controller"]["torques"][_ALONG])
     asked = mass(run) * (before - after) + drive * h * (last + 1 - (first - 1))
@@ -84,7 +84,3 @@ def _wall_force(run: Run) -> FloatArray:
 
 def _frequency(run: Run) -> float:
     return math.sqrt(float(run.config["environment"]["stiffness"]) / mass(run))
-
-
-def _step(run: Run) -> float:
-    return float(run.config["controller"]["period"])
