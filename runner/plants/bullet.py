@@ -21,16 +21,16 @@ from runner.robots.tool_link import TOOL_MOUNT
 
 
 class LinksTorque:
-    r"""Torques that give links without armature the accelerations of an arm with it.
+    r"""Torques that give links without armature the accelerations of an arm with armature.
 
     .. math:: \tau' = \tau - A \ddot q, \qquad (M + A) \ddot q + h = \tau
         \quad\Rightarrow\quad M \ddot q + h = \tau'
 
-    h is the bias and gravity torque. It is exact in free motion, in each state for itself. Accelerations are compiled
-    code's where that is to be had, else those of Pinocchio's articulated-body algorithm.
+    h is the bias and gravity torque. The result is exact in free motion, in each state. Accelerations come from
+    compiled code if available, else from Pinocchio's articulated-body algorithm.
 
     Args:
-        model: The arm, with its armature A.
+        model: Model of the arm, with its armature A.
     """
 
     def __init__(self, model: RobotModel) -> None:
@@ -39,20 +39,20 @@ class LinksTorque:
         self._data, self._armature = self._model.createData(), model.armature
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector in the base frame, shape (3,), in m/s^2."""
+        """Set the gravity vector in the base frame, shape (3,), in m/s^2."""
         self._model.gravity.linear = gravity
         if self._compiled is not None:
             self._compiled.set_gravity(gravity)
 
     def at(self, q: FloatArray, dq: FloatArray, tau: FloatArray) -> FloatArray:
-        """Return the torques of the links in a state, shape (nq,), in N m; valid until it is asked again."""
+        """Return the torques of the links in a state, shape (nq,), in N m; valid until the next call."""
         if self._compiled is not None:
             return self._compiled.at(q, dq, tau)
         links: FloatArray = tau - self._armature * pin.aba(self._model, self._data, q, dq, tau)
         return links
 
 
-with quiet_stderr():  # PyBullet announces its build time
+with quiet_stderr():  # PyBullet prints its build time
     import pybullet
 
 IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end
@@ -64,9 +64,10 @@ class BulletConfig(TorquePlantConfig):
     """Config of the PyBullet plant.
 
     Attributes:
-        kind: Its name in the registry.
-        step: Integration step, in s; None is a tenth of the fastest controller period, a quarter with several stages.
-        flexible_joints: Springs between motors and links; None is an arm with rigid joints.
+        kind: Name in the registry.
+        step: Integration step, in s; None selects a tenth of the fastest controller period, a quarter with several
+            stages.
+        flexible_joints: Springs between motors and links; None for rigid joints.
     """
 
     kind: Literal["bullet"]
@@ -74,18 +75,18 @@ class BulletConfig(TorquePlantConfig):
 
 
 class Bullet(Plant):
-    """An arm in PyBullet, torque-controlled, without motors, damping or speed limit; a wall is all that it can touch.
+    """A torque-controlled arm in PyBullet, without motors, damping or speed limit. It collides only with a wall.
 
-    PyBullet knows no armature: an arm that has one gets, in each step, the torques that give its accelerations.
+    PyBullet has no armature. In each step, an arm with armature receives the torques that give its accelerations.
 
     Args:
-        urdf: The arm's URDF text.
-        model: The model built from it, for gravity and the order of the joints.
+        urdf: URDF of the arm, as a string.
+        model: Model built from the URDF, for gravity and the order of the joints.
         step: Integration step, in s.
         steps_per_tick: Integration steps for which the torques of one tick are held.
 
     Raises:
-        ConfigError: if PyBullet cannot load the URDF, or says anything while it does so.
+        ConfigError: if PyBullet cannot load the URDF, or prints anything while loading it.
     """
 
     def __init__(self, urdf: str, model: RobotModel, step: float, steps_per_tick: int) -> None:
@@ -105,7 +106,7 @@ class Bullet(Plant):
             raise
 
     def _set_up(self, model: RobotModel, step: float) -> None:
-        """Make the server as this plant needs it, whatever an earlier one left there."""
+        """Configure the server for this plant, whatever the previous plant left."""
         self._joints = self._order_joints(model.joint_names)
         if self._server.used:
             self.reset(self.q, self.dq)
@@ -113,8 +114,8 @@ class Bullet(Plant):
             self._remove_damping_and_motors()
         self._tool_mount = self._enable_tool_sensor()
         self.set_gravity(model.gravity)
-        # Bullet splits one stepSimulation into the steps: bit-identical to as many calls, and cheaper. Its own
-        # "substeps" start at 2; 0 means none.
+        # Bullet splits one stepSimulation into the steps. That is bit-identical to separate calls, and cheaper.
+        # Its "substeps" start at 2; 0 means none.
         at_once = self._steps_per_tick if self._links_torque is None else 1
         pybullet.setPhysicsEngineParameter(
             fixedTimeStep=step * at_once,
@@ -123,7 +124,7 @@ class Bullet(Plant):
         )
 
     def _enable_tool_sensor(self) -> int | None:
-        """Let Bullet compute the reaction in the tool's mount, at its origin in world axes; return that joint."""
+        """Enable the reaction sensor in the tool's mount, at its origin in world axes; return its joint's index."""
         index = self._joint_indices().get(TOOL_MOUNT)
         if index is not None:
             pybullet.setPhysicsEngineParameter(jointFeedbackMode=3, physicsClientId=self._client)
@@ -140,7 +141,7 @@ class Bullet(Plant):
         return {info[1].decode(): info[0] for info in infos}
 
     def _remove_damping_and_motors(self) -> None:
-        # Two calls: PyBullet 3.2.7 ignores jointDamping in a call that holds maxJointVelocity.
+        # Two calls: PyBullet 3.2.7 ignores jointDamping in a call with maxJointVelocity.
         undamped = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
         for link in range(-1, pybullet.getNumJoints(self._body, physicsClientId=self._client)):
             for settings in (undamped, {"maxJointVelocity": _NO_SPEED_LIMIT}):
@@ -154,13 +155,13 @@ class Bullet(Plant):
         )
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state; see Plant."""
+        """Reset the arm to a state; see Plant."""
         for joint, position, velocity in zip(self._joints, q.tolist(), dq.tolist(), strict=True):
             pybullet.resetJointState(self._body, joint, position, velocity, physicsClientId=self._client)
         self.q[:], self.dq[:] = q, dq
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         pybullet.setGravity(*gravity.tolist(), self._client)
         if self._links_torque is not None:
             self._links_torque.set_gravity(gravity)
@@ -174,7 +175,7 @@ class Bullet(Plant):
             self._hold(self._links_torque.at(self.q, self.dq, tau))
 
     def _hold(self, tau: FloatArray) -> None:
-        """Hold torques of the links while Bullet moves them."""
+        """Hold torques of the links for one call of stepSimulation."""
         client, body, joints = self._client, self._body, self._joints
         pybullet.setJointMotorControlArray(
             body, joints, pybullet.TORQUE_CONTROL, forces=tau.tolist(), physicsClientId=client
@@ -184,7 +185,7 @@ class Bullet(Plant):
         self._put(self._state.data, 0, *[state[0] for state in states], *[state[1] for state in states])
 
     def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> bool:
-        """Add a wall for the links that have a collision shape; see Plant."""
+        """Add a wall that touches the links with a collision shape; see Plant."""
         client = self._client
         box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[1.0, 1.0, 0.5], physicsClientId=client)
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), normal).coeffs()
@@ -192,7 +193,7 @@ class Bullet(Plant):
         self._wall = pybullet.createMultiBody(
             0.0, box, basePosition=middle, baseOrientation=turn.tolist(), physicsClientId=client
         )
-        pybullet.setPhysicsEngineParameter(contactSlop=0.0, physicsClientId=client)  # else 10 um bear no force
+        pybullet.setPhysicsEngineParameter(contactSlop=0.0, physicsClientId=client)  # else 10 um without force
         pybullet.changeDynamics(
             self._wall,
             -1,
@@ -204,10 +205,10 @@ class Bullet(Plant):
         return True
 
     def tool_reaction(self) -> FloatArray | None:
-        """Return Bullet's own reading of what the tool puts on the flange in the last step; None without a tool.
+        """Return the wrench of the tool on the flange in the last step, as Bullet computes it; None without a tool.
 
-        Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,). In motion it is off
-        by a term in the square of the speeds, at any step.
+        Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,). In motion it has an
+        error quadratic in the speeds, at any step.
         """
         if self._tool_mount is None:
             return None
@@ -218,22 +219,22 @@ class Bullet(Plant):
         wrench = np.zeros(6)
         if self._wall is not None:
             for contact in pybullet.getContactPoints(self._body, self._wall, physicsClientId=self._client):
-                # Bullet divides the impulse of the last step by the time of all steps of the tick.
+                # Bullet divides the impulse of the last step by the duration of all steps of the tick.
                 place, force = np.array(contact[5]), self._steps_per_tick * contact[9] * np.array(contact[7])
                 wrench += np.concatenate([force, np.cross(place, force)])
         return wrench
 
     def mass_matrix(self, q: FloatArray) -> FloatArray:
-        """Return Bullet's mass matrix, armature added, shape (nq, nq), in kg m^2, joints in the model's order."""
-        places = np.argsort(np.argsort(self._joints))  # Bullet counts in its own order
+        """Return Bullet's mass matrix with armature, shape (nq, nq), in kg m^2, in the model's order of joints."""
+        places = np.argsort(np.argsort(self._joints))  # Bullet uses its own order of joints
         ordered = np.empty_like(q)
         ordered[places] = q
         M = np.array(pybullet.calculateMassMatrix(self._body, ordered.tolist(), physicsClientId=self._client))
         return M[np.ix_(places, places)] + np.diag(self._armature)
 
     def close(self) -> None:
-        """Give back the physics server, which may serve the next plant of the same arm."""
-        changed = self._wall is not None or self._tool_mount is not None  # engine parameters that would outlive it
+        """Return the physics server for reuse by the next plant of the same arm."""
+        changed = self._wall is not None or self._tool_mount is not None  # their engine parameters would persist
         diverged = not (np.isfinite(self.q).all() and np.isfinite(self.dq).all())
         SERVERS.give_back(self._server, reusable=not (changed or diverged))
 
@@ -242,7 +243,7 @@ CONFIG = BulletConfig
 
 
 def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
-    """Make the plant that a config describes."""
+    """Build the plant of a config."""
     if config.flexible_joints is not None:
         parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
         return flexible_around(*parts, lambda links: Bullet(robot.urdf, links, step, 1))

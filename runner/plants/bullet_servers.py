@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from runner.base.engine_output import caught_output, quiet_stderr
 from runner.base.errors import ConfigError
 
-with quiet_stderr():  # PyBullet announces its build time
+with quiet_stderr():  # PyBullet prints its build time
     import pybullet
 
 _KEPT = 4
@@ -21,10 +21,10 @@ class Server:
     """A physics server with one arm in it.
 
     Attributes:
-        client: PyBullet's number of the server.
-        body: PyBullet's number of the arm.
-        urdf: The arm's URDF text.
-        used: Whether an earlier plant has had it.
+        client: Index of the server in PyBullet.
+        body: Index of the arm in PyBullet.
+        urdf: URDF of the arm, as a string.
+        used: True if an earlier plant has used the server.
     """
 
     client: int
@@ -36,10 +36,11 @@ class Server:
 class PhysicsServers:
     """The owner of all physics servers of a process.
 
-    A server takes 15 ms of CPU time and an arm in it 3, so a few are kept for plants to come.
+    Starting a server takes 15 ms of CPU time, and loading an arm 3 ms. A few idle servers are therefore kept for later
+    plants.
 
     Attributes:
-        lent: The servers that plants have.
+        lent: Servers in use by plants.
     """
 
     def __init__(self) -> None:
@@ -47,24 +48,24 @@ class PhysicsServers:
         self._idle: dict[str, Server] = {}
 
     def open(self, urdf: str) -> Server:
-        """Return a server with an arm alone in it, as an earlier plant left it or new.
+        """Return a server that contains only an arm: a new one, or a used one in the state that its last plant left.
 
         Args:
-            urdf: The arm's URDF text.
+            urdf: URDF of the arm, as a string.
 
         Raises:
-            ConfigError: if PyBullet cannot load the URDF, or says anything while it does so.
+            ConfigError: if PyBullet cannot load the URDF, or prints anything while loading it.
         """
         server = self._idle.pop(urdf, None) or self._load(urdf)
         self.lent.append(server)
         return server
 
     def give_back(self, server: Server, reusable: bool) -> None:
-        """Take a server from its plant.
+        """Take a server back from its plant.
 
         Args:
             server: The server.
-            reusable: Whether it can serve another plant of the same arm; else it is closed.
+            reusable: True if another plant of the same arm can use the server; otherwise it is closed.
         """
         if server not in self.lent:
             return
@@ -75,14 +76,14 @@ class PhysicsServers:
             pybullet.disconnect(server.client)
 
     def close(self) -> None:
-        """Close the servers that no plant has."""
+        """Close the servers that are not in use."""
         while self._idle:
             pybullet.disconnect(self._idle.popitem()[1].client)
 
     def _load(self, urdf: str) -> Server:
         client = self._empty()
         said: list[str] = []
-        # Bullet caches URDFs by file name within a process, so each arm gets a file name of its own.
+        # Bullet caches URDFs by file name within a process, so each arm gets a separate file name.
         with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
             file.write(_in_short_lines(urdf))
             file.flush()
@@ -101,7 +102,7 @@ class PhysicsServers:
         return Server(client, body, urdf, used=False)
 
     def _empty(self) -> int:
-        """Return a server without anything in it; of those that wait the one that has done so longest is emptied."""
+        """Return an empty server: a new one, or the longest idle one after a reset if the pool is full."""
         if len(self._idle) < _KEPT:
             return int(pybullet.connect(pybullet.DIRECT))
         client = self._idle.pop(next(iter(self._idle))).client
@@ -110,17 +111,17 @@ class PhysicsServers:
 
 
 SERVERS = PhysicsServers()
-"""The physics servers of this process, which end with it."""
+"""The physics servers of this process; they end with it."""
 
 
 def _in_short_lines(urdf: str) -> str:
-    """Return an XML text with an element a line: Bullet breaks lines of 1,000 characters, even within a number."""
-    root = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
+    """Return XML with one element a line, because Bullet breaks lines at 1,000 characters, even within a number."""
+    root = ET.fromstring(urdf)  # noqa: S314 - text from the runner, checked when it was read
     ET.indent(root)
     return ET.tostring(root, encoding="unicode")
 
 
 def _words(said: Sequence[str]) -> list[str]:
-    """Return what PyBullet printed without the places in its own source."""
+    """Return the messages that PyBullet printed, without the positions in its source."""
     parts = re.split(r"b3\w+\[[^\]]*\]:", " ".join(said))
     return list(dict.fromkeys(part.strip() for part in parts if part.strip()))

@@ -17,7 +17,7 @@ from runner.symbolic.vectors import Vector
 
 
 class Springs(NamedTuple):
-    """The numbers of springs and motors, of the flexible joints alone.
+    """Parameters of the springs and motors of the m flexible joints.
 
     Attributes:
         stiffness: K, shape (m,), in N m/rad.
@@ -31,16 +31,16 @@ class Springs(NamedTuple):
 
 
 class _FlexibleMover(Mover):
-    """Moves links and motors: positions are those of n links and then of m motors; see FlexibleJoints.
+    """Motion of links and motors; positions are those of n links and then of m motors. See FlexibleJoints.
 
     Args:
-        algebra: The links.
-        on: The flexible joints, m of n.
+        algebra: Algebra of the links.
+        on: Indices of the m flexible joints among the n joints.
         links: n.
-        springs: Their numbers.
-        given: Torques of the motors, those of the world on the links, shapes (n,), and 0 for each motor that a brake
-            holds, else 1, shape (m,).
-        at: Gives places.
+        springs: Parameters of the springs and motors.
+        given: Motor torques and external torques on the links, shapes (n,), and for each motor 0 if its brake is
+            closed, else 1, shape (m,).
+        at: Allocator of slots.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class _FlexibleMover(Mover):
         self._load, self._free = given[links : 2 * links], given[2 * links :]
 
     def acceleration(self, q: Vector, v: Vector, tau: Vector) -> Vector:
-        """Return the accelerations of links and motors under torques of the motors, shape (n,); see Mover."""
+        """Return the accelerations of links and motors under motor torques, shape (n,); see Mover."""
         n, acting, motors = self._links, list(tau), []
         for index, (joint, K, D, B) in enumerate(zip(self._on, *self._springs, strict=True)):
             spring = K * (q[n + index] - q[joint]) + D * (v[n + index] - v[joint])
@@ -62,11 +62,11 @@ class _FlexibleMover(Mover):
 
 
 class CompiledFlexibleStep(ArmCode):
-    """The steps of one arm with flexible joints, without friction, as compiled code.
+    """Compiled integration steps of an arm with flexible joints, without friction.
 
     Args:
-        model: The arm, of the links alone.
-        flexible: Which joints have springs, shape (n,).
+        model: Rigid-body model of the links.
+        flexible: True for each joint with a spring, shape (n,).
         stiffness: K, damping: D, motors: B of each joint, shapes (n,).
         step: Integration step, in s.
     """
@@ -102,14 +102,14 @@ class CompiledFlexibleStep(ArmCode):
         return parts
 
     def advance(self, state: FloatArray, tau: FloatArray, load: FloatArray, free: FloatArray, steps: int) -> FloatArray:
-        """Return the state after some steps under held torques.
+        """Return the state after a number of steps under held torques.
 
         Args:
-            state: Positions of links and of flexible joints' motors, then their velocities, shape (2 (n + m),).
-            tau: Torques of the motors, shape (n,), in N m; of rigid joints on their links.
-            load: Torques of the world on the links, shape (n,), in N m.
-            free: Which of the flexible joints' motors no brake holds, shape (m,).
-            steps: How many.
+            state: Positions of the links and of the flexible joints' motors, then their velocities, shape (2 (n + m),).
+            tau: Motor torques, shape (n,), in N m; those of rigid joints act on the links.
+            load: External torques on the links, shape (n,), in N m.
+            free: 1 for each flexible joint's motor without a closed brake, else 0, shape (m,).
+            steps: Number of steps.
         """
         frame = self._frame
         frame.state[:, 0], frame.rows[0, :, 0] = state, np.concatenate([tau, load, free])
@@ -122,7 +122,7 @@ class CompiledFlexibleStep(ArmCode):
 def compile_flexible(
     model: RobotModel, flexible: FloatArray, stiffness: FloatArray, damping: FloatArray, motors: FloatArray, step: float
 ) -> CompiledFlexibleStep | None:
-    """Return a compiled step of an arm with flexible joints; None where there is none; see CompiledFlexibleStep."""
+    """Return a compiled step of an arm with flexible joints, or None if unavailable; see CompiledFlexibleStep."""
     if not evaluator() or model.nq > MOST_JOINTS:
         return None
     return CompiledFlexibleStep(model, flexible, stiffness, damping, motors, step)

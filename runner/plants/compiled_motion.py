@@ -17,20 +17,20 @@ from runner.symbolic.program import Expressed, Frame, program
 from runner.symbolic.structure import Values, any_number, arm_pattern
 from runner.symbolic.vectors import Matrix, Vector, add, product, scale, subtract, times, transpose
 
-if TYPE_CHECKING:  # plants with springs are moved by what stands here
+if TYPE_CHECKING:  # plants with springs use this module
     from runner.plants.decoupled import Motion
 
 _PIVOTS, _ROUNDING = 100, 1e-12  # as in runner/plants/friction.py
 
 
 class ArmScalars(NamedTuple):
-    """The numbers of an arm that moves by its own dynamics.
+    """Parameters of an arm that moves by its own dynamics.
 
     Attributes:
-        constants: Its bodies.
-        viscous: Torque per speed in its joints, shape (n,).
-        coulomb: Torque against any motion, shape (n,).
-        base: What carries it, up to its base; None where that does not turn.
+        constants: Constants of its bodies.
+        viscous: Viscous friction coefficient of each joint, shape (n,).
+        coulomb: Coulomb friction torque of each joint, shape (n,).
+        base: Constants of the bodies from the robot's base to this arm's base; None if the base does not rotate.
     """
 
     constants: ArmConstants
@@ -40,13 +40,14 @@ class ArmScalars(NamedTuple):
 
 
 class MotionScalars(NamedTuple):
-    """The numbers of a motion.
+    """Parameters of a motion.
 
     Attributes:
         step: Integration step, in s.
         tick: Time for which torques are held, in s.
-        gravity: In the robot's base frame, shape (3,), in m/s^2.
-        arms: The arms; a constant gravity of their own stands in the constants of those whose base does not turn.
+        gravity: Gravity vector in the robot's base frame, shape (3,), in m/s^2.
+        arms: Parameters of each arm; the constants of an arm whose base does not rotate include a constant gravity
+            vector.
     """
 
     step: Value
@@ -56,13 +57,13 @@ class MotionScalars(NamedTuple):
 
 
 def motion_scalars(motion: "Motion", step: float, tick: float, number: Callable[[float], Any]) -> MotionScalars:
-    """Return the numbers of a motion as scalars.
+    """Return the parameters of a motion as scalars.
 
     Args:
-        motion: What moves.
+        motion: The motion.
         step: Integration step, in s.
         tick: Time for which torques are held, in s.
-        number: Makes the scalar that stands for a number; it is not asked for 0, 1 and -1.
+        number: Function that returns the scalar for a number; it is not called for 0, 1 and -1.
     """
     robot = motion.robot
     gravity = [number(value) for value in robot.model.gravity.tolist()]
@@ -80,18 +81,18 @@ def motion_scalars(motion: "Motion", step: float, tick: float, number: Callable[
 
 
 def motion_pattern(motion: "Motion") -> str:
-    """Return a text that is the same for two motions whose code is the same."""
+    """Return a string that is the same for two motions with the same code."""
     return repr((motion_scalars(motion, 0.5, 0.5, any_number), [arm.joints for arm in motion.arms]))
 
 
 def expressed_motion(motion: "Motion", numbers: MotionScalars, at: Slots, torques: Sequence[Value]) -> list[Part]:
-    """Return what leads from the state of one tick to that of the next.
+    """Return the code from the state of one tick to that of the next.
 
     Args:
-        motion: What moves.
-        numbers: Its numbers.
-        at: Gives places; the state begins with joint positions and velocities, shapes (nq,).
-        torques: The torques that act, shape (nq,).
+        motion: The motion.
+        numbers: Parameters of the motion.
+        at: Allocator of slots; the state begins with joint positions and velocities, shapes (nq,).
+        torques: Acting torques, shape (nq,).
     """
     nq = motion.robot.model.nq
     bases: list[Part] = []
@@ -99,7 +100,7 @@ def expressed_motion(motion: "Motion", numbers: MotionScalars, at: Slots, torque
     for arm, own in zip(motion.arms, numbers.arms, strict=True):
         constants = own.constants
         if own.base is not None:
-            # A rider feels gravity as its base is turned when the tick begins.
+            # Gravity on a mounted stage follows the rotation of its base at the start of the tick.
             whole = ArmAlgebra(own.base).tip(places(STATE, 0, nq), [0.0] * nq)
             first, gravity = at.take(SCRATCH, 3)
             bases.append(_put(SCRATCH, first, product(transpose(whole[1]), numbers.gravity)))
@@ -114,14 +115,14 @@ def expressed_motion(motion: "Motion", numbers: MotionScalars, at: Slots, torque
 
 
 class Mover:
-    """Moves one arm.
+    """Motion of one arm.
 
     Args:
-        algebra: The arm.
-        joint: Its first joint among those of the robot.
-        nq: Number of the robot's joints.
-        count: Number of its own.
-        at: Gives places.
+        algebra: Algebra of the arm.
+        joint: Index of the arm's first joint among the robot's joints.
+        nq: Number of joints of the robot.
+        count: Number of joints of the arm.
+        at: Allocator of slots.
     """
 
     def __init__(self, algebra: ArmAlgebra, joint: int, nq: int, count: int, at: Slots) -> None:
@@ -130,13 +131,13 @@ class Mover:
         self._q, self._v = (places(STATE, first, count) for first in self._first)
 
     def move(self, acting: Vector, h: Value, parts: list[Part]) -> None:
-        r"""Add the steps of a tick.
+        r"""Add the integration steps of a tick.
 
         .. math::
 
             q^+ = q + h v + \tfrac{h^2}{6} (a_1 + a_2 + a_3), \qquad v^+ = v + \tfrac{h}{6} (a_1 + 2 a_2 + 2 a_3 + a_4)
 
-        With dq/dt = v the slopes of the positions are the intermediate velocities, so that four accelerations suffice.
+        Because dq/dt = v, the slopes of the positions are the intermediate velocities, so four accelerations suffice.
         """
         n, q, v = self._count, self._q, self._v
         first, scratch = self._at.take(SCRATCH, 4 * n)
@@ -157,12 +158,12 @@ class Mover:
         parts.append(Repeat([begin, stages, end], "steps"))
 
     def acceleration(self, q: Vector, v: Vector, tau: Vector) -> Vector:
-        """Return the joints' accelerations under torques, shapes (n,)."""
+        """Return the joint accelerations under torques, shapes (n,)."""
         bias = self._algebra.inverse_dynamics(q, v, [0.0] * len(q))
         return Factors(self._algebra.mass_matrix(q)).solve(subtract(tau, bias))
 
     def brake(self, acting: Vector, viscous: Vector, coulomb: Vector, h: Value, parts: list[Part]) -> Vector:
-        """Add friction of a tick by backward Euler, and return the torques less it; see runner/plants/friction.py."""
+        """Add a tick's friction by backward Euler; return the torques minus friction. See runner/plants/friction.py."""
         n, q, v = self._count, self._q, self._v
         M = self._algebra.mass_matrix(q)
         bias = self._algebra.inverse_dynamics(q, v, [0.0] * n)
@@ -193,7 +194,7 @@ class Mover:
         held = [equal(side, 0.0) for side in direction]
         sliding = [side * c for side, c in zip(direction, limit, strict=True)]
         left = subtract(speed, product(A, sliding))
-        # The joints that slide stand in the system with a one on the diagonal and nothing else.
+        # A moving joint has a row with only a one on the diagonal.
         system = [
             [
                 select(held[i], A[i][i], 1.0) if i == j else select(both(held[i], held[j]), A[i][j], 0.0)
@@ -210,7 +211,7 @@ class Mover:
             wrong.append(less(_ROUNDING * (limit[i] + absolute(speed[i]) / A[i][i]), too_much))
             sides.append(select(held[i], select(less(now[i], 0.0), -1.0, 1.0), 0.0))
         outputs: list[tuple[str, int, Any]] = []
-        open_: Value = 1.0  # whether no joint before is on the wrong side
+        open_: Value = 1.0  # 1 if no earlier joint is on the wrong side
         for i in range(n):
             outputs.append(
                 (STATE, state + i, select(wrong[i], select(equal(open_, 1.0), sides[i], direction[i]), direction[i]))
@@ -227,11 +228,11 @@ def _put(space: str, first: int, values: Vector) -> Block:
 
 
 class ArmCode(ABC):
-    """Code about one arm, compiled when it is asked first, whose gravity can change.
+    """Code for one arm, compiled at first use, with a variable gravity vector.
 
     Args:
-        model: The arm.
-        step: Integration step, in s; 0 where nothing is integrated.
+        model: Model of the arm.
+        step: Integration step, in s; 0 if nothing is integrated.
     """
 
     def __init__(self, model: RobotModel, step: float = 0.0) -> None:
@@ -253,23 +254,23 @@ class ArmCode(ABC):
 
     @abstractmethod
     def _names(self) -> tuple[str, str]:
-        """Return the pattern of the code, and what is compiled; see program."""
+        """Return the pattern of the code and a description for the user; see program."""
 
     @abstractmethod
     def _express(self, at: Slots) -> list[Part]:
-        """Return what the code does, whose numbers are taken as `_scalars` takes them."""
+        """Return the parts of the code; it takes numbers in the order of `_scalars`."""
 
     def _scalars(self, number: Callable[[float], Any]) -> tuple[Any, ...]:
-        """Return the numbers of the code as `number` makes them; gravity comes first."""
+        """Return the parameters of the code, converted by `number`; gravity comes first."""
         return step_scalars(self._model, self._step, number)
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector in the base frame, shape (3,), in m/s^2."""
+        """Set the gravity vector in the base frame, shape (3,), in m/s^2."""
         self._frame.pars[:3, 0] = gravity
 
 
 class CompiledStep(ArmCode):
-    """The steps of one arm without friction, as compiled code."""
+    """Compiled integration steps of one arm without friction."""
 
     def _names(self) -> tuple[str, str]:
         return f"step {arm_pattern(self._model)}", f"the motion of {self._model.nq} joints"
@@ -283,7 +284,7 @@ class CompiledStep(ArmCode):
         return parts
 
     def advance(self, q: FloatArray, v: FloatArray, tau: FloatArray, steps: int) -> None:
-        """Go on by some steps under held torques, in place: shapes (nq,), in rad, rad/s and N m."""
+        """Advance by a number of steps under held torques, in place; shapes (nq,), in rad, rad/s and N m."""
         frame, n = self._frame, len(q)
         state = frame.state[:, 0]
         state[:n], state[n:], frame.rows[0, :, 0], frame.steps[0] = q, v, tau, steps
@@ -292,7 +293,7 @@ class CompiledStep(ArmCode):
 
 
 class CompiledLinksTorque(ArmCode):
-    """The torques of links whose motors take A ddq of them, as compiled code; see runner/plants/bullet.py."""
+    """Compiled link torques, without the torques A ddq of the armature; see runner/plants/bullet.py."""
 
     def _names(self) -> tuple[str, str]:
         return f"links' torque {arm_pattern(self._model)}", f"the armature of {self._model.nq} joints"
@@ -307,7 +308,7 @@ class CompiledLinksTorque(ArmCode):
         return [_put(ROWS, first, subtract(tau, motors))]
 
     def at(self, q: FloatArray, v: FloatArray, tau: FloatArray) -> FloatArray:
-        """Return the torques of the links, shape (nq,), in N m; valid until it is asked again."""
+        """Return the torques of the links, shape (nq,), in N m; valid until the next call."""
         frame, n = self._frame, len(q)
         state, row = frame.state[:, 0], frame.rows[0, :, 0]
         state[:n], state[n:], row[:] = q, v, tau
@@ -316,20 +317,20 @@ class CompiledLinksTorque(ArmCode):
 
 
 def step_scalars(model: RobotModel, step: float, number: Callable[[float], Any]) -> tuple[Vector, Value, ArmConstants]:
-    """Return the numbers of an arm's steps as `number` makes them: gravity, which comes first, step, and bodies."""
+    """Return the parameters of an arm's steps, converted by `number`: gravity, step, bodies."""
     gravity = [number(value) for value in model.gravity.tolist()]
     return gravity, number(step), constants_of(model, number, [0.0] * 3)
 
 
 def compile_motion(model: RobotModel, step: float) -> CompiledStep | None:
-    """Return a compiled Runge-Kutta step of an arm, in s; None where there is none."""
+    """Return a compiled Runge-Kutta step of an arm, of length `step` in s; None if unavailable."""
     if not evaluator() or model.nq > MOST_JOINTS:
         return None
     return CompiledStep(model, step)
 
 
 def compile_links_torque(model: RobotModel) -> CompiledLinksTorque | None:
-    """Return the compiled torques of an arm's links beside its armature; None where there is none."""
+    """Return the compiled link torques of an arm with armature, or None if unavailable."""
     if not evaluator() or model.nq > MOST_JOINTS:
         return None
     return CompiledLinksTorque(model)

@@ -13,18 +13,18 @@ from runner.schema.model import StrictModel
 Probability = Annotated[float, Field(ge=0.0, le=1.0)]
 Rows = NDArray[np.int64]
 
-_SUM = 1e-9  # by which the sum of probabilities may miss 1
+_SUM = 1e-9  # tolerance of the sum of probabilities
 
 
 class ComputationConfig(StrictModel):
-    """Config of what happens between a law's torque and the joints.
+    """Config of delay, jitter and misses between a controller's torque and the joints.
 
     Attributes:
         delay: Ticks of the fastest loop from a command until it acts; one number, or one for each control loop.
-        jitter: Probabilities that a command comes 0, 1, 2, ... such ticks later still; None for none. Where a later
-            one overtakes, the newest command acts.
-        miss: Probability that a command is not ready in time and dropped, so that the one before goes on acting; or a
-            pattern of 0 and 1 over a loop's own ticks, repeated, in which 1 is a miss. None for none.
+        jitter: Probabilities that a command arrives 0, 1, 2, ... ticks later than `delay`; None for no jitter. If a
+            later command overtakes an earlier one, the newest command acts.
+        miss: Probability that a command is not ready in time and is dropped, so that the previous command continues to
+            act; or a pattern of 0 and 1 over a loop's ticks, repeated, in which 1 is a miss. None for no misses.
     """
 
     delay: NonNegativeInt | dict[str, NonNegativeInt]
@@ -43,19 +43,19 @@ class ComputationConfig(StrictModel):
 
     @property
     def is_even(self) -> bool:
-        """Whether every command acts, all as late."""
+        """True if every command acts, all with the same delay."""
         return not self.jitter and not self.misses
 
     @property
     def misses(self) -> bool:
-        """Whether commands are dropped."""
+        """True if commands are dropped."""
         return bool(self.miss) if not isinstance(self.miss, list) else any(self.miss)
 
     def by_loop(self, loops: Sequence[str]) -> list[int]:
-        """Return the delay of each loop, in ticks of the fastest one.
+        """Return the delay of each loop, in ticks of the fastest loop.
 
         Raises:
-            ConfigError: for a mapping that names other loops.
+            ConfigError: if a mapping names unknown loops or lacks a loop.
         """
         if not isinstance(self.delay, Mapping):
             return [self.delay] * len(loops)
@@ -71,13 +71,13 @@ class ComputationConfig(StrictModel):
         return [self.delay[name] for name in loops]
 
     def arrivals(self, delay: int, every: int, ticks: int, generator: np.random.Generator) -> Rows:
-        """Return the tick whose command acts in each tick, shape (ticks,); the first acts from the start.
+        """Return the tick whose command acts in each tick, shape (ticks,); the first command acts from the start.
 
         Args:
-            delay: Of the loop, in ticks.
+            delay: Delay of the loop, in ticks.
             every: Ticks between two commands of the loop.
             ticks: Number of ticks.
-            generator: Source of the draws, which are made for all commands whatever becomes of them.
+            generator: Source of the random draws; they are drawn for all commands, even dropped ones.
         """
         made = np.arange(0, ticks, every)
         late, lost = np.zeros(len(made), dtype=np.int64), np.zeros(len(made), dtype=bool)
@@ -95,4 +95,4 @@ class ComputationConfig(StrictModel):
 
 
 EXACT = ComputationConfig(delay=0, jitter=None, miss=None)
-"""Every command acts in the tick in which it is asked for."""
+"""Computation without delay: every command acts in the tick in which it is computed."""

@@ -11,7 +11,7 @@ from runner.robots.model import RobotModel
 
 
 class Surface(Protocol):
-    """What the tip touches: a force that follows from where the tip is and how fast; see Environment."""
+    """A surface that exerts a force on the tip, as a function of the tip's position and velocity; see Environment."""
 
     def reset(self, tip: FloatArray) -> None:
         """Start with the tip at a position in the base frame, shape (3,), in m."""
@@ -22,21 +22,20 @@ class Surface(Protocol):
 
 
 class WithTipContact(PlantWrapper):
-    r"""A plant of which the tip, a point, touches a surface: its force is held for an integration step.
+    r"""A plant whose tip, a point, touches a surface; the contact force is held for an integration step.
 
-    The force f(x, v) of a step from q_n is taken at
+    The force f(x, v) of a step from q_n is evaluated at
 
     .. math:: x = x(q_n + \lambda h \dot q_n), \qquad v = J \dot q_n
 
-    Where a step moves positions by the velocity at its end (semi-implicit Euler), lambda is 0; where it moves them
-    exactly under what is held (Runge-Kutta), it is 1/2. On a spring both are the leapfrog scheme: no energy is gained
-    or lost on an undamped wall, the peak of a push is right to (omega h)^2 / 8, and a spring is stable up to
-    omega h = 2.
+    lambda is 0 if a step moves positions by the velocity at its end (semi-implicit Euler). It is 1/2 if a step
+    integrates positions exactly under held torques (Runge-Kutta). On a spring both are the leapfrog scheme: an undamped
+    wall conserves energy. The relative error of the peak force is (omega h)^2 / 8. A spring is stable for omega h < 2.
 
     Args:
-        plant: The plant; one `advance` of it takes a step. What loads the joints is added to its torques.
-        model: The arm, for its tip.
-        surface: What the tip touches.
+        plant: The plant; one call of `advance` takes one step. The load on the joints is added to its torques.
+        model: Model of the arm, for its tip.
+        surface: The surface.
         step: h, in s.
         steps_per_tick: Integration steps for which the torques of one tick are held.
         lead: lambda.
@@ -54,7 +53,7 @@ class WithTipContact(PlantWrapper):
         self._wrench = np.zeros(6)
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state, and the surface where it stands to the tip there; see Plant."""
+        """Reset the arm to a state, and the surface to the tip's position in it; see Plant."""
         super().reset(q, dq)
         pin.forwardKinematics(self._model, self._data, q)
         self._surface.reset(pin.updateFramePlacement(self._model, self._data, self._tip).translation.copy())
@@ -69,7 +68,7 @@ class WithTipContact(PlantWrapper):
         self._touch(0.0)
 
     def _touch(self, ahead: float) -> FloatArray:
-        """Return the joint torques of the surface where the tip goes in a time, in s; keep its wrench."""
+        """Return the surface's joint torques at the tip's position after `ahead` seconds; store its wrench."""
         model, data = self._model, self._data
         pin.computeJointJacobians(model, data, self.q + ahead * self.dq)
         tip = pin.updateFramePlacement(model, data, self._tip)
@@ -81,5 +80,5 @@ class WithTipContact(PlantWrapper):
         return load
 
     def contact_wrench(self) -> FloatArray:
-        """Return the wrench of the surface on the arm in the state that it has now; see Plant."""
+        """Return the wrench of the surface on the arm in the current state; see Plant."""
         return self._wrench

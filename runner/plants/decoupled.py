@@ -22,16 +22,17 @@ from runner.schema.values import FrictionConfig, expand
 
 
 class TorquePlantConfig(StrictModel):
-    """What the configs of plants have in common that integrate the motion under torques.
+    """Common config of plants that integrate the motion under torques.
 
     Attributes:
-        kind: Its name in the registry.
-        step: Integration step, in s; None is chosen by the plant.
-        dynamics: Whether stages that ride on each other act on each other; see assemble_plant.
-        wrist_rotation: Whether the carrier turns the rider's base; see assemble_plant.
+        kind: Name in the registry.
+        step: Integration step, in s; None leaves the choice to the plant.
+        dynamics: Whether stages act on each other (coupled) or not (decoupled); see assemble_plant.
+        wrist_rotation: Whether the base stage rotates the base of the mounted stage (real) or not (parallel); see
+            assemble_plant.
         friction: Friction in the joints.
-        computation: What a computer does to the controllers' torques: how late they act, and which are missed.
-        servo: The joints' position servos, where the controller commands joint positions.
+        computation: Delay and misses of the controllers' torques.
+        servo: Position servos of the joints, if the controller commands joint positions.
     """
 
     kind: str
@@ -48,11 +49,11 @@ class ArmMotion:
     """An arm that moves by its own dynamics.
 
     Attributes:
-        urdf: Its URDF's text.
-        model: Its model.
-        joints: Its joints among those of the robot.
-        viscous: Torque per speed in its joints, shape (n,), in N m s/rad.
-        coulomb: Torque against any motion, shape (n,), in N m.
+        urdf: URDF of the arm, as a string.
+        model: Model of the arm.
+        joints: Joints of the arm among those of the robot.
+        viscous: Viscous friction coefficient of each joint, shape (n,), in N m s/rad.
+        coulomb: Coulomb friction torque of each joint, shape (n,), in N m.
     """
 
     urdf: str
@@ -68,8 +69,8 @@ class Motion:
 
     Attributes:
         robot: The robot.
-        arms: One for the whole robot; or one for each of its stages, which ride on each other without feeling it.
-        ignore_base_rotation: Whether riders' bases keep their orientation of home.
+        arms: One arm for the whole robot, or one for each stage without reaction on the stage below.
+        ignore_base_rotation: True if the bases of mounted stages keep their orientation at home.
     """
 
     robot: Robot
@@ -78,16 +79,15 @@ class Motion:
 
 
 def find_motion(robot: Robot, config: TorquePlantConfig) -> Motion:
-    """Return what moves of a robot; one stage has nothing to couple.
+    """Return the arms that move in a robot; a robot with one stage has one arm.
 
     Args:
         robot: The robot.
-        config: Says whether stages act on each other (dynamics), whether a carrier turns its rider (wrist_rotation),
-            and what friction there is in the joints.
+        config: Config of coupling (dynamics), rotation of mounted bases (wrist_rotation) and friction.
 
     Raises:
-        ConfigError: for coupled dynamics with a base that does not turn, which no rigid body can do, or a list of
-            another length than the robot has joints.
+        ConfigError: if coupled dynamics is combined with a base that does not rotate, which rigid bodies cannot do, or
+            if the length of a list is not the number of joints.
     """
     viscous, coulomb = friction_by_joint(robot, config.friction)
     ignore_base_rotation = config.wrist_rotation == "parallel"
@@ -110,7 +110,7 @@ def friction_by_joint(robot: Robot, friction: FrictionConfig) -> tuple[FloatArra
     """Return viscous and dry friction of each joint of a robot, shapes (nq,), in N m s/rad and N m.
 
     Raises:
-        ConfigError: for a list of another length than the robot has joints.
+        ConfigError: if the length of a list is not the number of joints.
     """
     names = robot.model.joint_names
     viscous, coulomb = (
@@ -123,16 +123,15 @@ def friction_by_joint(robot: Robot, friction: FrictionConfig) -> tuple[FloatArra
 def assemble_plant(
     config: TorquePlantConfig, robot: Robot, tick: float, make: Callable[[str, RobotModel], Plant]
 ) -> Plant:
-    """Make a plant for a robot: of the whole, or of its stages each for itself.
+    """Build the plant of a robot: one for the whole robot, or one for each stage.
 
-    A robot of one stage has nothing to couple, and both keys no effect.
+    The keys `dynamics` and `wrist_rotation` have no effect on a robot with one stage.
 
     Args:
-        config: Says whether stages act on each other (dynamics), whether a carrier turns its rider (wrist_rotation),
-            and what friction there is in the joints.
+        config: Config of coupling (dynamics), rotation of mounted bases (wrist_rotation) and friction.
         robot: The robot.
-        tick: Time that one `advance` takes, in s.
-        make: Makes the plant of one arm, without friction, from its URDF text and model.
+        tick: Duration of one call of `advance`, in s.
+        make: Function that builds the plant of one arm, without friction, from its URDF and model.
 
     Raises:
         ConfigError: see find_motion.
@@ -150,7 +149,7 @@ def assemble_plant(
 
 
 def default_step(tick: float, stages: int) -> float:
-    """Return the step of an engine of first order if the config gives none, in s.
+    """Return the default step of a first-order engine, in s, if the config gives none.
 
     It is a tenth of the fastest controller period, or a quarter if the robot has several stages.
     """
@@ -158,15 +157,15 @@ def default_step(tick: float, stages: int) -> float:
 
 
 class Decoupled(Plant):
-    """Arms that ride on each other without feeling it.
+    """Stages mounted on each other, without reaction on the stage below.
 
-    A carrier feels no rider. A rider's base is carried kinematically: it feels gravity as R^T g, renewed at each tick,
-    and no inertial force of its base's motion.
+    The base of a mounted stage moves kinematically. Gravity on the stage is R^T g, updated at each tick. The motion of
+    the base causes no inertial force.
 
     Args:
         robot: The robot.
-        plants: The plant of each stage.
-        ignore_base_rotation: Whether riders' bases keep their orientation of home.
+        plants: Plant of each stage.
+        ignore_base_rotation: True if the bases of mounted stages keep their orientation at home.
     """
 
     def __init__(self, robot: Robot, plants: Sequence[Plant], ignore_base_rotation: bool) -> None:
@@ -178,13 +177,13 @@ class Decoupled(Plant):
         self._gravity = robot.model.gravity
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arms into a state; see Plant."""
+        """Reset the arms to a state; see Plant."""
         for plant, joints in zip(self._plants, self._joints, strict=True):
             plant.reset(q[joints], dq[joints])
         self.q[:], self.dq[:] = q, dq
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         self._gravity = gravity
         self._plants[0].set_gravity(gravity)
 
@@ -203,6 +202,6 @@ class Decoupled(Plant):
         return np.concatenate([plant.friction for plant in self._plants])
 
     def close(self) -> None:
-        """Release what the plants hold."""
+        """Release the resources of the plants."""
         for plant in self._plants:
             plant.close()

@@ -17,20 +17,21 @@ from runner.schema.values import SpringPerStage
 
 
 class FlexibleJointsConfig(StrictModel):
-    """Config of flexible joints; by stage where the robot has several.
+    """Config of flexible joints; by stage if the robot has several.
 
     Attributes:
-        stiffness: Stiffness between motor and link, in N m/rad. One for all joints or a list with one for each; None
-            for a joint that is rigid.
-        motor_inertia: Inertia of the motor after its gear, in kg m^2; likewise. None for a joint with a spring is its
-            `robot.armature`, for a rigid one no motor.
-        damping_ratio: Damping of each joint's spring, of its link alone with the others held at home: 1 is critical.
-        torsion_damping: Ratio of the damping that drives add, of each motor alone against its spring, from encoders at
-            motor and link: the fast part of Spong's composite control. 0 is none.
-        brake_time: When the brakes of a stage's motors close, in s, by stage; 0 is from the start. They stay open where
-            a stage is not named.
-        encoders: Whether the encoders turn with the motors or with the links.
-        static_deflection: Whether readings at the motors are corrected for the deflection under the believed weight.
+        stiffness: Stiffness between motor and link, in N m/rad. One value for all joints or a list with one for each;
+            None for a rigid joint.
+        motor_inertia: Inertia of the motor after its gear, in kg m^2. One value for all joints or a list with one for
+            each. None selects `robot.armature` for a joint with a spring, and no motor for a rigid joint.
+        damping_ratio: Damping ratio of each joint's spring with its link, the other joints held at home: 1 is critical.
+        torsion_damping: Damping ratio that the drives add to each motor on its spring with the link held, from encoders
+            at motor and link: the fast part of Spong's composite control. 0 adds none.
+        brake_time: Time at which the brakes of a stage's motors close, in s, by stage; 0 is from the start. The brakes
+            of a stage that is not named stay open.
+        encoders: Location of the encoders: at the motors or at the links.
+        static_deflection: Whether motor readings are corrected for the deflection under the nominal weight (known) or
+            not (unknown).
     """
 
     stiffness: RotaryStiffness[SpringPerStage]
@@ -45,8 +46,9 @@ class FlexibleJointsConfig(StrictModel):
         """Return springs, dampers and motors of a robot's joints.
 
         Raises:
-            ConfigError: for values that do not fit the robot's stages and joints, no spring at all, one without motor
-                or with both a motor and an armature, a motor without spring, or a spring in a joint that slides.
+            ConfigError: if values do not fit the robot's stages and joints, no joint has a spring, a joint with a
+                spring has no motor or has both a motor and an armature, a joint has a motor without a spring, or a
+                prismatic joint has a spring.
         """
         springs = by_joint("plant.flexible_joints.stiffness", self.stiffness, arm.stage_joints)
         motors = by_joint("plant.flexible_joints.motor_inertia", self.motor_inertia, arm.stage_joints)
@@ -80,14 +82,14 @@ class FlexibleJointsConfig(StrictModel):
         return Flexibility(springs, motors, damping, self._find_brake_time(arm, flexible), torsion_feedback)
 
     def modes(self, arm: Robot, q: FloatArray) -> list[Mode]:
-        """Return how a robot's joints ring about a posture with their motors held, by frequency; see find_modes."""
+        """Return the modes of a robot's joints about a configuration, motors held, by frequency; see find_modes."""
         flexibility = self.by_joint(arm)
         on = flexibility.flexible
         M = links_of(arm.model, on).mass_matrix(q)[np.ix_(on, on)]
         return find_modes(M, np.diag(flexibility.damping[on]), np.diag(flexibility.stiffness[on]))
 
     def _find_brake_time(self, arm: Robot, flexible: np.ndarray) -> FloatArray:
-        """Return when joints are braked, shape (nq,), in s."""
+        """Return the time at which each joint is braked, shape (nq,), in s."""
         brake_time, stages, key = np.full(len(flexible), np.inf), arm.stage_names, "plant.flexible_joints.brake_time"
         problems = []
         for name, time in self.brake_time.items():

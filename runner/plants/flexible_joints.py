@@ -18,12 +18,12 @@ class Flexibility:
     """Springs, dampers and motors of the joints of an arm.
 
     Attributes:
-        stiffness: K of each joint, shape (nq,), in N m/rad; infinite where it is rigid.
-        motors: B, inertia of each motor after its gear, shape (nq,), in kg m^2; 0 where the joint is rigid.
-        damping: D of each joint, shape (nq,), in N m s/rad; 0 where it is rigid.
-        brake_time: When the brake of each motor closes, shape (nq,), in s; infinite where it stays open.
-        torsion_feedback: K_f of each joint, shape (nq,), in N m s/rad: torque that its drive asks of the motor against
-            the rate of the spring's torsion.
+        stiffness: K of each joint, shape (nq,), in N m/rad; infinite for a rigid joint.
+        motors: B, inertia of each motor after its gear, shape (nq,), in kg m^2; 0 for a rigid joint.
+        damping: D of each joint, shape (nq,), in N m s/rad; 0 for a rigid joint.
+        brake_time: Time at which the brake of each motor closes, shape (nq,), in s; infinite if it stays open.
+        torsion_feedback: K_f of each joint, shape (nq,), in N m s/rad: gain of the drive's motor torque against the
+            rate of the spring's torsion.
     """
 
     stiffness: FloatArray
@@ -34,22 +34,22 @@ class Flexibility:
 
     @property
     def flexible(self) -> np.ndarray:
-        """Which joints have a spring, shape (nq,)."""
+        """True for each joint with a spring, shape (nq,)."""
         return np.isfinite(self.stiffness)
 
     def deflection(self, load: FloatArray) -> FloatArray:
-        """Return theta - q of joints at rest under the torques of their links, shapes (nq,), in rad and N m."""
+        """Return theta - q at rest under torques of the links, shapes (nq,), in rad and N m."""
         return load / self.stiffness
 
     def largest_rate(self, M: FloatArray) -> float:
-        r"""Return the largest magnitude of an eigenvalue of the arm about a posture, in 1/s, without gravity.
+        r"""Return the largest magnitude of an eigenvalue of the arm about a configuration, in 1/s, without gravity.
 
         .. math:: \begin{bmatrix} M & \\ & B \end{bmatrix} \ddot x +
             \begin{bmatrix} D & -D \\ -D & D \end{bmatrix} \dot x +
             \begin{bmatrix} K & -K \\ -K & K \end{bmatrix} x = 0, \qquad x = (q, \theta)
 
         Args:
-            M: Mass matrix of the links in that posture, shape (nq, nq), in kg m^2.
+            M: Mass matrix of the links in that configuration, shape (nq, nq), in kg m^2.
         """
         on, nq = self.flexible, len(M)
         picks = np.hstack([np.eye(nq)[on], -np.eye(int(on.sum()))])  # deflections from (q, theta of flexible joints)
@@ -61,16 +61,16 @@ class Flexibility:
 
 
 def links_of(model: RobotModel, flexible: np.ndarray) -> RobotModel:
-    """Return the model of an arm's links, without the armature of flexible joints, which turns with their motors."""
+    """Return the model of an arm's links, without the armature of flexible joints, which belongs to their motors."""
     return model.with_armature(np.where(flexible, 0.0, model.armature))
 
 
 def runge_kutta(slope: Callable[[FloatArray], FloatArray], x: FloatArray, h: float, steps: int) -> FloatArray:
-    """Return a state after some steps of the classical Runge-Kutta scheme.
+    """Return the state after a number of steps of the classical Runge-Kutta scheme.
 
     Args:
-        slope: Derivative of a state with respect to time.
-        x: The state.
+        slope: Function that returns the time derivative of a state.
+        x: Initial state.
         h: Step, in s.
         steps: Number of steps.
     """
@@ -84,18 +84,18 @@ def runge_kutta(slope: Callable[[FloatArray], FloatArray], x: FloatArray, h: flo
 
 
 class FlexibleJoints(Plant):
-    r"""An arm with flexible joints, by the classical Runge-Kutta scheme.
+    r"""An arm with flexible joints, integrated by the classical Runge-Kutta scheme.
 
     .. math:: M(q) \ddot q + h(q, \dot q) = K (\theta - q) + D (\dot\theta - \dot q), \qquad
         B \ddot\theta + K (\theta - q) + D (\dot\theta - \dot q) = \tau
 
-    The model is that of Spong (J. Dyn. Syst. Meas. Control 109, 1987): a motor feels no inertia but its own spin.
-    A rigid joint takes its torque as it is. A brake that closes stops its motor at once, whatever the torque.
-    Accelerations are compiled code's where that is to be had, else those of Pinocchio's articulated-body algorithm.
+    The model is that of Spong (J. Dyn. Syst. Meas. Control 109, 1987): only a motor's own spin accelerates its inertia.
+    On a rigid joint the torque acts directly on the link. A brake that closes stops its motor at once, whatever the
+    torque. Accelerations come from compiled code if available, else from Pinocchio's articulated-body algorithm.
 
     Args:
-        model: The arm's rigid-body model, of the links alone.
-        flexibility: Springs, dampers and motors of its joints.
+        model: Rigid-body model of the links.
+        flexibility: Springs, dampers and motors of the joints.
         step: Integration step, in s.
         steps_per_tick: Integration steps for which the torques of one tick are held.
     """
@@ -112,21 +112,21 @@ class FlexibleJoints(Plant):
         self._compiled = compile_flexible(model, self._on, *numbers, step)
         self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
         self.theta: FloatArray = np.zeros(model.nq)
-        """Motor positions after the gear, shape (nq,), in rad; of a rigid joint its own."""
+        """Motor positions after the gear, shape (nq,), in rad; equal to q for a rigid joint."""
         self.dtheta: FloatArray = np.zeros(model.nq)
-        """Motor velocities after the gear, shape (nq,), in rad/s; likewise."""
+        """Motor velocities after the gear, shape (nq,), in rad/s; equal to dq for a rigid joint."""
         self.load: FloatArray = np.zeros(model.nq)
-        """Torques of the world on the links in the next tick; see Plant."""
+        """External torques on the links in the next tick; see Plant."""
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the links into a state, and the motors where their springs carry the links' weight; see Plant."""
+        """Reset the links to a state, and the motors to static equilibrium with the links' weight; see Plant."""
         self.q[:], self.dq[:], self.dtheta[:] = q, dq, dq
         self._ticks, self.load[:] = 0, 0.0
         weight = pin.computeGeneralizedGravity(self._model, self._data, self.q)
         self.theta[:] = self.q + self.flexibility.deflection(weight)
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         self._model.gravity.linear = gravity
         if self._compiled is not None:
             self._compiled.set_gravity(gravity)
@@ -146,13 +146,13 @@ class FlexibleJoints(Plant):
         self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]
 
     def _brake(self, on: np.ndarray) -> None:
-        """Stop the motors whose brakes close in the tick that begins."""
+        """Stop the motors whose brakes close in the current tick."""
         now, self._ticks = self._ticks * self._steps_per_tick * self._step, self._ticks + 1
         self._free = now < self.flexibility.brake_time[on] - 1e-9
         self.dtheta[on] *= self._free
 
     def _slope(self, x: FloatArray, tau: FloatArray) -> FloatArray:
-        """Return the slope of links' and motors' positions, then of their velocities."""
+        """Return the time derivative of the state: positions of links and motors, then their velocities."""
         on, nq, n = self._on, len(self.q), len(x) // 2
         places, speeds = x[:n], x[n:]
         spring = self._stiffness * (places[nq:] - places[:nq][on]) + self._damping * (speeds[nq:] - speeds[:nq][on])
@@ -162,7 +162,7 @@ class FlexibleJoints(Plant):
         return np.concatenate([speeds, links, self._free * (tau[on] - spring) / self._motors])
 
     def spring_torque(self) -> FloatArray:
-        """Return what springs and dampers put on the links, shape (nq,), in N m; 0 where a joint is rigid."""
+        """Return the torques of springs and dampers on the links, shape (nq,), in N m; 0 for a rigid joint."""
         torque, on = np.zeros(len(self.q)), self._on
         torque[on] = self._stiffness * (self.theta - self.q)[on] + self._damping * (self.dtheta - self.dq)[on]
         return torque

@@ -13,18 +13,19 @@ from runner.robots.chain import Chain
 
 _MOST_STEPS = 50
 _AT_REST = 1e-10  # N m
-_FARTHEST = 0.5  # rad, of a spring
+_FARTHEST = 0.5  # rad, largest deflection of a spring
 
 
 class FlexibleLinks(Plant):
-    r"""A chain of rigid parts with springs between them, by the classical Runge-Kutta scheme on Pinocchio's dynamics.
+    r"""A chain of rigid segments with springs between them, integrated by the classical Runge-Kutta scheme.
 
     .. math:: M(x) \ddot x + h(x, \dot x) + K x + D \dot x = \tau
 
-    x are the joints, on which motors act, and the bends of the links, which have springs and dampers.
+    x contains the joints, which the motors drive, and the bending angles of the links, which have springs and dampers.
+    Pinocchio computes the dynamics.
 
     Args:
-        chain: The arm's parts.
+        chain: Segments of the arm.
         motors: B, inertia of each joint's motor after its gear, shape (nq,), in kg m^2.
         damping: D among the springs, shape (k, k), in N m s/rad.
         step: Integration step, in s.
@@ -57,15 +58,15 @@ class FlexibleLinks(Plant):
         self.places: FloatArray = np.zeros(self._model.nq)
         """x, shape (nq + k,), in rad."""
         self.speeds: FloatArray = np.zeros(self._model.nq)
-        """Its rate, shape (nq + k,), in rad/s."""
+        """dx/dt, shape (nq + k,), in rad/s."""
         self._time = 0.0
         self.q, self.dq = np.zeros(len(chain.motors)), np.zeros(len(chain.motors))
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the joints into a state, and the links where their springs carry the weight; see Plant.
+        """Reset the joints to a state, and the links to static equilibrium with their weight; see Plant.
 
         Raises:
-            SimulationError: where they do not carry it, or bend so far that a chain stands for no beam.
+            SimulationError: if no equilibrium is found, or a spring bends too far for the chain to model a beam.
         """
         self._time = 0.0
         self.q[:], self.dq[:] = q, dq
@@ -83,14 +84,14 @@ class FlexibleLinks(Plant):
         )
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         self._model.gravity.linear = gravity
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the motors' torques for one tick; see Plant.
 
         Raises:
-            SimulationError: where a spring bends so far that a chain stands for no beam.
+            SimulationError: if a spring bends too far for the chain to model a beam.
         """
         h, n = self._step, len(self.places)
         acting = np.zeros(n)
@@ -99,7 +100,7 @@ class FlexibleLinks(Plant):
         x = runge_kutta(lambda at: self._slope(at, acting), x, h, self._steps_per_tick)
         self.places[:], self.speeds[:] = x[:n], x[n:]
         self._time += self._steps_per_tick * h
-        if np.abs(self.places[self._springs]).max() > _FARTHEST:  # of what is not finite others tell
+        if np.abs(self.places[self._springs]).max() > _FARTHEST:  # the loop reports values that are not finite
             raise SimulationError(f"a spring of the links bends by more than {_FARTHEST:g} rad", self._time, None)
         self.q[:], self.dq[:] = self.places[self._driven], self.speeds[self._driven]
 
@@ -123,7 +124,7 @@ class FlexibleLinks(Plant):
         return np.array([place.translation, pin.getFrameVelocity(model, data, tip, pin.LOCAL_WORLD_ALIGNED).linear])
 
     def energy(self) -> float:
-        """Return the energy of parts, motors and springs, in J."""
+        """Return the energy of segments, motors and springs, in J."""
         M = np.triu(pin.crba(self._model, self._data, self.places))  # with the motors
         kinetic = float(self.speeds @ (M @ self.speeds)) - 0.5 * float(np.diag(M) @ self.speeds**2)
         weight = float(pin.computePotentialEnergy(self._model, self._data, self.places))

@@ -16,21 +16,21 @@ from runner.schema.values import FrictionConfig
 
 
 class SeriesElastic(FlexibleJoints):
-    r"""An arm with flexible joints, of which an engine moves the links.
+    r"""An arm with flexible joints whose links are moved by a physics engine.
 
-    In each step of length h springs and dampers act by what they are at its start, on the links and, by semi-implicit
-    Euler, on the motors:
+    In each step of length h, the torques of springs and dampers at its start act on the links. They also act on the
+    motors, by semi-implicit Euler:
 
     .. math:: \dot\theta_{n+1} = \dot\theta_n + h B^{-1} (\tau - K (\theta_n - q_n) - D (\dot\theta_n - \dot q_n)),
         \qquad \theta_{n+1} = \theta_n + h \dot\theta_{n+1}
 
-    With an engine of the same scheme, as PyBullet and MuJoCo's Euler are, the whole is of first order and, undamped,
-    symplectic: a mode is stable up to a rate of 2 / h, and no energy is lost or gained in the long run.
+    With an engine of the same scheme (PyBullet, MuJoCo's Euler), the whole scheme is of first order. Undamped, it is
+    symplectic: a mode is stable up to a rate of 2 / h, and energy is conserved in the long run.
 
     Args:
-        engine: Moves the links; one `advance` of it takes a step.
-        model: The arm's rigid-body model, of the links alone.
-        flexibility: Springs, dampers and motors of its joints.
+        engine: Plant of the links; one call of `advance` takes one step.
+        model: Rigid-body model of the links.
+        flexibility: Springs, dampers and motors of the joints.
         step: h, in s.
         steps_per_tick: Steps for which the torques of one tick are held.
     """
@@ -43,12 +43,12 @@ class SeriesElastic(FlexibleJoints):
         self.q, self.dq = engine.q, engine.dq
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put links and motors into a state; see FlexibleJoints."""
+        """Reset links and motors to a state; see FlexibleJoints."""
         self._engine.reset(q, dq)
         super().reset(q, dq)
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         super().set_gravity(gravity)
         self._engine.set_gravity(gravity)
 
@@ -64,7 +64,7 @@ class SeriesElastic(FlexibleJoints):
         self.theta[~on], self.dtheta[~on] = self.q[~on], self.dq[~on]
 
     def close(self) -> None:
-        """Release what the engine holds."""
+        """Release the resources of the engine."""
         self._engine.close()
 
 
@@ -76,15 +76,15 @@ def flexible_around(
     steps_per_tick: int,
     make: Callable[[RobotModel], Plant],
 ) -> Plant:
-    """Make the plant of a robot with flexible joints.
+    """Build the plant of a robot with flexible joints.
 
     Args:
-        joints: Its springs and motors.
-        friction: Friction in its motors.
+        joints: Config of springs and motors.
+        friction: Friction in the motors.
         robot: The robot.
         step: Integration step, in s.
         steps_per_tick: Steps in a tick.
-        make: Makes the engine that moves the links, of their model, with one step in a tick.
+        make: Function that builds the engine of the links from their model, with one step in a tick.
     """
     flexibility = joints.by_joint(robot)
     links = links_of(robot.model, flexibility.flexible)

@@ -7,12 +7,12 @@ from runner.base.lazy_modules import lapack, pin
 from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
 
-_PIVOTS = 100  # at most; an arm of ten joints takes one where nothing starts or stops, else a few
-_ROUNDING = 1e-12  # of the torques that act
+_PIVOTS = 100  # upper limit; an arm of ten joints needs one if no joint starts or stops, else a few
+_ROUNDING = 1e-12  # relative to the acting torques
 
 
 def with_friction(plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> Plant:
-    """Return a plant with friction in its joints, and the plant itself where there is none; see Frictional."""
+    """Return a plant with friction in its joints, or the plant itself without friction; see Frictional."""
     return Frictional(plant, model, viscous, coulomb, tick) if viscous.any() or coulomb.any() else plant
 
 
@@ -22,13 +22,13 @@ class Frictional(PlantWrapper):
     .. math:: (M + h b) \dot q^+ = M \dot q + h (\tau - V - G - \mu), \quad
         \mu \in c \, \mathrm{sgn}(\dot q^+), \qquad \tau_f = -b \dot q^+ - \mu
 
-    mu is what stops a joint within the tick, or the whole c where that does not suffice, so that no friction is so
-    large that it makes the arm oscillate. tau_f is held over the tick: first order in it. tau holds all that loads the
-    joints; contacts that the plant makes itself count by what they were in the last tick.
+    mu is the torque that stops a joint within the tick, or the whole c if that does not suffice. So even large friction
+    causes no oscillation. tau_f is held over the tick and is of first order in h. tau contains all loads on the joints.
+    Contact forces that the plant computes enter with their values of the last tick.
 
     Args:
-        plant: The plant without friction; one `advance` of it takes a tick.
-        model: The arm, for M, V and G.
+        plant: The plant without friction; one call of `advance` takes one tick.
+        model: Model of the arm, for M, V and G.
         viscous: b of each joint, shape (nq,), in N m s/rad.
         coulomb: c of each joint, shape (nq,), in N m.
         tick: h, in s.
@@ -46,21 +46,21 @@ class Frictional(PlantWrapper):
 
     @property
     def friction(self) -> FloatArray:
-        """Torques of friction in the last tick; see Plant."""
+        """Friction torques in the last tick; see Plant."""
         return self._friction
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state; see Plant."""
+        """Reset the arm to a state; see Plant."""
         super().reset(q, dq)
         self._direction[:] = 0.0
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         super().set_gravity(gravity)
         self._model.gravity.linear = gravity
 
     def advance(self, tau: FloatArray) -> None:
-        """Hold the torques for one tick, less friction; see Plant."""
+        """Hold the torques minus friction for one tick; see Plant."""
         model, data, h = self._model, self._data, self._tick
         bias = pin.nonLinearEffects(model, data, self.q, self.dq).copy()
         M = np.triu(pin.crba(model, data, self.q))  # crba fills the upper triangle only
@@ -73,7 +73,7 @@ class Frictional(PlantWrapper):
         self.plant.advance(tau - self._friction)
 
     def _contact_torque(self) -> FloatArray:
-        """Return the joint torques of contacts that the plant made in the last tick, shape (nq,), in N m."""
+        """Return the joint torques of the plant's contacts in the last tick, shape (nq,), in N m."""
         wrench = self.plant.contact_wrench()
         if wrench is None or not wrench.any():
             return np.zeros(len(self.q))
@@ -85,20 +85,20 @@ class Frictional(PlantWrapper):
 def stopping_torques(
     mobility: FloatArray, speed: FloatArray, limit: FloatArray, direction: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    r"""Return the dry friction that stops every joint, or all there is where that does not suffice.
+    r"""Return the dry friction that stops every joint, or its limit if that does not suffice.
 
     .. math:: v = v_0 - A \mu, \qquad |\mu_i| \le c_i, \qquad
         v_i = 0 \;\text{ or }\; \mu_i = c_i \, \mathrm{sgn} \, v_i
 
-    has one solution, as A is positive definite. It is found by pivoting: the first joint that is on the wrong side
-    changes it, which ends after finitely many (Murty, Opsearch 11, 1974; for bounds on both sides Judice and Pires,
-    Computers and Operations Research 21(5), 1994).
+    has one solution, because A is positive definite. Pivoting finds it: the first joint on the wrong side changes
+    sides. The search ends after a finite number of pivots (Murty, Opsearch 11, 1974; for bounds on both sides Judice
+    and Pires, Computers and Operations Research 21(5), 1994).
 
     Args:
-        mobility: A, how speeds change by torques, shape (nq, nq), in rad/s per N m.
+        mobility: A, change of speeds by torques, shape (nq, nq), in rad/s per N m.
         speed: v_0 without dry friction, shape (nq,), in rad/s.
         limit: c, shape (nq,), in N m.
-        direction: First guess, shape (nq,): 0 for a joint that stops, 1 or -1 for one that goes on turning up or down.
+        direction: First guess, shape (nq,): 0 for a joint that stops, 1 or -1 for one that keeps moving up or down.
 
     Returns:
         mu, shape (nq,), in N m; and the direction of each joint, as above.

@@ -33,54 +33,55 @@ class PlantConfig(KindConfig, Protocol):
 
 @runtime_checkable
 class RotatesMountedBase(Protocol):
-    """A config of plants that says whether a carrier turns its rider's base; with one that does not, it does."""
+    """A plant config with a choice of base rotation; without it, the base stage rotates the mounted stage's base."""
 
     wrist_rotation: Literal["real", "parallel"]
 
 
 @runtime_checkable
 class ComputesLate(Protocol):
-    """A config of plants with what a computer does to a controller's commands; without, they act at once."""
+    """A plant config with computation delay; without it, commands act at once."""
 
     computation: ComputationConfig
 
 
 @runtime_checkable
 class HasFlexibleJoints(Protocol):
-    """A config of plants whose joints may have springs between motors and links; None where they are rigid."""
+    """A plant config with optional springs between motors and links; None for rigid joints."""
 
     flexible_joints: FlexibleJointsConfig | None
 
 
 @runtime_checkable
 class HasServo(Protocol):
-    """A config of plants that take torques, with servos for controllers that command joint positions."""
+    """A torque plant config with position servos, for controllers that command joint positions."""
 
     servo: ServoConfig
 
 
 @runtime_checkable
 class IsFallback(Protocol):
-    """A config of plants that may stand in for another kind, which is missing; None where nothing is missing."""
+    """A plant config that may replace a missing kind; None if no kind is missing."""
 
     in_place_of: str | None
 
 
 @dataclass(frozen=True)
 class PlantFeatures(Features):
-    """Optional members of the module of a plant.
+    """Optional members of a plant's module.
 
     Attributes:
-        IMPLICIT_CONTACT: True if its plants compute the contact force of a wall in each step, from the velocity at the
+        IMPLICIT_CONTACT: True if the plants compute the contact force of a wall in each step, from the velocity at the
             end of the step.
-        default_step: Function of the control tick, in s, and the number of stages that returns the integration step,
-            in s, if the config gives none.
-        motion: Function of the config and the robot that returns the rigid bodies with friction that its plants
-            integrate by the classical Runge-Kutta scheme, or None if they do more. Such runs may be compiled.
-        modes: Function of the config, the robot and a posture that returns the modes of a flexible robot with its
-            motors held, by frequency; see find_modes. Springs in joints are known from the config.
-        moves_exactly: Function of the config that returns True if a step moves positions exactly under a constant
-            force, and False if by the velocity at its end.
+        default_step: Function of the control tick, in s, and the number of stages. It returns the integration step, in
+            s, for a config without step.
+        motion: Function of the config and the robot. It returns the rigid bodies with friction that the plants
+            integrate by the classical Runge-Kutta scheme, or None if the plants model more. Runs of such bodies may be
+            compiled.
+        modes: Function of the config, the robot and a configuration. It returns the modes of a flexible robot with its
+            motors held, by frequency; see find_modes. Modes of flexible joints follow from the config.
+        moves_exactly: Function of the config. It returns True if a step integrates positions exactly under a constant
+            force, and False if it uses the velocity at its end.
     """
 
     IMPLICIT_CONTACT: bool = False
@@ -99,12 +100,12 @@ def _check_state(_: Any, asked: Asked, q: FloatArray, dq: FloatArray) -> None:
 
 
 def _check_wrench(answer: Any, asked: Asked) -> FloatArray | None:
-    """Return a wrench, if there is one."""
+    """Return a checked wrench, or None if there is none."""
     return None if answer is None else checked(answer, (6,), asked)
 
 
 def _innermost(part: Any) -> Any:
-    """Return the plant of the user that moves the arm, inside his wrappers."""
+    """Return the user-supplied plant that moves the arm, inside all wrappers."""
     while hasattr(part, "plant"):
         part = part.plant
     return part
@@ -129,32 +130,32 @@ GUARD = Guard(
 
 
 class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
-    """The kinds of plants.
+    """The registry of plants.
 
-    `build` gives each the robot and two numbers. Plants that take torques get their step, in s, and the steps in a
-    tick; those that follow joint positions the tick, in s, and the ticks from one command to the next.
+    `build` takes the robot and two numbers. For torque plants, these are the step, in s, and the steps in a tick. For
+    position plants, these are the tick, in s, and the ticks between commands.
     """
 
     def features(self, kind: str) -> PlantFeatures:
-        """Return the optional members of the module of a kind."""
+        """Return the optional members of a kind's module."""
         return read_features(PlantFeatures, self.module(kind))
 
     def names(self) -> list[str]:
-        """Return the known kinds; see Kinds. Without PyBullet bullet is none of them."""
+        """Return the known kinds, without bullet if PyBullet is missing; see Kinds."""
         return [kind for kind in super().names() if kind != "bullet" or engines.has_pybullet()]
 
     def module(self, kind: str) -> ModuleType:
         """Return the module of a kind.
 
         Raises:
-            ConfigError: see Kinds; and for bullet where PyBullet is missing.
+            ConfigError: see Kinds; also for bullet if PyBullet is missing.
         """
         if kind == "bullet" and not engines.has_pybullet():
             raise ConfigError(engines.bullet_missing())
         return super().module(kind)
 
     def motion(self, config: PlantConfig, robot: Robot) -> Motion | None:
-        """Return what a plant integrates by the Runge-Kutta scheme, or None; see PlantFeatures.
+        """Return the motion that a plant integrates by the Runge-Kutta scheme, or None; see PlantFeatures.
 
         Raises:
             ConfigError: see find_motion.
@@ -162,7 +163,7 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         return self.features(config.kind).motion(config, robot)
 
     def modes(self, config: PlantConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-        """Return the modes of a built-in plant about a posture with its motors held; none if it is rigid."""
+        """Return the modes of a built-in plant about a configuration, motors held; none if it is rigid."""
         if not self.is_ours(config.kind):
             return []
         if isinstance(config, HasFlexibleJoints) and config.flexible_joints is not None:

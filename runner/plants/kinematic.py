@@ -20,10 +20,10 @@ class KinematicConfig(StrictModel):
     """Config of the kinematic plant.
 
     Attributes:
-        kind: Its name in the registry.
+        kind: Name in the registry.
         step: None: nothing is integrated.
-        wrist_rotation: Whether the carrier turns the rider's base, where arms ride on each other.
-        computation: How late commands act; all as late.
+        wrist_rotation: The base stage always rotates the base of the mounted stage.
+        computation: Delay of the commands, the same for all.
     """
 
     kind: Literal["kinematic"]
@@ -33,13 +33,13 @@ class KinematicConfig(StrictModel):
 
 
 class Kinematic(PositionPlant):
-    """Joint positions that follow their commands exactly, moving evenly, up to the joints' speed limits.
+    """Joints that follow commanded positions exactly, at constant speed within a command, up to the speed limits.
 
-    Its torques are what inverse dynamics asks for that motion under the world's load; no limit acts on them.
+    The torques are the inverse dynamics of that motion under the external load, without limits.
 
     Args:
-        model: The arm's rigid-body model.
-        tick: Time that one `advance` takes, in s.
+        model: Rigid-body model of the arm.
+        tick: Duration of one call of `advance`, in s.
         ticks_per_command: Ticks from one command to the next.
     """
 
@@ -54,12 +54,12 @@ class Kinematic(PositionPlant):
         self.load = np.zeros(model.nq)
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state; see Plant."""
+        """Reset the arm to a state; see Plant."""
         self.q[:], self.dq[:] = q, dq
         self._set_points.reset(q)
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         self._model.gravity.linear = gravity
 
     def advance(self, command: FloatArray) -> None:
@@ -75,5 +75,5 @@ CONFIG = KinematicConfig
 
 
 def build(config: KinematicConfig, robot: Robot, tick: float, ticks_per_command: int) -> Plant:
-    """Make the plant that a config describes."""
+    """Build the plant of a config."""
     return Kinematic(robot.model, tick, ticks_per_command)

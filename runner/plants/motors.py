@@ -9,32 +9,32 @@ from runner.robots.model import RobotModel
 
 
 class MotorSide:
-    r"""What encoders see of flexible joints, before their noise, and what drives add to the torques of laws.
+    r"""Encoder readings of flexible joints without noise, and the torques that drives add.
 
-    Encoders that turn with the motors see
+    Encoders at the motors measure
 
     .. math:: \hat q = \theta - K^{-1} G(\theta), \qquad \hat{\dot q} = \dot\theta
 
-    At rest q-hat differs from q by K^-1 (G(q) - G(theta)), of second order in 1/K. Without the correction it is theta.
+    At rest q-hat differs from q by K^-1 (G(q) - G(theta)), of second order in 1/K. Without correction, it is theta.
 
-    Drives with encoders on both sides, exact ones, add the fast part of composite control (Spong, J. Dyn. Syst. Meas.
-    Control 109, 1987), at the ticks of each control loop:
+    Drives with exact encoders on both sides add the fast part of composite control (Spong, J. Dyn. Syst. Meas. Control
+    109, 1987), at the ticks of each control loop:
 
     .. math:: \tau = \tau_{law} - K_f (\dot\theta - \dot q)
 
-    It takes down the vibration of the springs, which a law for the rigid arm by encoders at the links would excite.
+    It damps the vibration of the springs, which a rigid-arm control law with encoders at the links would excite.
 
     Args:
         plant: The plant with the springs.
-        at_motors: Whether the encoders that laws read turn with the motors, else with the links.
-        weight: The nominal arm, whose weight bends the joints; None for readings without correction.
+        at_motors: True if the controllers read encoders at the motors, False for encoders at the links.
+        weight: Nominal model whose weight deflects the joints; None for readings without correction.
     """
 
     def __init__(self, plant: FlexibleJoints, at_motors: bool, weight: RobotModel | None) -> None:
         self._plant, self._at_motors, self._weight = plant, at_motors, weight
 
     def read(self) -> tuple[FloatArray, FloatArray]:
-        """Return positions and velocities of the joints as encoders tell them, shapes (nq,), in rad and rad/s."""
+        """Return joint positions and velocities as measured by the encoders, shapes (nq,), in rad and rad/s."""
         plant = self._plant
         if not self._at_motors:
             return plant.q, plant.dq
@@ -43,23 +43,23 @@ class MotorSide:
         return plant.theta - plant.flexibility.deflection(self._weight.gravity_torque(plant.theta)), plant.dtheta
 
     def damping(self) -> FloatArray:
-        """Return what drives add to the torques that laws ask for, shape (nq,), in N m."""
+        """Return the torques that the drives add to the controllers' torques, shape (nq,), in N m."""
         return self._plant.flexibility.torsion_feedback * (self._plant.dq - self._plant.dtheta)
 
 
 class MotorFriction(PlantWrapper):
-    r"""Flexible joints whose motors are braked by friction, by backward Euler over the tick h.
+    r"""Flexible joints with motor friction, by backward Euler over the tick h.
 
     .. math:: (B + h b) \dot\theta^+ = B \dot\theta + h (\tau - K (\theta - q) - D (\dot\theta - \dot q) - \mu), \quad
         \mu \in c \, \mathrm{sgn}(\dot\theta^+), \qquad \tau_f = -b \dot\theta^+ - \mu
 
-    mu is what stops a motor within the tick, or the whole c where that does not suffice; see Frictional, which this is
-    for motors: none feels another. tau_f and the springs' torques are held over the tick: first order in it.
+    mu is the torque that stops a motor within the tick, or the whole c if that does not suffice; see Frictional. The
+    motors do not act on each other. tau_f and the springs' torques are held over the tick and are of first order in h.
 
     Args:
         plant: The plant without friction.
-        viscous: b of each joint's motor, shape (nq,), in N m s/rad; 0 where the joint is rigid.
-        coulomb: c of each joint's motor, shape (nq,), in N m; likewise.
+        viscous: b of each joint's motor, shape (nq,), in N m s/rad; 0 for a rigid joint.
+        coulomb: c of each joint's motor, shape (nq,), in N m; 0 for a rigid joint.
         tick: h, in s.
     """
 
@@ -71,11 +71,11 @@ class MotorFriction(PlantWrapper):
 
     @property
     def friction(self) -> FloatArray:
-        """Torques of friction in the last tick; see Plant."""
+        """Friction torques in the last tick; see Plant."""
         return self._friction
 
     def advance(self, tau: FloatArray) -> None:
-        """Hold the motors' torques for one tick, less friction; see Plant."""
+        """Hold the motors' torques minus friction for one tick; see Plant."""
         plant, h, on = self._springs, self._tick, self._springs.flexibility.flexible
         B, b, c = plant.flexibility.motors[on], self._viscous[on], self._coulomb[on]
         free = (B * plant.dtheta[on] + h * (tau - plant.spring_torque())[on]) / (B + h * b)

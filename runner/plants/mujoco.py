@@ -27,24 +27,25 @@ _INTEGRATORS = {
     "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
     "rk4": mujoco.mjtIntegrator.mjINT_RK4,
 }
-mujoco.set_mju_user_warning(lambda text: None)  # it would print what the loop tells, and write it to a file
-_TOLERANCE = 1e-12  # of the search for contact forces
-_IMPEDANCE = 1e-4, 0.9999  # MuJoCo takes none outside
+mujoco.set_mju_user_warning(lambda text: None)  # MuJoCo would print, and write to a file, what the loop reports
+_TOLERANCE = 1e-12  # of the solver for contact forces
+_IMPEDANCE = 1e-4, 0.9999  # MuJoCo's range
 
 
 class MujocoConfig(TorquePlantConfig):
     """Config of the MuJoCo plant.
 
     Attributes:
-        kind: Its name in the registry.
-        step: Integration step, in s; None is a tenth of the fastest controller period, a quarter with several stages.
-        integrator: Semi-implicit Euler; the same with what damps taken at the end of the step, which is no other where
-            nothing damps; the classical Runge-Kutta scheme.
-        in_place_of: The default plant, where it is missing and this one stands in for it, which the caveat
-            default_plant says; None where this one was asked for.
-        min_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
-            moment, gets this, in kg and kg m^2.
-        flexible_joints: Springs between motors and links; None is an arm with rigid joints.
+        kind: Name in the registry.
+        step: Integration step, in s; None selects a tenth of the fastest controller period, a quarter with several
+            stages.
+        integrator: Semi-implicit Euler (euler); the same with damping forces at the end of the step, identical without
+            damping (implicitfast); or the classical Runge-Kutta scheme (rk4).
+        in_place_of: The missing default plant that this one replaces, reported by the caveat default_plant; None if
+            this plant was selected.
+        min_inertia: Smallest mass and principal moment of inertia of a moving link, in kg and kg m^2. Smaller values
+            are raised to this one, because MuJoCo rejects moving links without mass and inertia.
+        flexible_joints: Springs between motors and links; None for rigid joints.
     """
 
     kind: Literal["mujoco"]
@@ -55,15 +56,15 @@ class MujocoConfig(TorquePlantConfig):
 
 
 class Mujoco(Plant):
-    """A serial arm in MuJoCo, torque-controlled, without damping or speed limit; a wall is all that it can touch.
+    """A torque-controlled serial arm in MuJoCo, without damping or speed limit. It collides only with a wall.
 
     Args:
-        urdf: The arm's URDF text.
-        model: The model built from it, for gravity and the names of the joints.
+        urdf: URDF of the arm, as a string.
+        model: Model built from the URDF, for gravity and the names of the joints.
         step: Integration step, in s.
         steps_per_tick: Integration steps for which the torques of one tick are held.
         integrator: See MujocoConfig.
-        min_inertia: Likewise, in kg and kg m^2.
+        min_inertia: See MujocoConfig; in kg and kg m^2.
 
     Raises:
         ConfigError: if MuJoCo cannot load the URDF.
@@ -83,7 +84,7 @@ class Mujoco(Plant):
         self._steps_per_tick = steps_per_tick
         options = self._model.opt
         options.timestep, options.integrator, options.tolerance = step, _INTEGRATORS[integrator], _TOLERANCE
-        # What diverges is told by the loop, not begun again; there is nothing to touch until there is a wall.
+        # No automatic reset, because the loop reports divergence; no contact until a wall is added.
         options.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET | mujoco.mjtDisableBit.mjDSBL_CONTACT
         self._set_names(model.joint_names)
         self.q, self.dq, self._tau = data.qpos, data.qvel, data.qfrc_applied
@@ -96,12 +97,12 @@ class Mujoco(Plant):
             raise ConfigError(f"robot.urdf: MuJoCo has the joints {', '.join(found)}, not {', '.join(names)}")
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state; see Plant."""
+        """Reset the arm to a state; see Plant."""
         mujoco.mj_resetData(self._model, self._data)
         self.q[:], self.dq[:] = q, dq
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         self._model.opt.gravity[:] = gravity
 
     def advance(self, tau: FloatArray) -> None:
@@ -110,20 +111,20 @@ class Mujoco(Plant):
         mujoco.mj_step(self._model, self._data, self._steps_per_tick)
 
     def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> bool:
-        r"""Add a wall for the links that have a collision shape; see Plant.
+        r"""Add a wall that touches the links with a collision shape; see Plant.
 
-        Backward Euler on spring and damper, as Bullet has them, is MuJoCo's contact
+        Backward Euler on spring and damper, the contact model of Bullet, is MuJoCo's contact
 
         .. math:: f = (a_{ref} - a) / R, \qquad 1 / R = h^2 k + h c, \qquad a_{ref} = -R \, (k \, r + (h k + c) \, v)
 
-        of a distance r with velocity v and acceleration a. It takes R by an impedance d, R = (1 - d) A / d for its own
-        estimate A of the contact's inverse mass, and the rest as stiffness and damping of an acceleration.
+        of a distance r with velocity v and acceleration a. MuJoCo expresses R by an impedance d, R = (1 - d) A / d,
+        with an estimate A of the contact's inverse mass. It takes the rest as stiffness and damping of an acceleration.
         """
         model, h = self._model, self._model.opt.timestep
         wall = model.geom(WALL).id
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), normal)
         model.geom_pos[wall], model.geom_quat[wall] = point, [turn.w, turn.x, turn.y, turn.z]
-        model.geom_sameframe[wall] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # it stands no more at the base's origin
+        model.geom_sameframe[wall] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # it is no longer at the base's origin
         for pair in range(model.npair):
             mobility = model.body_invweight0[model.geom_bodyid[model.pair_geom2[pair]], 0]
             added = mobility * h * (h * stiffness + damping)
@@ -143,10 +144,10 @@ class Mujoco(Plant):
         return wrench
 
     def tool_reaction(self) -> FloatArray | None:
-        """Return MuJoCo's own reading of what the tool puts on the flange in the last step; None without a tool.
+        """Return the wrench of the tool on the flange in the last step, as MuJoCo computes it; None without a tool.
 
-        Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,). It is that of the
-        step's beginning, exact in motion.
+        Force in N and moment about the flange's origin in N m, along the base's axes, shape (6,). It is the value at
+        the start of the step, exact in motion.
         """
         if not self._model.nsensor:
             return None
@@ -167,7 +168,7 @@ CONFIG = MujocoConfig
 
 
 def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
-    """Make the plant that a config describes."""
+    """Build the plant of a config."""
     tick, chosen = step * steps_per_tick, (config.integrator, config.min_inertia)
     if config.flexible_joints is not None:
         parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
@@ -176,5 +177,5 @@ def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) 
 
 
 def moves_exactly(config: MujocoConfig) -> bool:
-    """Tell whether the integrator is the Runge-Kutta scheme."""
+    """Return True if the integrator is the Runge-Kutta scheme."""
     return config.integrator == "rk4"

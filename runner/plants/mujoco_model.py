@@ -11,31 +11,31 @@ from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
 from runner.robots.tool_link import TOOL_MOUNT
 
-# Links stay bodies of their own, so that a tool has a reaction in its mount.
+# Links stay separate bodies, so that the mount of a tool has a reaction.
 _COMPILER = {"fusestatic": "false", "discardvisual": "false", "inertiafromgeom": "false"}
 _LEFT_OUT = {"joint": "dynamics", "link": "visual"}
-_ROUNDING = 1e-15  # of a moment of inertia
+_ROUNDING = 1e-15  # relative to a moment of inertia
 _LEAST_OF_TENSOR = 1e-14  # kg m^2
 FORCE, MOMENT, WALL = "reaction_force", "reaction_moment", "wall"
-"""Names of what is beside the arm: sensors of the reaction in a tool's mount, and a wall that its shapes can touch."""
+"""Names of elements besides the arm: the reaction sensors in a tool's mount, and the wall."""
 
 
 def read_spec(urdf: str, min_inertia: float, armature: Mapping[str, float]) -> Any:
-    """Return an arm as MuJoCo's specification, which can still be changed before it is compiled.
+    """Return an arm as MuJoCo's specification, which can be changed before it is compiled.
 
-    Its joints have no damping and no friction, whatever the text says, and its shapes touch nothing but a wall.
+    Damping and friction in the URDF are ignored. The arm's shapes collide only with a wall.
 
     Args:
-        urdf: The arm's URDF text.
-        min_inertia: MuJoCo takes no moving link without mass and inertia: one with less mass, or less of a principal
-            moment, gets this, in kg and kg m^2.
-        armature: Of each joint by name, in kg m^2.
+        urdf: URDF of the arm, as a string.
+        min_inertia: Smallest mass and principal moment of inertia of a moving link, in kg and kg m^2; smaller values
+            are raised to this one.
+        armature: Armature of each joint by name, in kg m^2.
 
     Raises:
-        ConfigError: if MuJoCo cannot read the text.
+        ConfigError: if MuJoCo cannot read the URDF.
     """
-    root = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
-    for own in root.findall("mujoco"):  # a file may say how MuJoCo is to read it
+    root = ET.fromstring(urdf)  # noqa: S314 - text from the runner, checked when it was read
+    for own in root.findall("mujoco"):  # a file may contain settings for MuJoCo's parser
         root.remove(own)
     ET.SubElement(ET.SubElement(root, "mujoco"), "compiler", _COMPILER)
     for whole, part in _LEFT_OUT.items():
@@ -60,10 +60,10 @@ def read_spec(urdf: str, min_inertia: float, armature: Mapping[str, float]) -> A
 
 
 def compiled(spec: Any) -> Any:
-    """Return the model that a specification describes.
+    """Return the compiled model of a specification.
 
     Raises:
-        ConfigError: if MuJoCo refuses it.
+        ConfigError: if MuJoCo rejects it.
     """
     try:
         return spec.compile()
@@ -76,7 +76,7 @@ def _refused(error: ValueError) -> ConfigError:
 
 
 def _is_flat(body: Any) -> bool:
-    """Tell whether a body has next to no inertia about an axis, which MuJoCo refuses in a tensor."""
+    """Return True if a body's inertia about an axis is nearly zero, which MuJoCo rejects in a tensor."""
     moments = np.linalg.eigvalsh(_tensor(body))
     return bool(moments[0] < _LEAST_OF_TENSOR and moments.any())
 
@@ -87,9 +87,9 @@ def _tensor(body: Any) -> Any:
 
 
 def _give_inertia(body: Any, least: float) -> None:
-    """Give a moving link the least mass and inertia where it has less, and let no moment exceed the others' sum.
+    """Raise a moving link's mass and inertia to a minimum; let no moment exceed the sum of the others.
 
-    By rounding that of a disc may, which MuJoCo refuses.
+    A disc's moment may exceed it by rounding, which MuJoCo rejects.
     """
     moments, axes = np.linalg.eigh(_tensor(body))
     moments = np.maximum(moments, least)
@@ -97,12 +97,12 @@ def _give_inertia(body: Any, least: float) -> None:
     axes[:, 0] *= np.linalg.det(axes)  # right-handed
     along = pin.Quaternion(*body.iquat.tolist()) * pin.Quaternion(axes)
     body.mass = max(body.mass, least)
-    body.fullinertia[0] = np.nan  # its principal moments stand for it
+    body.fullinertia[0] = np.nan  # the principal moments replace it
     body.inertia, body.iquat = moments, [along.w, along.x, along.y, along.z]
 
 
 def _add_wall(spec: Any) -> None:
-    """Let the arm's shapes touch nothing but a frictionless wall, the plane z = 0 of the base until it is moved."""
+    """Add a frictionless wall, the only body in contact with the arm's shapes: the plane z = 0 until it is moved."""
     for number, geom in enumerate(spec.geoms):
         geom.name, geom.contype, geom.conaffinity = f"{WALL} {number}", 0, 0
     touching = [geom.name for geom in spec.geoms]
@@ -112,7 +112,7 @@ def _add_wall(spec: Any) -> None:
 
 
 def _add_tool_sensors(spec: Any, tool: str) -> None:
-    """Put sensors of the reaction in a tool's mount at its origin."""
+    """Add reaction sensors to a tool's mount, at its origin."""
     spec.body(tool).add_site(name=TOOL_MOUNT)
     for name, kind in ((FORCE, mujoco.mjtSensor.mjSENS_FORCE), (MOMENT, mujoco.mjtSensor.mjSENS_TORQUE)):
         spec.add_sensor(name=name, type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname=TOOL_MOUNT)

@@ -9,14 +9,14 @@ from runner.plants.plant import Plant, PlantWrapper
 
 
 class PayloadChanges(PlantWrapper):
-    """Plants of one arm with one payload after another.
+    """Plants of one arm, each with another payload.
 
-    At a change the arm goes on from where it is and as fast as it is: the new payload has the speed that the tip has,
-    so that nothing jolts. What is picked up at rest while the tip moves would.
+    At a change, the arm keeps its position and velocity. The new payload starts with the velocity of the tip, so there
+    is no impact. A payload picked up at rest by a moving tip would cause one.
 
     Args:
-        plants: The plant of each payload, in their order.
-        ticks: Tick from which each of them but the first moves, ascending.
+        plants: Plant of each payload, in order.
+        ticks: First tick of each plant except the first, ascending.
     """
 
     def __init__(self, plants: Sequence[Plant], ticks: Sequence[int]) -> None:
@@ -26,12 +26,12 @@ class PayloadChanges(PlantWrapper):
         self.q, self.dq = self.q.copy(), self.dq.copy()
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state, with its first payload; see Plant."""
+        """Reset the arm to a state, with its first payload; see Plant."""
         self._tick, self.plant = 0, self._plants[0]
         self._put(q, dq)
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         for plant in self._plants:
             plant.set_gravity(gravity)
 
@@ -46,7 +46,7 @@ class PayloadChanges(PlantWrapper):
         self._tick += 1
 
     def close(self) -> None:
-        """Release what the plants hold."""
+        """Release the resources of the plants."""
         for plant in self._plants:
             plant.close()
 

@@ -6,16 +6,16 @@ from runner.base.arrays import FloatArray
 
 
 class Plant:
-    """A simulated arm under torques that are held between control ticks. It never sees the controller.
+    """A simulated arm under torques that are held between control ticks. It has no access to the controller.
 
-    A plant must define `reset`, `set_gravity` and `advance`; the rest has defaults.
+    A plant must define `reset`, `set_gravity` and `advance`; the other methods have defaults.
 
     Attributes:
-        q: True joint positions, shape (nq,), in rad; renewed in place by reset and advance.
-        dq: True joint velocities, shape (nq,), in rad/s; likewise.
-        load: Joint torques of the world in the next tick, shape (nq,), in N m, written in place; None if the plant
-            adds them to the torques of the motors.
-        bends: True if stages end elsewhere than the joints tell, because links bend; see `end_points`.
+        q: True joint positions, shape (nq,), in rad; updated in place by reset and advance.
+        dq: True joint velocities, shape (nq,), in rad/s; updated in place by reset and advance.
+        load: External joint torques in the next tick, shape (nq,), in N m, written in place; None if the plant adds
+            them to the motor torques.
+        bends: True if links bend, so that end points do not follow from the joints; see `end_points`.
     """
 
     q: FloatArray
@@ -24,11 +24,11 @@ class Plant:
     bends = False
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state."""
+        """Reset the arm to a state."""
         raise NotImplementedError
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector in the arm's base frame, shape (3,), in m/s^2."""
+        """Set the gravity vector in the arm's base frame, shape (3,), in m/s^2."""
         raise NotImplementedError
 
     def advance(self, tau: FloatArray) -> None:
@@ -36,7 +36,7 @@ class Plant:
         raise NotImplementedError
 
     def push(self, tau: FloatArray, load: FloatArray) -> None:
-        """Hold torques of motors and of the world, shapes (nq,), in N m, for one control tick."""
+        """Hold motor torques and external torques, shapes (nq,), in N m, for one control tick."""
         if self.load is None:
             self.advance(tau + load)
         else:
@@ -44,24 +44,24 @@ class Plant:
             self.advance(tau)
 
     def close(self) -> None:
-        """Release what the plant holds."""
+        """Release the resources of the plant."""
 
     @property
     def friction(self) -> FloatArray:
-        """Torques that friction subtracted from those of the motors in the last tick, shape (nq,), in N m."""
+        """Torques that friction subtracted from the motor torques in the last tick, shape (nq,), in N m."""
         return np.zeros(len(self.q))
 
     def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> bool:
         """Add a flat frictionless wall for the tool; return True if the plant computes the contact.
 
-        By default it does not. It then gets the force of the wall on the tool as joint torques, held for a tick. A tip
-        without a tool touches walls by `WithTipContact`, on any plant.
+        By default it does not. It then receives the force of the wall on the tool as joint torques, held for a tick. A
+        tip without a tool touches walls by `WithTipContact`, on any plant.
 
         Args:
-            point: A point of its face in the base frame, shape (3,), in m.
-            normal: Unit vector out of it, shape (3,).
-            stiffness: In N/m.
-            damping: In N s/m.
+            point: A point on the face of the wall in the base frame, shape (3,), in m.
+            normal: Unit vector out of the wall, shape (3,).
+            stiffness: Stiffness of the wall, in N/m.
+            damping: Damping of the wall, in N s/m.
         """
         return False
 
@@ -92,8 +92,8 @@ class PositionPlant(Plant):
     """A simulated arm whose joints follow commanded positions; `advance` takes these, shape (nq,), in rad.
 
     Attributes:
-        tau: Torques of the tick that `advance` just made, shape (nq,), in N m; renewed in place.
-        load: Joint torques of the world in the next tick, shape (nq,), in N m; written in place.
+        tau: Torques of the last tick, shape (nq,), in N m; updated in place by advance.
+        load: External joint torques in the next tick, shape (nq,), in N m; written in place.
     """
 
     tau: FloatArray
@@ -101,10 +101,10 @@ class PositionPlant(Plant):
 
 
 class PlantWrapper(Plant):
-    """A plant that acts on another one, as friction and servos do; by default it passes everything on.
+    """A plant around another one, for example for friction or servos; by default it forwards every call.
 
     Args:
-        plant: The other plant.
+        plant: The inner plant.
     """
 
     def __init__(self, plant: Plant) -> None:
@@ -112,40 +112,40 @@ class PlantWrapper(Plant):
         self.q, self.dq, self.load, self.bends = plant.q, plant.dq, plant.load, plant.bends
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state."""
+        """Reset the arm to a state."""
         self.plant.reset(q, dq)
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector."""
+        """Set the gravity vector."""
         self.plant.set_gravity(gravity)
 
     def close(self) -> None:
-        """Release what the plant holds."""
+        """Release the resources of the plant."""
         self.plant.close()
 
     @property
     def friction(self) -> FloatArray:
-        """Friction of the other plant."""
+        """Friction of the inner plant."""
         return self.plant.friction
 
     def add_wall(self, point: FloatArray, normal: FloatArray, stiffness: float, damping: float) -> bool:
-        """Add a wall to the other plant."""
+        """Add a wall to the inner plant."""
         return self.plant.add_wall(point, normal, stiffness, damping)
 
     def contact_wrench(self) -> FloatArray | None:
-        """Return the contact of the other plant."""
+        """Return the contact wrench of the inner plant."""
         return self.plant.contact_wrench()
 
     def tool_reaction(self) -> FloatArray | None:
-        """Return the reaction that the other plant computes."""
+        """Return the reaction that the inner plant computes."""
         return self.plant.tool_reaction()
 
     def end_points(self) -> FloatArray:
-        """Return the end points of the other plant."""
+        """Return the end points of the inner plant."""
         return self.plant.end_points()
 
     def tip_motion(self) -> FloatArray:
-        """Return the motion of the tip of the other plant."""
+        """Return the tip's motion of the inner plant."""
         return self.plant.tip_motion()
 
 

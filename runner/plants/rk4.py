@@ -20,9 +20,9 @@ class Rk4Config(TorquePlantConfig):
     """Config of the Runge-Kutta plant.
 
     Attributes:
-        kind: Its name in the registry.
-        step: Integration step, in s; None is the fastest controller period.
-        flexible_joints: Springs between motors and links; None is an arm with rigid joints.
+        kind: Name in the registry.
+        step: Integration step, in s; None selects the fastest controller period.
+        flexible_joints: Springs between motors and links; None for rigid joints.
     """
 
     kind: Literal["rk4"]
@@ -32,11 +32,11 @@ class Rk4Config(TorquePlantConfig):
 class Rk4(Plant):
     """An arm integrated by the classical Runge-Kutta scheme.
 
-    Its accelerations are compiled code's where that is to be had, else those of Pinocchio's articulated-body algorithm.
-    Fourth order in its step while the torques are held and the motion is smooth: no contact, no stops.
+    Accelerations come from compiled code if available, else from Pinocchio's articulated-body algorithm. The scheme is
+    of fourth order in its step if the torques are held and the motion is smooth: no contact, no stops.
 
     Args:
-        model: The arm's rigid-body model.
+        model: Rigid-body model of the arm.
         step: Integration step, in s.
         steps_per_tick: Integration steps for which the torques of one tick are held.
     """
@@ -44,7 +44,7 @@ class Rk4(Plant):
     def __init__(self, model: RobotModel, step: float, steps_per_tick: int) -> None:
         self._compiled = compile_motion(model, step)
         self._model = pin.Model(model.pin_model)
-        # Each stage has its own, as aba returns a view of its result in there.
+        # Each stage has separate data, because aba returns a view into it.
         self._data = [self._model.createData() for _ in range(4)]
         self._step = step
         self._steps_per_tick = steps_per_tick
@@ -52,11 +52,11 @@ class Rk4(Plant):
         self.dq = np.zeros(model.nq)
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state; see Plant."""
+        """Reset the arm to a state; see Plant."""
         self.q[:], self.dq[:] = q, dq
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         self._model.gravity.linear = gravity
         if self._compiled is not None:
             self._compiled.set_gravity(gravity)
@@ -71,7 +71,7 @@ class Rk4(Plant):
         half = 0.5 * h
         q, v = self.q, self.dq
         for _ in range(self._steps_per_tick):
-            # With dq = v the positions' slopes are the intermediate velocities, so four forward dynamics suffice:
+            # Because dq = v, the slopes of the positions are the intermediate velocities. Four accelerations suffice:
             # q+ = q + h v + h^2/6 (a1 + a2 + a3), v+ = v + h/6 (a1 + 2 a2 + 2 a3 + a4).
             a1 = pin.aba(model, data1, q, v, tau)
             v2 = v + half * a1
@@ -92,7 +92,7 @@ CONFIG = Rk4Config
 
 
 def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> Plant:
-    """Make the plant that a config describes."""
+    """Build the plant of a config."""
     tick = step * steps_per_tick
     if config.flexible_joints is not None:
         (arm,) = find_motion(robot, config).arms
@@ -104,10 +104,10 @@ def build(config: Rk4Config, robot: Robot, step: float, steps_per_tick: int) -> 
 
 
 def motion(config: Rk4Config, robot: Robot) -> Motion | None:
-    """Return what the plant moves; None for flexible joints, which are not compiled."""
+    """Return the motion that the plant integrates; None for flexible joints."""
     return None if config.flexible_joints is not None else find_motion(robot, config)
 
 
 def moves_exactly(config: Rk4Config) -> bool:
-    """Tell that the scheme is of fourth order."""
+    """Return True: the scheme is of fourth order."""
     return True

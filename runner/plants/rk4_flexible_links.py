@@ -18,15 +18,15 @@ from runner.schema.units import Kilograms, MomentOfInertia, Newtons, Seconds
 from runner.schema.values import MotorPerStage
 
 _MOST_SEGMENTS = 32
-_LIGHTEST = 1e-10  # smallest inertia of a bend over the largest
+_LIGHTEST = 1e-10  # smallest over largest inertia of a bending angle
 
 
 class BeamConfig(StrictModel):
-    """Config of a link that bends.
+    """Config of a flexible link.
 
     Attributes:
         EI: Bending stiffness, in N m^2.
-        mass: Mass along it, evenly spread, beside what the robot's file gives of the link, in kg.
+        mass: Mass distributed evenly along the link, in addition to the link's mass in the robot file, in kg.
     """
 
     EI: Newtons[PositiveFloat]
@@ -34,17 +34,17 @@ class BeamConfig(StrictModel):
 
 
 class Rk4FlexibleLinksConfig(StrictModel):
-    """Config of a plant whose links bend.
+    """Config of a plant with flexible links.
 
     Attributes:
-        kind: Its name in the registry.
-        step: Integration step, in s; None is the fastest controller period.
-        links: The links that bend, by name; None for one that is rigid.
-        segments: Springs along each of them; above 1 for links with mass alone.
-        motor_inertia: Inertia of each joint's motor after its gear, in kg m^2. One for all joints or a list with one
-            for each, by stage where the robot has several; None for a joint is its `robot.armature`.
-        damping_ratio: Of each mode, with the motors held at home.
-        computation: What a computer does to the controllers' torques: how late they act, and which are missed.
+        kind: Name in the registry.
+        step: Integration step, in s; None selects the fastest controller period.
+        links: Flexible links, by name; None for a rigid link.
+        segments: Springs along each flexible link; above 1 only for links with mass.
+        motor_inertia: Inertia of each joint's motor after its gear, in kg m^2. One value for all joints or a list with
+            one for each, by stage if the robot has several; None for a joint selects its `robot.armature`.
+        damping_ratio: Damping ratio of each mode, with the motors held at home.
+        computation: Delay and misses of the controllers' torques.
     """
 
     kind: Literal["rk4_flexible_links"]
@@ -56,11 +56,11 @@ class Rk4FlexibleLinksConfig(StrictModel):
     computation: ComputationConfig
 
     def beams(self, robot: Robot) -> dict[str, Beam]:
-        """Return the links of a robot that bend.
+        """Return the flexible links of a robot.
 
         Raises:
-            ConfigError: for a link that is not there or has no length, none that bends, and several segments without
-                mass.
+            ConfigError: if a link is unknown or has no length, no link is flexible, or a link without mass has several
+                segments.
         """
         known, problems = moving_links(robot.model), []
         beams = {name: Beam(each.EI, each.mass) for name, each in self.links.items() if each is not None}
@@ -84,7 +84,8 @@ class Rk4FlexibleLinksConfig(StrictModel):
         """Return B of a robot's joints, shape (nq,), in kg m^2.
 
         Raises:
-            ConfigError: for values that do not fit its stages and joints, and a joint with both it and an armature.
+            ConfigError: if values do not fit the robot's stages and joints, or a joint has both a motor inertia and an
+                armature.
         """
         given, own = by_joint("plant.motor_inertia", self.motor_inertia, robot.stage_joints), robot.model.armature
         twice = np.isfinite(given) & (own > 0.0)
@@ -97,10 +98,10 @@ class Rk4FlexibleLinksConfig(StrictModel):
         return np.where(np.isfinite(given), given, own)
 
     def chain(self, robot: Robot) -> Chain:
-        """Return the parts of a robot; see cut.
+        """Return the segments of a robot; see cut.
 
         Raises:
-            ConfigError: see beams; and for parts that have next to no inertia of their own.
+            ConfigError: see beams; also for segments with nearly no inertia.
         """
         chain = cut(robot.model, robot.flange, self.beams(robot), self.segments)
         M = chain.mass_matrix(robot.home)[np.ix_(chain.springs, chain.springs)]
@@ -113,7 +114,7 @@ class Rk4FlexibleLinksConfig(StrictModel):
         return chain
 
     def damping(self, robot: Robot) -> FloatArray:
-        r"""Return the dampers among the springs, shape (k, k), in N m s/rad, by the modes with the motors held at home.
+        r"""Return the dampers among the springs, shape (k, k), in N m s/rad, from the modes with motors held at home.
 
         .. math:: D = M \Phi \, \mathrm{diag}(2 \zeta \omega) \, \Phi^T M, \qquad
             K \Phi = M \Phi \omega^2, \quad \Phi^T M \Phi = 1
@@ -128,7 +129,7 @@ class Rk4FlexibleLinksConfig(StrictModel):
         return damping
 
     def largest_rate(self, robot: Robot) -> float:
-        """Return the largest magnitude of an eigenvalue of a robot at home, without gravity, in 1/s; motors turn."""
+        """Return the largest magnitude of an eigenvalue at home, in 1/s, without gravity and with free motors."""
         chain = self.chain(robot)
         M, (K, D) = chain.mass_matrix(robot.home), np.zeros((2, chain.pin_model.nv, chain.pin_model.nv))
         M[chain.motors, chain.motors] += self.motors(robot)
@@ -141,19 +142,19 @@ CONFIG = Rk4FlexibleLinksConfig
 
 
 def build(config: Rk4FlexibleLinksConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
-    """Make the plant that a config describes."""
+    """Build the plant of a config."""
     ends = [*(str(stage.base_frame) for stage in robot.stages[1:]), robot.model.tip_name]
     chain, motors, damping = config.chain(robot), config.motors(robot), config.damping(robot)
     return FlexibleLinks(chain, motors, damping, step, steps_per_tick, ends)
 
 
 def modes(config: Rk4FlexibleLinksConfig, robot: Robot, q: FloatArray) -> list[Mode]:
-    """Return how the links ring with the motors held."""
+    """Return the modes of the links with the motors held."""
     chain = config.chain(robot)
     M = chain.mass_matrix(q)[np.ix_(chain.springs, chain.springs)]
     return find_modes(M, config.damping(robot), np.diag(chain.stiffness))
 
 
 def moves_exactly(config: Rk4FlexibleLinksConfig) -> bool:
-    """Tell that the scheme is of fourth order."""
+    """Return True: the scheme is of fourth order."""
     return True

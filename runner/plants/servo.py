@@ -13,15 +13,15 @@ from runner.schema.values import PositivePerJoint, expand
 
 
 class SetPoints:
-    """What a position servo follows: commanded joint positions, no faster than the joints may move.
+    """Set-points of a position servo: commanded joint positions within the joints' speed limits.
 
     Args:
         ticks_per_command: Ticks from one command to the next.
         tick: Time between two set-points, in s.
-        speed_limits: Largest joint speeds, shape (nq,), in rad/s; infinite where there is none.
-        interpolate: Whether a set-point moves evenly from one command to the next, a command's period late, or jumps
-            as far as the speed limits allow.
-        delay: Ticks that a command is late.
+        speed_limits: Largest joint speeds, shape (nq,), in rad/s; infinite without a limit.
+        interpolate: True if a set-point moves at constant speed from one command to the next and reaches it a command's
+            period late; False if it jumps as far as the speed limits allow.
+        delay: Delay of a command, in ticks.
     """
 
     def __init__(
@@ -33,19 +33,19 @@ class SetPoints:
         self._farthest = speed_limits * tick
         self._interpolate = interpolate
         self.position = np.zeros(len(speed_limits))
-        """Set-point at the end of the tick, shape (nq,), in rad; renewed in place."""
+        """Set-point at the end of the tick, shape (nq,), in rad; updated in place."""
         self.velocity = np.zeros(len(speed_limits))
-        """Its velocity within the tick, shape (nq,), in rad/s; zero where it jumps."""
+        """Velocity of the set-point within the tick, shape (nq,), in rad/s; zero without interpolation."""
         self._first = -delay % ticks_per_command
         self._count = self._first
 
     def reset(self, q: FloatArray) -> None:
-        """Stand still at joint positions."""
+        """Hold joint positions at rest."""
         self.position[:], self.velocity[:], self._count = q, 0.0, self._first
 
     def advance(self, command: FloatArray) -> None:
-        """Move on by one tick towards the command, joint positions of shape (nq,), in rad."""
-        left = self._ramp - self._count % self._ramp  # ticks until the command is to be reached
+        """Move by one tick towards the command, joint positions of shape (nq,), in rad."""
+        left = self._ramp - self._count % self._ramp  # ticks until the set-point reaches the command
         step = (command - self.position) / left
         np.clip(step, -self._farthest, self._farthest, out=step)
         self.position += step
@@ -55,14 +55,14 @@ class SetPoints:
 
 
 class ServoConfig(StrictModel):
-    """Config of the joints' position servos, which act where the controller commands joint positions.
+    """Config of the joints' position servos, which act if the controller commands joint positions.
 
     Attributes:
-        stiffness: K, in N m/rad; N/m where a joint slides. Of every joint or one for each.
-        damping_ratio: xi of each joint on its own, the others held at home; its damping is D = 2 xi sqrt(K M_ii).
+        stiffness: K, in N m/rad, or N/m for a prismatic joint. One value for all joints or a list with one for each.
+        damping_ratio: xi of each joint with the others held at home; its damping is D = 2 xi sqrt(K M_ii).
         period: Time between two torques of the servo, in s.
         gravity_compensation: Whether the servo adds the torques that hold the arm and its payload.
-        interpolate: Whether set-points move evenly between commands, or jump.
+        interpolate: Whether set-points move at constant speed between commands, or jump.
     """
 
     stiffness: JointStiffness[PositivePerJoint]
@@ -75,22 +75,22 @@ class ServoConfig(StrictModel):
 class ServoLaw:
     r"""Proportional-derivative control of every joint.
 
-    The spring and the damper are evaluated at the end of the servo's period h, with the acceleration that follows from
-    them, so that no stiffness or damping makes the sampled servo unstable (as Tan, Liu and Turk do for the damper,
-    Stable proportional-derivative controllers, IEEE Computer Graphics and Applications 31(4), 2011):
+    Spring and damper are evaluated at the end of the servo's period h, with the resulting acceleration. So no stiffness
+    or damping makes the sampled servo unstable (Tan, Liu and Turk do so for the damper, Stable proportional-derivative
+    controllers, IEEE Computer Graphics and Applications 31(4), 2011):
 
     .. math::
 
         \tau = K (q_c - q - h \dot q - h^2 \ddot q) + D (\dot q_c - \dot q - h \ddot q) + G, \qquad
         (M + h D + h^2 K) \ddot q = K (q_c - q - h \dot q) + D (\dot q_c - \dot q) - V
 
-    q_c and its velocity are the set-point's at the end of the period; G is there with gravity compensation, and in the
-    second equation -G without.
+    q_c and its velocity are those of the set-point at the end of the period. The first equation contains G only with
+    gravity compensation. Without it, the second equation contains -G.
 
     Args:
-        model: The servo's nominal arm, for M, V and G.
-        config: The servo's numbers.
-        home: Posture at which the damping is set, shape (nq,), in rad.
+        model: The servo's nominal model, for M, V and G.
+        config: Config of the servo.
+        home: Configuration at which the damping is set, shape (nq,), in rad.
 
     Raises:
         ConfigError: if the stiffness is a list of another length than the arm has joints.
@@ -107,24 +107,24 @@ class ServoLaw:
         self._gravity_compensation = config.gravity_compensation
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         self._model.gravity.linear = gravity
 
     def torques(self, q: FloatArray, dq: FloatArray, position: FloatArray, velocity: FloatArray) -> FloatArray:
-        """Return what the law asks for, no limit applied.
+        """Return the servo torques without limits.
 
         Args:
             q: Joint positions, shape (nq,), in rad.
             dq: Joint velocities, shape (nq,), in rad/s.
             position: Set-point at the end of the period, shape (nq,), in rad.
-            velocity: Its velocity, shape (nq,), in rad/s.
+            velocity: Velocity of the set-point, shape (nq,), in rad/s.
 
         Returns:
-            Shape (nq,), in N m.
+            Torques, shape (nq,), in N m.
         """
         model, data, h = self._model, self._data, self._period
         bias = pin.nonLinearEffects(model, data, q, dq).copy()
-        M = pin.crba(model, data, q)  # its upper triangle is all that dposv reads
+        M = pin.crba(model, data, q)  # dposv reads only its upper triangle
         G = pin.computeGeneralizedGravity(model, data, q) if self._gravity_compensation else 0.0
         spring = self._stiffness * (position - q - h * dq)
         slip = velocity - dq
@@ -136,16 +136,16 @@ class ServoLaw:
 
 
 class JointServo(PlantWrapper):
-    """Position servos, by ServoLaw, around a plant that takes torques; these are clipped at the effort limits.
+    """Position servos, by ServoLaw, around a torque plant; their torques are clipped at the effort limits.
 
     Args:
-        plant: The plant; one `advance` of it takes a servo period.
-        model: The servo's nominal arm, for M, V and G.
-        config: The servo's numbers.
-        home: Posture at which the damping is set, shape (nq,), in rad.
-        limits: Torque limits, shape (nq,), in N m; infinite where there is none.
+        plant: The plant; one call of `advance` takes one servo period.
+        model: The servo's nominal model, for M, V and G.
+        config: Config of the servo.
+        home: Configuration at which the damping is set, shape (nq,), in rad.
+        limits: Torque limits, shape (nq,), in N m; infinite without a limit.
         ticks_per_command: Servo periods from one command to the next.
-        delay: Servo periods that a command is late.
+        delay: Delay of a command, in servo periods.
 
     Raises:
         ConfigError: if the stiffness is a list of another length than the arm has joints.
@@ -169,12 +169,12 @@ class JointServo(PlantWrapper):
         self._set_points = SetPoints(ticks_per_command, config.period, model.velocity_limits, config.interpolate, delay)
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Put the arm into a state, its set-points where it stands; see Plant."""
+        """Reset the arm to a state, and the set-points to its joint positions; see Plant."""
         super().reset(q, dq)
         self._set_points.reset(q)
 
     def set_gravity(self, gravity: FloatArray) -> None:
-        """Take another gravity vector; see Plant."""
+        """Set the gravity vector; see Plant."""
         super().set_gravity(gravity)
         self._law.set_gravity(gravity)
 

@@ -17,34 +17,35 @@ from runner.plants.servo import ServoLaw
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool
 
-_STEP = 1e-5  # rad and rad/s, of the differences
-_ROUNDING = 1e-9  # of the radius, which an axis without spring makes 1
-_REACHED = 1e-3  # of the largest singular value of the tip's Jacobian: below it a posture is singular
+_STEP = 1e-5  # rad and rad/s, for finite differences
+_ROUNDING = 1e-9  # of the spectral radius, which is 1 for an axis without spring
+_REACHED = 1e-3  # relative to the largest singular value of the tip's Jacobian: below it a configuration is singular
 
 
 @dataclass(frozen=True)
 class ServoContact:
-    """An arm behind servos, in contact with a wall, under an admittance law.
+    """An arm with joint servos in contact with a wall, under admittance control.
 
     Attributes:
         arm: The robot.
-        q: Posture, shape (nq,), in rad, where the tip touches the wall.
-        servo: Its servos' law.
+        q: Configuration, shape (nq,), in rad, at which the tip touches the wall.
+        servo: Control law of the servos.
         step: Integration step of the plant, in s.
         steps: Integration steps in a tick of the servos.
         tick: Period of the servos, in s.
         ticks: Ticks in a period of the controller.
         delay: Ticks from a command until it acts.
-        interpolate: Whether set-points move evenly between commands, or jump.
-        implicit: Whether the plant makes the contact itself, in each step and from the velocity at its end, as PyBullet
-            does; else the wall's force at a tick is held for the tick, on an arm that is integrated exactly.
+        interpolate: True if set-points move at constant speed between commands, False if they jump.
+        implicit: True if the plant computes the contact in each step from the velocity at its end, for example
+            PyBullet. False if the wall's force is held for a tick and the arm is integrated exactly.
         law: The admittance.
-        at_tip: Whether it feels the moment about the tip, or about the flange.
-        inertia: Whether the tool's inertia is taken off the reading, from velocities a controller period apart.
-        seen: Share of a change of the load that the reading follows within a tick: 1 without a low-pass.
-        normal: Out of the wall, shape (3,).
-        stiffness: Of the wall, in N/m.
-        damping: Of the wall, in N s/m.
+        at_tip: True if the measured moment is about the tip, False if about the flange.
+        inertia: True if the tool's inertial wrench is subtracted from the reading, with velocities a controller period
+            apart.
+        seen: Fraction of a change of the load that the reading follows within a tick: 1 without a low-pass.
+        normal: Unit vector out of the wall, shape (3,).
+        stiffness: Stiffness of the wall, in N/m.
+        damping: Damping of the wall, in N s/m.
     """
 
     arm: Robot
@@ -67,13 +68,13 @@ class ServoContact:
 
 
 def contact_map(contact: ServoContact) -> FloatArray:
-    """Return the matrix that takes small motions in contact from one tick of the controller to the next.
+    """Return the matrix that maps small motions in contact from one tick of the controller to the next.
 
-    The state: joint positions, velocities, velocities a tick before and at the controller's last tick, set-points;
-    the sensor's reading, the filter's displacement and velocity; the commands on their way.
+    The state contains joint positions, velocities, velocities a tick before and at the controller's last tick, and
+    set-points. It also contains the sensor's reading, the filter's displacement and velocity, and the delayed commands.
 
     Raises:
-        numpy.linalg.LinAlgError: at a singular posture.
+        numpy.linalg.LinAlgError: in a singular configuration.
     """
     law, n, ticks = contact.law, contact.arm.model.nq, contact.ticks
     period = ticks * contact.tick
@@ -93,7 +94,7 @@ def contact_map(contact: ServoContact) -> FloatArray:
     wall = -(contact.stiffness * J[:3].T @ contact.normal)[:, None] * (contact.normal @ J[:3])
     damper = wall * (contact.damping / contact.stiffness)
     for tick in range(ticks):
-        # what the sensor feels in each tick: the wall, and the tool's inertia
+        # sensor load in each tick: the wall, and the tool's inertia
         load = press @ (contact.stiffness * q + contact.damping * dq) - moved @ (dq - before) / contact.tick
         reading = reading + contact.seen * (load - reading)
         before = dq
@@ -116,19 +117,19 @@ def contact_map(contact: ServoContact) -> FloatArray:
 
 
 def contact_radius(contact: ServoContact) -> float:
-    """Return the spectral radius of the contact's map; it is stable below 1, and an axis without spring gives 1.
+    """Return the spectral radius of the contact map; below 1 it is stable, and an axis without spring gives 1.
 
     Raises:
-        numpy.linalg.LinAlgError: at a singular posture.
+        numpy.linalg.LinAlgError: in a singular configuration.
     """
     return float(np.abs(np.linalg.eigvals(contact_map(contact))).max())
 
 
 def stiffest_servo_wall(contact: ServoContact) -> float | None:
-    """Return the softest wall, in N/m, from 100 N/m up, beyond which contact becomes unstable; None up to 10^7 N/m.
+    """Return the wall stiffness above which contact is unstable, in N/m; 0 if below 100, None if above 10^7.
 
     Raises:
-        numpy.linalg.LinAlgError: at a singular posture.
+        numpy.linalg.LinAlgError: in a singular configuration.
     """
     from scipy.optimize import brentq
 
@@ -143,16 +144,17 @@ def stiffest_servo_wall(contact: ServoContact) -> float | None:
 
 
 def _wrenches(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the wrench on the tool for each joint, along the base's axes about where the law takes it.
+    """Return the wrenches on the tool by joint, along the base's axes about the law's reference point.
 
     Returns:
-        Of the wall, for a unit of its stiffness, and of what accelerates the tool, shapes (6, nq).
+        Wrench of the wall for unit stiffness and joint displacement, and wrench that accelerates the tool for unit
+            joint acceleration, shapes (6, nq).
     """
     model, q = contact.arm.model.pin_model, contact.q
     data = model.createData()
     flange = model.getFrameId(contact.arm.flange)
     of_flange = pin.computeFrameJacobian(model, data, q, flange, pin.LOCAL)
-    pin.framesForwardKinematics(model, data, q)  # the Jacobian leaves poses in the base frame as they were
+    pin.framesForwardKinematics(model, data, q)  # the Jacobian does not update poses in the base frame
     place, tip = data.oMf[flange], data.oMf[contact.arm.model.tip_frame].translation
     about = tip if contact.at_tip else place.translation
     force = -np.concatenate([contact.normal, np.cross(tip - about, contact.normal)])
@@ -162,7 +164,7 @@ def _wrenches(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatAr
 
 
 def _servo_gradients(contact: ServoContact) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return how the servos' torques change with q, dq, set-point and its velocity, shapes (nq, nq), by differences."""
+    """Return differences of the servo torques by q, dq, set-point and its velocity, shapes (nq, nq)."""
     zero = np.zeros_like(contact.q)
     at = (contact.q, zero, contact.q, zero)
     gradients = []
@@ -177,7 +179,7 @@ def _servo_gradients(contact: ServoContact) -> tuple[FloatArray, FloatArray, Flo
 
 
 def _arm(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return how the arm's state (q, dq) follows in a tick from itself, and from torques held for the tick.
+    """Return the map of the arm's state (q, dq) over a tick, from the state and from held torques.
 
     Returns:
         Shapes (2 nq, 2 nq) and (2 nq, nq).
