@@ -277,6 +277,8 @@ def number_rows(columns: Sequence[NDArray[np.intp]], count: int) -> NDArray[np.i
     """
     if not columns:
         return np.zeros(count, dtype=np.intp)
+    if len(columns) == 1:
+        return np.asarray(np.unique(columns[0], return_inverse=True)[1])
     return np.asarray(np.unique(np.column_stack(columns), axis=0, return_inverse=True)[1]).ravel()
 
 

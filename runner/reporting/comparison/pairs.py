@@ -181,9 +181,11 @@ def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | N
 
 def _partners(of_a: Cells, of_b: Cells, places_a: Cells, places_b: Cells) -> tuple[Cells, Cells]:
     """Return the cells whose places are in both, pair by pair, in the order of the second cells."""
-    _, a, b = np.intersect1d(places_a, places_b, return_indices=True)
-    order = np.argsort(b)
-    return of_a[a[order]], of_b[b[order]]
+    last = np.sort(len(places_b) - 1 - np.unique(places_b[::-1], return_index=True)[1])  # of equal places
+    of_b, places_b, order = of_b[last], places_b[last], np.argsort(places_a, kind="stable")
+    found = np.searchsorted(places_a, places_b, side="right", sorter=order) - 1
+    kept = (found >= 0) & (places_a[order[found]] == places_b)
+    return of_a[order[found[kept]]], of_b[kept]
 
 
 def match(a: Measurements, b: Measurements) -> Pairs:
