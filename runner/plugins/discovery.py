@@ -22,20 +22,20 @@ GROUPS = (
     "calibration", "controller", "environment", "joint_torque_sensor", "metric", "mismatch", "noise", "plant",
     "trajectory", "wrist_sensor",
 )  # fmt: skip
-"""What there can be parts of."""
+"""Groups in which a part can be added."""
 
-_VARIABLE = "RUNNER_PLUGINS"  # one a line, as given but with whole paths; worker processes inherit it
+_VARIABLE = "RUNNER_PLUGINS"  # one part a line, with absolute paths of files; worker processes inherit it
 
 
 def use_plugins(given: Sequence[str]) -> None:
-    """Add the parts named, in this process and in those that it starts.
+    """Add parts in this process and in its worker processes.
 
     Args:
-        given: GROUP=MODULE each, such as "controller=mine/spring.py", a file, or "controller=mine.spring", a module
-            that Python finds; the part's name is the module's last, spring.
+        given: Parts as GROUP=MODULE. MODULE is a file, as in "controller=mine/spring.py", or a module on the Python
+            path, as in "controller=mine.spring". Both add the kind `spring`.
 
     Raises:
-        RunnerError: for a group that does not exist, or a module that cannot be found.
+        RunnerError: if a group does not exist or a module cannot be found.
     """
     lines = list(in_use())
     for text in given:
@@ -56,22 +56,22 @@ def use_plugins(given: Sequence[str]) -> None:
 
 
 def use_only(parts: Sequence[str]) -> None:
-    """Use these parts, as `in_use` returns them, and no others: a worker serves one command after another.
+    """Replace the parts in use, because a worker serves several commands; takes the value of `in_use`.
 
     Raises:
-        RunnerError: for a module that cannot be found.
+        RunnerError: if a module cannot be found.
     """
     os.environ[_VARIABLE] = ""
     use_plugins(parts)
 
 
 def in_use() -> tuple[str, ...]:
-    """Return the parts named on the command line, as `use_plugins` takes them; files by their whole paths."""
+    """Return the parts named on the command line in the form that `use_plugins` takes, with absolute paths of files."""
     return tuple(os.environ.get(_VARIABLE, "").splitlines())
 
 
 def named_parts() -> list[str]:
-    """Return the parts named on the command line, as it takes them; files relative to the working directory."""
+    """Return the parts named on the command line as GROUP=MODULE, with paths relative to the working directory."""
     found = []
     for line in in_use():
         group, _, module = line.partition("=")
@@ -80,16 +80,16 @@ def named_parts() -> list[str]:
 
 
 def added_parts(group: str) -> tuple[EntryPoint, ...]:
-    """Return the parts of a group that do not come with this package.
+    """Return the parts of a group from outside this package.
 
-    Installed packages are read once for each `sys.path`, as that takes milliseconds and is asked for each group.
+    The entry points of installed packages are cached by `sys.path`, because reading them takes milliseconds.
     """
     of_command_line = [_point(line) for line in in_use() if line.partition("=")[0] == group]
     return (*of_command_line, *_installed(tuple(sys.path)).get(group, ()))
 
 
 def has_users_parts() -> bool:
-    """Tell whether there are parts of the user's; those of our own studies are none."""
+    """Return True if user-supplied parts are in use; the parts of built-in studies do not count."""
     return any(not point.value.startswith("runner.") for group in GROUPS for point in added_parts(group))
 
 
@@ -97,7 +97,7 @@ def load(group: str, name: str, module: str) -> ModuleType:
     """Import a part's module.
 
     Raises:
-        ConfigError: if that fails; names the place in the module.
+        ConfigError: if the import fails; the message contains the line in the module.
     """
     try:
         return importlib.import_module(module)
@@ -110,9 +110,9 @@ def load(group: str, name: str, module: str) -> ModuleType:
 
 
 def source_files(module: str) -> list[Path]:
-    """Return the source that a part is made of: its module's file, or all of the package that this lies in.
+    """Return the source files of a part: the file of its module, or all files of its top-level package.
 
-    Of a part of our studies it is the folder `parts` of the study.
+    For a part of a built-in study, these are the files in the folder `parts` of the study.
     """
     package, _, rest = module.rpartition(".") if module.startswith("runner.") else module.partition(".")
     spec = find_spec(package if rest else module)
@@ -124,7 +124,7 @@ def source_files(module: str) -> list[Path]:
 
 
 def digests() -> dict[str, str]:
-    """Return a digest of the source of each part named on the command line, by what names it."""
+    """Return a digest of the source of each part named on the command line, by the part as `named_parts` returns it."""
     found = {}
     for text in named_parts():
         content = b"\0".join(path.read_bytes() for path in source_files(_point(text).value))
@@ -143,12 +143,12 @@ def _is_file(module: str) -> bool:
 
 
 def _point(line: str) -> EntryPoint:
-    """Return the part that a line GROUP=MODULE names; the folder of a file becomes one that Python looks into."""
+    """Return the part of a line GROUP=MODULE; the folder of a file is added to `sys.path`."""
     group, _, module = line.partition("=")
     if _is_file(module):
         folder = str(Path(module).parent)
         if folder not in sys.path:
-            sys.path.append(folder)  # at the end, so that nothing in it hides what is installed
+            sys.path.append(folder)  # last, so that its modules do not hide installed ones
         module = Path(module).stem
     return EntryPoint(name=module.rpartition(".")[2], value=module, group=f"runner.{group}")
 

@@ -5,15 +5,15 @@ from types import ModuleType
 from typing import Literal, TypeVar
 
 Commands = Literal["torque", "position"]
-"""What a controller gives and a plant takes: torques of the joints, or their positions."""
+"""Command from a controller to a plant: joint torques or joint positions."""
 
 
 @dataclass(frozen=True)
 class Features:
-    """Optional members of the module of a kind; each has the value that a module without it has.
+    """Optional members of the module of a kind, with the default values for modules without them.
 
     Attributes:
-        COMMANDS: What a controller gives or a plant takes.
+        COMMANDS: Command that a controller returns or a plant takes.
     """
 
     COMMANDS: Commands = "torque"

@@ -17,15 +17,15 @@ from runner.base.paths import package_dir
 
 
 def folder_module(folder: Path, name: str, package: str = "") -> ModuleType:
-    """Return a module of a folder; relative imports in it find its neighbours.
+    """Return a module of a folder; relative imports in the module work.
 
     Args:
         folder: The folder.
-        name: Name of the module, with dots for folders below: "equations.truths.arm".
-        package: The installed package that the folder is, where it is one; a folder of ours is found to be one.
+        name: Name of the module, with dots for subfolders: "equations.truths.arm".
+        package: Name of the folder as an installed package, if it is one; not needed in folders of this package.
 
     Raises:
-        RunnerError: if a module that is not ours cannot be imported; names the file and the place.
+        RunnerError: if a module outside this package cannot be imported; the message contains the file and the line.
     """
     folder = folder.resolve()
     if folder.is_relative_to(package_dir()):
@@ -39,7 +39,7 @@ def folder_module(folder: Path, name: str, package: str = "") -> ModuleType:
 
 
 def _package_of(folder: Path) -> str:
-    """Return the name of the package that stands for a folder."""
+    """Return the name of a namespace package for a folder, and add the package to `sys.modules`."""
     digest = hashlib.sha256(str(folder).encode()).hexdigest()[:12]
     name = f"{re.sub(r'[^0-9a-zA-Z]', '_', folder.name)}_{digest}"
     if name not in sys.modules:

@@ -1,8 +1,8 @@
 """Runtime checks of user-supplied parts: read-only inputs, validated results, and errors with file and line.
 
-A table lists the methods and attributes of a kind of parts. The proxy that a `Guard` makes from it hands a part
-read-only copies, and checks and copies its results. An exception in a part ends the run as a failure that names file
-and line. Parts of this package are not guarded.
+A `Guard` contains a rule for each method and attribute of a kind of parts. It wraps a part in a proxy. The proxy passes
+read-only copies to the part, and checks and copies the results. An exception in a part ends the run as a failure whose
+message contains file and line. Built-in parts are not guarded.
 """
 
 import inspect
@@ -37,34 +37,34 @@ def fail_run(asked: Asked, fault: str) -> NoReturn:
 
 
 def refuse(asked: Asked, fault: str) -> NoReturn:
-    """Refuse the config of the part because of a fault."""
+    """Reject the config of the part because of a fault."""
     raise ConfigError(f"{asked.guard.group}.kind: its {asked.name}: {fault}")
 
 
 def unchecked(answer: Any, *_: object) -> Any:
-    """Return an answer as it is."""
+    """Return a result without a check."""
     return answer
 
 
 def array(*shape: int) -> Callable[..., FloatArray]:
-    """Return the check that an answer is an array of a shape."""
+    """Return a check that a result is an array of a shape."""
     return lambda answer, asked, *_: checked(answer, shape, asked)
 
 
 def like(argument: int) -> Callable[..., FloatArray]:
-    """Return the check that an answer has the shape of an argument, given by its number."""
+    """Return a check that a result has the shape of an argument, which is given by its index."""
     return lambda answer, asked, *given: checked(answer, given[argument].shape, asked)
 
 
 @dataclass(frozen=True)
 class Method:
-    """Rule for calls of a method, which gets read-only copies of its arguments.
+    """Rule for calls of a method, which receives read-only copies of its arguments.
 
     Attributes:
-        check: Function of the answer, an `Asked` and the arguments that returns the checked answer.
-        optional: Whether a part may lack the name. The proxy then has the default of the base class, if any.
-        owner: Function that returns the owner of the method from the part.
-        fail: Function of an `Asked` and the message that handles a fault.
+        check: Function of the result, an `Asked` and the arguments; returns the checked result.
+        optional: True if a part does not need the method. The proxy then has the default of the base class, if any.
+        owner: Function of the part; returns the object that has the method.
+        fail: Function of an `Asked` and a message; handles a fault.
     """
 
     check: Callable[..., Any] = unchecked
@@ -85,7 +85,7 @@ class Method:
         return call
 
     def handle(self, error: Exception, asked: Asked) -> Any:
-        """Return the answer of the proxy after an error, or raise."""
+        """Return the result of the proxy after an error, or raise."""
         if isinstance(error, RunnerError):
             raise error
         return self.fail(asked, describe_fault(error))
@@ -107,27 +107,27 @@ class Attribute(Method):
 
 
 class Guarded:
-    """A user-supplied part behind its checks.
+    """Proxy of a user-supplied part with runtime checks.
 
     Attributes:
         part: The part.
-        guard: The guard that made the proxy.
+        guard: The guard that created the proxy.
     """
 
     part: Any
     guard: "Guard"
 
     def __deepcopy__(self, _: object) -> "Guarded":
-        """Return the proxy itself; a copy of the part is not needed."""
+        """Return the proxy itself, because a copy of the part is not needed."""
         return self
 
 
 class Guard:
-    """The checks of one kind of parts.
+    """Runtime checks of one kind of parts.
 
     Args:
         group: Config group of the kind.
-        base: Base class of the proxy, for the defaults of optional members.
+        base: Base class of the proxy, with the defaults of optional members.
         members: Rule for each method or attribute, by name.
     """
 
@@ -135,7 +135,7 @@ class Guard:
         self.group, self._base, self._members = group, base, members
 
     def __call__(self, part: Any, *_: object) -> Any:
-        """Return a part behind the checks."""
+        """Return the proxy of a part."""
         found = {"part": part, "guard": self}
         for name, member in self._members.items():
             owner = member.owner(part)
@@ -145,7 +145,7 @@ class Guard:
         return type("Guarded", (Guarded, self._base), found)()
 
     def _is_offered(self, owner: Any, name: str) -> bool:
-        """Return True if a part has a member of its own, not only the default of the base class."""
+        """Return True if a part defines a member itself, instead of only inheriting the default of the base class."""
         if name in getattr(owner, "__dict__", {}):
             return True
         return hasattr(owner, name) and getattr(type(owner), name, None) is not getattr(self._base, name, None)
@@ -157,17 +157,17 @@ def unguarded(part: Any) -> Any:
 
 
 def guarded_like(part: Any, other: Any) -> Any:
-    """Return another part behind the guard of a part, if the part has one."""
+    """Return `other` with the guard of `part`, if `part` has one."""
     return part.guard(other) if isinstance(part, Guarded) else other
 
 
 def is_write(error: Exception) -> bool:
-    """Tell whether an error comes from an attempt to change a read-only value."""
+    """Return True if an error comes from an attempt to change a read-only value."""
     return isinstance(error, FrozenInstanceError) or (isinstance(error, ValueError) and "read-only" in str(error))
 
 
 def describe_fault(error: Exception) -> str:
-    """Return the text of an error in a user-supplied part, with its place and a hint about read-only values."""
+    """Return the message of an error in a user-supplied part, with its line and a hint about read-only values."""
     if isinstance(error, SimulationError):
         return error.reason
     hint = "; a plug-in cannot change what it is given: work on a copy" if is_write(error) else ""
@@ -175,10 +175,10 @@ def describe_fault(error: Exception) -> str:
 
 
 def checked(answer: Any, shape: tuple[int, ...], asked: Asked) -> FloatArray:
-    """Return a copy of an answer as an array.
+    """Return a copy of a result as an array.
 
     Raises:
-        SimulationError: if it has another shape, or values that are not finite; names the method.
+        SimulationError: if the result has another shape or a value that is not finite; the message contains the method.
     """
     try:
         array = np.array(answer, dtype=np.float64)
@@ -190,7 +190,7 @@ def checked(answer: Any, shape: tuple[int, ...], asked: Asked) -> FloatArray:
 
 
 def find_fault(answer: Any, shape: tuple[int, ...]) -> str | None:
-    """Return what is wrong with an array, in words; None if it is right."""
+    """Return a message about the wrong shape, type or values of an array; None if the array is correct."""
     wanted = f"it must be an array of shape {shape}" if shape else "it must be a number"
     try:
         array = np.asarray(answer, dtype=np.float64)
@@ -205,15 +205,15 @@ def find_fault(answer: Any, shape: tuple[int, ...]) -> str | None:
 
 
 def place(function: Callable[..., Any]) -> str:
-    """Return name, file and line of a function."""
+    """Return the name, file and line of a function."""
     code = inspect.unwrap(getattr(function, "__func__", function)).__code__
     return f"{code.co_qualname} ({Path(code.co_filename).name}, line {code.co_firstlineno})"
 
 
 def read_only(value: Any) -> Any:
-    """Return a copy of an array, or of a dataclass of arrays, that cannot be written to; any other value as it is.
+    """Return a read-only copy of an array or of a dataclass of arrays; return any other value unchanged.
 
-    If a plug-in makes the copy writable again, the original stays as it is.
+    The original does not change even if a plug-in makes the copy writable.
     """
     if isinstance(value, np.ndarray):
         copied = value.copy()

@@ -22,7 +22,7 @@ def families() -> list[ModuleType]:
     """Return the modules of all families of metrics, the built-in ones first.
 
     Raises:
-        ConfigError: if a user-supplied one cannot be imported, or has no UNITS or `evaluate`.
+        ConfigError: if a user-supplied module cannot be imported, or has no UNITS or no `evaluate`.
     """
     return [*map(import_module, FAMILIES), *added_families()]
 
@@ -45,7 +45,7 @@ def units() -> dict[str, str]:
 
 
 def units_of(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Return the units of metrics, whose names may carry a stage in front and a joint or axis behind."""
+    """Return the units of metrics by names with an optional stage as prefix and joint or axis as suffix."""
     return _units_among(names, tuple(units().items()))
 
 
@@ -56,11 +56,11 @@ def _units_among(names: tuple[str, ...], known: tuple[tuple[str, str], ...]) -> 
 
 
 def unit_of(name: str) -> str | None:
-    """Return the unit of a metric, whose name may carry a stage in front and a joint or axis behind; None for none."""
+    """Return the unit of a metric, or None if it is unknown; see `units_of` for the name."""
     known = units()
     return known.get(_base(name, known))
 
 
 def _base(name: str, known: Iterable[str]) -> str:
-    """Return the metric that a name is of: the longest known one within it; the name itself where there is none."""
+    """Return the longest known metric that a name contains, or the name itself if it contains none."""
     return max((base for base in known if f"_{base}_" in f"_{name}_"), key=len, default=name)

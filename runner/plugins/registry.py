@@ -1,8 +1,8 @@
 """Registry of kinds: modules by the `kind:` of a config.
 
 A registry has one line for each kind, with the module that defines it. The module is imported when the kind is first
-used. It provides `CONFIG`, the pydantic model of its config group, and `build`, which creates the object. Users can add
-their own kinds: see runner/plugins/discovery.py.
+used. The module provides `CONFIG`, the pydantic model of its config group, and `build`, which creates the object. Users
+can add kinds: see runner/plugins/discovery.py.
 """
 
 import copy
@@ -18,7 +18,7 @@ from runner.schema.model import StrictModel
 
 
 class KindConfig(Protocol):
-    """The config of a part, of the model that its kind names."""
+    """Config of a part; an instance of the `CONFIG` model of its kind."""
 
     @property
     def kind(self) -> str:
@@ -34,7 +34,7 @@ A = TypeVar("A")
 
 
 class Kinds:
-    """The kinds of one config group.
+    """Kinds of one config group.
 
     Args:
         group: Name of the config group, such as "controller".
@@ -46,14 +46,14 @@ class Kinds:
         self._modules = dict(modules)
 
     def names(self) -> list[str]:
-        """Return the known kinds, those of the user's included, sorted."""
+        """Return the known kinds, including user-supplied ones, sorted."""
         return sorted(self._modules | self._plugins())
 
     def config_model(self, kind: str) -> type[StrictModel]:
         """Return the pydantic model of a kind's config.
 
         Raises:
-            ConfigError: if the kind is unknown, or its module cannot be imported or has no such model.
+            ConfigError: if the kind is unknown, or if its module cannot be imported or has no valid CONFIG.
         """
         module = self.module(kind)
         model = vars(module).get("CONFIG")
@@ -65,11 +65,11 @@ class Kinds:
         return model
 
     def is_ours(self, kind: str) -> bool:
-        """Tell whether a kind comes with this package, so that no guard is needed."""
+        """Return True if a kind is built-in; such a part needs no guard."""
         return self.module(kind).__name__.startswith("runner.")
 
     def commands(self, kind: str) -> Commands:
-        """Return what a kind of controllers gives, or a kind of plants takes."""
+        """Return the command that a kind of controllers returns or a kind of plants takes."""
         return read_features(Features, self.module(kind)).COMMANDS
 
     def module(self, kind: str) -> ModuleType:
@@ -91,12 +91,14 @@ class Kinds:
 
 
 class Registry(Kinds, Generic[C, P, T]):
-    """The kinds of one config group, and the parts that they make: from a config and what every kind gets, a part.
+    """Kinds of one config group, and the construction of their parts.
+
+    The type parameters are the config, the other arguments of `build`, and the part.
 
     Args:
         group: Name of the config group, such as "controller".
         modules: Module name of each kind.
-        guard: Returns a user-supplied part behind its checks, from the part and what `build` was given.
+        guard: Function of a user-supplied part and the arguments of `build`; returns the guarded part.
     """
 
     def __init__(
@@ -106,12 +108,12 @@ class Registry(Kinds, Generic[C, P, T]):
         self.guard = guard
 
     def build(self, config: C, *args: P.args, **kwargs: P.kwargs) -> T:
-        """Make the part that a validated config describes; what follows is what every kind of this group gets.
+        """Build the part that a validated config describes; the other arguments depend on the group only.
 
-        A user-supplied module gets copies of them, and the part that it makes is guarded.
+        A user-supplied module receives copies of the arguments, and its part is guarded.
 
         Raises:
-            ConfigError: if a user-supplied part raises anything; names the place.
+            ConfigError: if a user-supplied module raises an exception; the message contains its line.
         """
         make: Callable[Concatenate[C, P], T] = self.module(config.kind).build
         if self.is_ours(config.kind):
@@ -120,10 +122,10 @@ class Registry(Kinds, Generic[C, P, T]):
         return built if self.guard is None else self.guard(built, config, *args, **kwargs)
 
     def ask(self, config: C, function: Callable[Concatenate[C, P2], A], *args: P2.args, **kwargs: P2.kwargs) -> A:
-        """Return the result of a function of a user-supplied module, which gets copies of its arguments.
+        """Return the result of a function of a user-supplied module, which receives copies of its arguments.
 
         Raises:
-            ConfigError: if it raises anything; names the place.
+            ConfigError: if the function raises an exception; the message contains its line.
         """
         own, handed, named = copy.deepcopy((config, args, kwargs))
         try:

@@ -6,11 +6,11 @@ from runner.base.arrays import FloatArray
 
 
 def quintic_blend(u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    r"""Return s and its first two derivatives in u, each of shape (T,), for u from 0 to 1 and at rest beyond.
+    r"""Return s and its first two derivatives by u, each of shape (T,); u below 0 or above 1 counts as 0 or 1.
 
     .. math:: s(u) = 10 u^3 - 15 u^4 + 6 u^5
 
-    is the one quintic with s(0) = 0, s(1) = 1 and no first or second derivative at either end (thesis eq. 3.39).
+    is the only quintic with s(0) = 0, s(1) = 1 and zero first and second derivatives at both ends (thesis eq. 3.39).
     """
     u = np.clip(u, 0.0, 1.0)
     return (
@@ -21,7 +21,7 @@ def quintic_blend(u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def quintic_motion(start: FloatArray, goal: FloatArray, duration: float, times: FloatArray) -> FloatArray:
-    """Return the motion from start to goal by the blend, with two derivatives, shapes (k,), (k,), (T,) to (T, 3, k)."""
+    """Return the blended motion from start to goal with two derivatives, shapes (k,), (k,), (T,) to (T, 3, k)."""
     blend, rate = quintic_blend(times / duration), 1.0 / duration
     motion = np.stack([np.outer(s * rate**order, goal - start) for order, s in enumerate(blend)], axis=1)
     motion[:, 0] += start

@@ -15,16 +15,16 @@ from runner.trajectories.vectors import Direction, InPlane, Point, component, pl
 
 
 class CircleConfig(StrictModel):
-    """Config of a circle; it starts on its line, so that the centre is start + radius * centre_direction.
+    """Config of a circle through the start; the centre is start + radius * centre_direction for a unit direction.
 
     Attributes:
-        kind: Its name in the registry.
-        start: Tip position at t = 0, in m; None is the tip at home.
+        kind: Name of the kind in the registry.
+        start: Tip position at t = 0, in m; None is the tip at the home configuration.
         radius: Radius, in m.
-        normal: Axis about which it turns counter-clockwise, of any length.
+        normal: Axis of the counter-clockwise rotation; the length of the vector has no effect.
         centre_direction: Direction from the start to the centre, perpendicular to the normal, of any length.
         turns: Number of turns.
-        easing: "quintic" for one motion from rest to rest, "none" for a steady speed, over and over.
+        easing: "quintic" for one motion from rest to rest, "none" for a periodic motion at constant speed.
         duration: Time of all turns, in s.
     """
 
@@ -40,7 +40,7 @@ class CircleConfig(StrictModel):
 
 @dataclass(frozen=True)
 class Circle:
-    r"""A circle, with phi = 2 pi turns u and unit vectors e to the centre and f along the first motion.
+    r"""A circle, with phi = 2 pi turns u, and unit vectors e to the centre and f along the initial motion.
 
     .. math:: c(u) = x_0 + r (1 - \cos \varphi) e + r \sin \varphi f
 
@@ -59,7 +59,7 @@ class Circle:
     turns: int
 
     def derivatives(self, u: FloatArray) -> FloatArray:
-        """Return point and derivatives in u, shape (T, 3, 3), in m."""
+        """Return the point and its first two derivatives by u, shape (T, 3, 3), in m."""
         rate = 2.0 * np.pi * self.turns
         cosine, sine = np.cos(rate * u), np.sin(rate * u)
         e, f = self.radius * self.to_centre, self.radius * self.along
@@ -73,7 +73,7 @@ class Circle:
         )
 
     def distance(self, points: FloatArray) -> FloatArray:
-        """Return each point's distance to the circle, shapes (..., 3) to (...), in m."""
+        """Return the distance of each point to the circle, shapes (..., 3) to (...), in m."""
         from_centre = points - self.start - self.radius * self.to_centre
         height = component(from_centre, np.cross(self.to_centre, self.along))
         beyond = np.hypot(component(from_centre, self.to_centre), component(from_centre, self.along)) - self.radius
@@ -85,7 +85,7 @@ CONFIG = CircleConfig
 
 
 def build(config: CircleConfig, start: FloatArray) -> Trajectory:
-    """Make the circle that a config describes; `start` is the tip at t = 0."""
+    """Build the circle that a config describes; `start` is the tip at t = 0."""
     e, g = plane_axes(config.normal, config.centre_direction)
-    # Counter-clockwise about the normal, the start turns about the centre towards -g.
+    # In a counter-clockwise rotation about the normal, the tip leaves the start towards -g.
     return ClosedFigure(Circle(start, config.radius, e, -g, config.turns), config.duration, config.easing)

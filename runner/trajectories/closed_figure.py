@@ -21,27 +21,27 @@ class ClosedCurve(Protocol):
         ...
 
     def derivatives(self, u: FloatArray) -> FloatArray:
-        """Return point and its first two derivatives in u, shape (T, 3, 3), in m; u goes from 0 to 1 and may go on."""
+        """Return the point and its first two derivatives by u, shape (T, 3, 3), in m; u from 0 may exceed 1."""
         ...
 
     def distance(self, points: FloatArray) -> FloatArray:
-        """Return each point's distance to the curve, shapes (..., 3) to (...), in m."""
+        """Return the distance of each point to the curve, shapes (..., 3) to (...), in m."""
         ...
 
 
 @dataclass(frozen=True)
 class ClosedFigure(TrackedMotion):
-    r"""A closed curve c(u) with u taken from time; see Trajectory for the attributes.
+    r"""Motion along a closed curve c(u) with u as a function of time; see Trajectory for the attributes.
 
     With easing "quintic", u = s(t / t_f) goes once from 0 to 1, from rest to rest (thesis eq. 3.39), and the motion
-    is twice continuously differentiable. With "none", u = t / T goes on evenly: the motion is periodic, and it
-    starts at speed, which an arm at rest does not follow at once. Then
+    is twice continuously differentiable. With "none", u = t / T: the motion is periodic and starts at nonzero speed,
+    which an arm at rest cannot follow immediately. In both cases
 
     .. math:: \dot x = c' \dot u, \quad \ddot x = c'' \dot u^2 + c' \ddot u
 
     Attributes:
         curve: The curve.
-        easing: How u follows from time.
+        easing: Time scaling u(t).
     """
 
     curve: ClosedCurve
@@ -50,17 +50,17 @@ class ClosedFigure(TrackedMotion):
 
     @property
     def start(self) -> FloatArray:
-        """Where the curve starts."""
+        """Start of the curve."""
         return self.curve.start
 
     @property
     def goal(self) -> FloatArray | None:
-        """The start again where the motion comes to rest; None where it does not."""
+        """Start of the curve if the motion ends at rest; None if it is periodic."""
         return self.curve.start if self.easing == "quintic" else None
 
     @property
     def run_duration(self) -> float:
-        """One period, or one second more than the motion, so that the arm's rest is seen."""
+        """One period; or one second more than a motion to rest, so that the settling of the arm is visible."""
         return self.duration + 1.0 if self.easing == "quintic" else self.duration
 
     def sample(self, times: FloatArray) -> FloatArray:

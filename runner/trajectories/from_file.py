@@ -28,13 +28,13 @@ class FromFileConfig(StrictModel):
     """Config of a motion from a data file.
 
     Attributes:
-        kind: Its name in the registry.
-        file: The file, CSV or Parquet: in a config folder of the user's or the working folder, or an absolute path.
-        interpolation: Between its rows: "spline", the cubic spline through positions, at rest at both ends; "hermite"
-            with the file's velocities, and its accelerations where it has them.
-        columns: What the file holds, by column, in s, m, m/s and m/s^2, or rad, rad/s and rad/s^2; taken from it when
-            the config is composed, so that a stored run needs no file.
-        duration: t_f, in s, the file's last time; None takes it.
+        kind: Name of the kind in the registry.
+        file: CSV or Parquet file: an absolute path, or a path in one of your config folders or in the working folder.
+        interpolation: Interpolation between rows: "spline" is the cubic spline through the positions, at rest at both
+            ends; "hermite" also uses the velocities of the file, and its accelerations if given.
+        columns: Values of the file by column, in s, m, m/s and m/s^2, or rad, rad/s and rad/s^2. The runner reads them
+            when it composes the config, so that a stored run does not need the file.
+        duration: t_f, the last time of the file, in s; None takes it from the file.
     """
 
     kind: Literal["from_file"]
@@ -68,7 +68,7 @@ class FromFileConfig(StrictModel):
         return value
 
     def motion(self) -> Interpolated:
-        """Return what its rows give, of the tip or of the joints."""
+        """Return the interpolated motion of the tip or of the joints."""
         columns = self.columns or {}
         rows = [[columns[name] for name in part] for part in parts_of(list(columns))]  # (orders, k, N)
         return interpolate(np.array(columns["t"]), np.moveaxis(np.array(rows), -1, 0), self.interpolation)
@@ -76,23 +76,23 @@ class FromFileConfig(StrictModel):
 
 @dataclass(frozen=True)
 class TipMotion(TrackedMotion):
-    """A motion of the tip through rows; see Trajectory for the attributes.
+    """Motion of the tip through the rows of a file; see Trajectory for the attributes.
 
     Attributes:
-        rows: The motion, in m.
+        rows: The interpolated motion, in m.
     """
 
     rows: Interpolated
 
     @property
     def start(self) -> FloatArray:
-        """The first row."""
+        """Tip position in the first row."""
         start: FloatArray = self.rows.sample(np.zeros(1))[0, 0]
         return start
 
     @property
     def goal(self) -> FloatArray:
-        """The last row."""
+        """Tip position in the last row."""
         goal: FloatArray = self.rows.sample(self.rows.times[-1:])[0, 0]
         return goal
 
@@ -102,7 +102,7 @@ class TipMotion(TrackedMotion):
         return self.rows.duration
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the motion, at rest in the last row after t_f."""
+        """Return the motion; after t_f it rests at the last row."""
         return self.rows.sample(times)
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
@@ -112,10 +112,10 @@ class TipMotion(TrackedMotion):
 
 
 class JointRows(Interpolated):
-    """A motion of the joints through rows, in rad; see JointMotion."""
+    """Motion of the joints through the rows of a file, in rad; see JointMotion."""
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return the motion, at rest in the last row after t_f."""
+        """Return the motion; after t_f it rests at the last row."""
         return self.sample(times)
 
 
@@ -123,15 +123,15 @@ CONFIG = FromFileConfig
 
 
 def build(config: FromFileConfig, _: FloatArray) -> Trajectory:
-    """Make the motion of the tip that a file holds; it starts in its first row."""
+    """Build the motion of the tip from a file; it starts at the first row of the file."""
     return TipMotion(config.motion())
 
 
 def joint_motion(config: FromFileConfig, robot: Robot) -> JointMotion | None:
-    """Make the motion of the joints that a file holds; None where it holds one of the tip.
+    """Build the motion of the joints from a file; return None if the file contains a motion of the tip.
 
     Raises:
-        ConfigError: if it has not as many joints as the robot.
+        ConfigError: if the number of joints differs from that of the robot.
     """
     (positions, *_) = parts_of(list(config.columns or {}))
     if positions == ["x", "y", "z"]:

@@ -17,8 +17,8 @@ class GoalConfig(StrictModel):
     """Config of a goal.
 
     Attributes:
-        kind: Its name in the registry.
-        start: Tip position at t = 0, in m; None is the tip at home.
+        kind: Name of the kind in the registry.
+        start: Tip position at t = 0, in m; None is the tip at the home configuration.
         goal: Goal position of the tip, in m.
     """
 
@@ -29,7 +29,7 @@ class GoalConfig(StrictModel):
 
 @dataclass(frozen=True)
 class Goal(OfTip):
-    """A goal (thesis section 3.3.1); see Trajectory for the attributes."""
+    """Constant goal position (thesis section 3.3.1); see Trajectory for the attributes."""
 
     start: FloatArray
     goal: FloatArray
@@ -38,7 +38,7 @@ class Goal(OfTip):
     tracked: bool = False
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the goal at rest, for every time."""
+        """Return the goal with zero velocity and acceleration for each time."""
         motion = np.zeros((len(times), 3, 3))
         motion[:, 0] = self.goal
         return motion
@@ -52,5 +52,5 @@ CONFIG = GoalConfig
 
 
 def build(config: GoalConfig, start: FloatArray) -> Trajectory:
-    """Make the goal that a config describes; `start` is the tip at t = 0."""
+    """Build the goal that a config describes; `start` is the tip at t = 0."""
     return Goal(start, np.array(config.goal))

@@ -18,8 +18,8 @@ class Impulses:
     """A sequence of impulses, to be convolved with a motion.
 
     Attributes:
-        times: When each comes, ascending from 0, shape (N,), in s.
-        shares: What share of the motion each carries, shape (N,); their sum is 1.
+        times: Time of each impulse, ascending from 0, shape (N,), in s.
+        shares: Amplitude A_i of each impulse, shape (N,), with sum 1.
     """
 
     times: FloatArray
@@ -27,38 +27,39 @@ class Impulses:
 
     @property
     def delay(self) -> float:
-        """Time by which the motion ends later, in s."""
+        """Time that the impulses add to the motion, in s."""
         return float(self.times[-1])
 
     def residual(self, frequency: float, damping_ratio: float = 0.0) -> float:
-        r"""Return the vibration of a mode when a shaped motion ends, over that when the motion itself does.
+        r"""Return the residual vibration of a mode after the shaped motion, relative to that after the unshaped motion.
 
         With omega = 2 pi f and omega_d = omega sqrt(1 - zeta^2), Singer and Seering (1990):
 
         .. math:: V = e^{-\zeta \omega t_N} \left| \sum_i A_i e^{\zeta \omega t_i} e^{j \omega_d t_i} \right|
 
-        Undamped, it is |cos(pi/2 f/f_0)| for ZV made for f_0, and its square for ZVD.
+        Without damping, it is |cos(pi/2 f/f_0)| for ZV at the design frequency f_0, and its square for ZVD.
 
         Args:
-            frequency: f of the mode, undamped, in Hz.
-            damping_ratio: zeta of the mode, below 1.
+            frequency: Undamped frequency f of the mode, in Hz.
+            damping_ratio: Damping ratio zeta of the mode, below 1.
         """
         rate = 2.0 * np.pi * frequency * (damping_ratio + 1j * np.sqrt(1.0 - damping_ratio**2))
         return float(np.abs(self.shares @ np.exp(rate * self.times - rate.real * self.delay)))
 
 
 def zero_vibration(kind: ShaperKind, frequency: float, damping_ratio: float) -> Impulses:
-    r"""Return the impulses after which a mode is at rest (Singer and Seering 1990).
+    r"""Return the impulses that leave a mode at rest: ZV or ZVD, respectively (Singer and Seering 1990).
 
     .. math:: A_i = \frac{1}{1 + k}, \frac{k}{1 + k}, \qquad A_i = \frac{1}{(1 + k)^2}, \frac{2 k}{(1 + k)^2},
         \frac{k^2}{(1 + k)^2}, \qquad k = e^{-\zeta \pi / \sqrt{1 - \zeta^2}}
 
-    half a damped period apart: ZV, and ZVD, whose vibration has no slope over frequency and damping either.
+    The impulses are half a damped period apart. With ZVD, the derivatives of the residual vibration by frequency and
+    damping are also zero.
 
     Args:
-        kind: Which of them.
-        frequency: Frequency of the mode, undamped, in Hz.
-        damping_ratio: Its damping ratio, below 1.
+        kind: ZV or ZVD.
+        frequency: Undamped frequency of the mode, in Hz.
+        damping_ratio: Damping ratio of the mode, below 1.
     """
     root = np.sqrt(1.0 - damping_ratio**2)
     half, k = 0.5 / (frequency * root), np.exp(-damping_ratio * np.pi / root)
@@ -69,7 +70,7 @@ def zero_vibration(kind: ShaperKind, frequency: float, damping_ratio: float) -> 
 
 
 def in_turn(sequences: Sequence[Impulses]) -> Impulses:
-    """Return sequences convolved with each other: each mode that one of them leaves at rest stays so."""
+    """Return the convolution of sequences; it leaves each mode at rest that one of the sequences leaves at rest."""
     pairs = [list(zip(each.times, each.shares, strict=True)) for each in sequences]
     both = sorted((sum(t for t, _ in each), prod(share for _, share in each)) for each in product(*pairs))
     return Impulses(*np.array(both).T)

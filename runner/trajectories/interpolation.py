@@ -16,11 +16,11 @@ _LEAST, _PER_ROW, _MOST = 512, 64, 4096  # samples
 
 @dataclass(frozen=True)
 class Interpolated:
-    """A motion through rows, from rest to rest.
+    """Interpolated motion through rows, from rest to rest.
 
     Attributes:
         times: Time of each row, ascending from 0, shape (N,), in s.
-        orders: The motion and its first two derivatives, as functions of time.
+        orders: Position and its first two derivatives, as functions of time.
     """
 
     times: FloatArray
@@ -33,11 +33,11 @@ class Interpolated:
 
     @property
     def samples(self) -> int:
-        """Number of even samples between which its path bends but once."""
+        """Number of equal time intervals, so short that the path bends only once in each of them."""
         return min(max(_PER_ROW * (len(self.times) - 1), _LEAST), _MOST)
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the motion and two derivatives, shape (T, 3, k); it stays in the last row after its duration."""
+        """Return the motion and two derivatives, shape (T, 3, k); after its duration it rests at the last row."""
         within = np.clip(times, 0.0, self.duration)
         motion: FloatArray = np.stack([order(within) for order in self.orders], axis=1)
         motion[times > self.duration, 1:] = 0.0
@@ -45,16 +45,16 @@ class Interpolated:
 
 
 def interpolate(times: FloatArray, rows: FloatArray, kind: Interpolation) -> Interpolated:
-    """Return the motion through rows, which pass each at its time.
+    """Return a motion that passes each row at its time.
 
-    `spline` is the cubic spline through positions alone with velocity 0 at both ends: velocities and accelerations are
-    continuous. `hermite` takes velocities as given, and accelerations where there are any: cubic between rows, with
+    `spline` is the cubic spline through the positions with zero velocity at both ends. Its velocities and accelerations
+    are continuous. `hermite` also uses the given velocities, and accelerations if given. It is cubic between rows, with
     continuous velocities, or of fifth order, with continuous accelerations.
 
     Args:
         times: Time of each row, shape (N,), in s.
         rows: Positions and given derivatives, shape (N, orders, k).
-        kind: Which of them.
+        kind: Kind of interpolation.
     """
     if kind == "spline":
         spline = splines.CubicSpline(times, rows[:, 0], bc_type="clamped")

@@ -32,7 +32,7 @@ def configuration_of(key: str, value: Configuration, robot: Robot) -> FloatArray
     """Return a configuration, shape (nq,), in rad.
 
     Raises:
-        ConfigError: if a list has another length than the robot has joints; names the joints.
+        ConfigError: if the length of a list differs from the number of joints; the message contains their names.
     """
     return np.array(expand(key, value, robot.model.joint_names))
 
@@ -43,7 +43,7 @@ def start_of(value: Configuration | None, robot: Robot) -> FloatArray:
 
 
 class JointMotion(Protocol):
-    """A desired motion of a robot's joints, from rest to rest."""
+    """Desired motion of the joints of a robot, from rest to rest."""
 
     @property
     def duration(self) -> float:
@@ -52,24 +52,24 @@ class JointMotion(Protocol):
 
     @property
     def samples(self) -> int:
-        """Number of even samples so close that the tip's path bends but once between two."""
+        """Number of equal time intervals, so short that the path of the tip bends only once in each of them."""
         ...
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return q, dq/dt and d2q/dt2, shape (T, 3, nq): rows in rad, rad/s, rad/s^2; m where a joint slides."""
+        """Return q, dq/dt and d2q/dt2, shape (T, 3, nq), in rad, rad/s and rad/s^2; m for prismatic joints."""
         ...
 
 
 @dataclass(frozen=True)
 class TipOfJoints(TrackedMotion):
-    r"""The motion of the tip that follows from one of the joints; see Trajectory for the attributes.
+    r"""Motion of the tip that follows from a motion of the joints; see Trajectory for the attributes.
 
     .. math:: x = f(q), \qquad \dot x = J \dot q, \qquad \ddot x = J \ddot q + \dot J \dot q
 
     Attributes:
         robot: The robot.
-        joints: The motion of its joints.
-        ignore_base_rotation: Whether riding stages keep the orientation of home.
+        joints: The motion of the joints.
+        ignore_base_rotation: True if the bases of mounted stages keep their orientation at the home configuration.
     """
 
     robot: Robot
@@ -90,13 +90,13 @@ class TipOfJoints(TrackedMotion):
 
     @property
     def goal(self) -> FloatArray:
-        """Tip position where the joints rest in the end."""
+        """Tip position at the end of the joint motion."""
         goal: FloatArray = self.sample(np.array([self.duration]))[0, 0]
         return goal
 
     @property
     def duration(self) -> float:
-        """Time t_f of the joints' motion, in s."""
+        """Time t_f of the joint motion, in s."""
         return self.joints.duration
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
@@ -104,7 +104,7 @@ class TipOfJoints(TrackedMotion):
         return self.joints.sample_joints(times)
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the motion of the tip, at rest at the end after t_f."""
+        """Return the motion of the tip; it rests after t_f."""
         joints = self.joints.sample_joints(times)
         robot = self.robot
         if not self.ignore_base_rotation:
@@ -116,7 +116,7 @@ class TipOfJoints(TrackedMotion):
         return motion
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
-        """Return the distance to the curve of the tip; see SampledCurve for what is between its samples."""
+        """Return the distance to the path of the tip, interpolated by SampledCurve."""
         return distance_to_curve(points, self._curve.sample, self._samples)
 
     @cached_property
@@ -129,7 +129,7 @@ class TipOfJoints(TrackedMotion):
 
 
 def _tip_motion(model: RobotModel, joints: FloatArray) -> FloatArray:
-    """Return position, velocity and acceleration of an arm's tip, shape (T, 3, 3), from those of its joints."""
+    """Return position, velocity and acceleration of the tip, shape (T, 3, 3), from those of the joints."""
     arm, data, tip = model.pin_model, model.pin_model.createData(), model.tip_frame
     motion = np.empty((len(joints), 3, 3))
     for row, (q, dq, ddq) in zip(motion, np.ascontiguousarray(joints), strict=True):

@@ -19,11 +19,11 @@ class JointQuinticConfig(StrictModel):
     """Config of a quintic between configurations.
 
     Attributes:
-        kind: Its name in the registry.
-        start_configuration: Joint positions at t = 0, in rad; m where a joint slides. One for all joints or a list with
-            one for each; None is home.
-        goal_configuration: Joint positions at t_f, in rad; m where a joint slides. One for all joints or a list with
-            one for each.
+        kind: Name of the kind in the registry.
+        start_configuration: Joint positions at t = 0, in rad; m for prismatic joints. One value for all joints, or a
+            list with one for each joint; None is the home configuration.
+        goal_configuration: Joint positions at t_f, in rad; m for prismatic joints. One value for all joints, or a list
+            with one for each joint.
         duration: t_f, in s.
     """
 
@@ -35,15 +35,15 @@ class JointQuinticConfig(StrictModel):
 
 @dataclass(frozen=True)
 class JointQuintic:
-    r"""All joints from rest to rest at once, with u = t / t_f; see JointMotion for the attributes.
+    r"""Synchronous motion of all joints from rest to rest, with u = t / t_f; see JointMotion for the attributes.
 
     .. math:: q(t) = q_0 + (q_f - q_0) (10 u^3 - 15 u^4 + 6 u^5)
 
-    Peak speed is 1.875 |q_f - q_0| / t_f at half time, joint by joint.
+    The peak speed of each joint is 1.875 |q_f - q_0| / t_f, at half time.
 
     Attributes:
         start: q_0, shape (nq,), in rad.
-        goal: q_f, likewise.
+        goal: q_f, shape (nq,), in rad.
         duration: t_f, in s.
     """
 
@@ -53,7 +53,7 @@ class JointQuintic:
     samples: int = _SAMPLES
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return the motion, at rest at the goal after t_f."""
+        """Return the motion; after t_f it rests at the goal."""
         return quintic_motion(self.start, self.goal, self.duration, times)
 
 
@@ -61,10 +61,10 @@ CONFIG = JointQuinticConfig
 
 
 def joint_motion(config: JointQuinticConfig, robot: Robot) -> JointMotion:
-    """Make the motion that a config describes.
+    """Build the motion that a config describes.
 
     Raises:
-        ConfigError: for a configuration that has not as many values as the robot has joints.
+        ConfigError: if the length of a configuration differs from the number of joints.
     """
     goal = configuration_of("trajectory.goal_configuration", config.goal_configuration, robot)
     return JointQuintic(start_of(config.start_configuration, robot), goal, config.duration)

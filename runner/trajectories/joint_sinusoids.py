@@ -16,7 +16,7 @@ from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import Configuration, JointMotion, start_of
 
 _SAMPLES = 64  # in a period of the highest harmonic
-_AT_ONCE = 2_000_000  # sines that are in memory at the same time
+_AT_ONCE = 2_000_000  # sines in memory at the same time
 
 Pair = Annotated[list[float], Field(min_length=2, max_length=2)]
 
@@ -25,18 +25,18 @@ class JointSinusoidsConfig(StrictModel):
     """Config of sums of sinusoids about a configuration.
 
     Attributes:
-        kind: Its name in the registry.
-        start_configuration: Configuration about which the joints swing, in rad; m where a joint slides. One for all
-            joints or a list with one for each; None is home.
+        kind: Name of the kind in the registry.
+        start_configuration: Configuration about which the joints oscillate, in rad; m for prismatic joints. One value
+            for all joints, or a list with one for each joint; None is the home configuration.
         frequency: Fundamental frequency, in Hz.
-        harmonics: Number of harmonics, the fundamental included.
-        amplitude: Largest displacement of each joint that drawn coefficients can give, in rad; m where a joint slides.
-            One for all joints or a list with one for each.
-        seed: Seed of the drawn coefficients.
-        coefficients: For each joint a list with the factor of sine and of cosine of each harmonic, in rad; m where a
-            joint slides. None draws them.
-        ramp: Time in which the swing grows from rest, and comes to rest, in s.
-        duration: t_f, both ramps included, in s.
+        harmonics: Number of harmonics, including the fundamental.
+        amplitude: Upper bound of the displacement of each joint with random coefficients, in rad; m for prismatic
+            joints. One value for all joints, or a list with one for each joint.
+        seed: Seed of the random coefficients.
+        coefficients: For each joint, a list with the sine and cosine coefficients of each harmonic, in rad; m for
+            prismatic joints. None draws random coefficients.
+        ramp: Time in which the oscillation grows from rest, and in which it decays to rest, in s.
+        duration: t_f, including both ramps, in s.
     """
 
     kind: Literal["joint_sinusoids"]
@@ -60,18 +60,18 @@ class JointSinusoidsConfig(StrictModel):
 
 @dataclass(frozen=True)
 class JointSinusoids:
-    r"""A Fourier series about a configuration, behind a window that opens and closes; see JointMotion.
+    r"""Fourier series about a configuration, multiplied by a window; see JointMotion.
 
     .. math:: q_i(t) = q_{0i} + w(t) \sum_k a_{ik} \sin k \omega (t - t_r) + b_{ik} \cos k \omega (t - t_r)
 
     is periodic between the ramps (Swevers, Ganseman, Tuekel, De Schutter and Van Brussel, IEEE Transactions on Robotics
-    and Automation 13(5), 1997, without the window). w is the quintic blend from 0 to 1 in the ramp's time t_r, and back
-    at the end, so that the arm starts and ends at rest in q_0.
+    and Automation 13(5), 1997, without the window). The window w is the quintic blend from 0 to 1 in the ramp time t_r,
+    and back to 0 at the end. So the arm starts and ends at rest in q_0.
 
     Attributes:
         centre: q_0, shape (nq,), in rad.
         coefficients: a and b, shape (nq, N, 2), in rad.
-        omega: Of the fundamental, in rad/s.
+        omega: Fundamental frequency, in rad/s.
         ramp: t_r, in s.
         duration: t_f, in s.
     """
@@ -84,12 +84,12 @@ class JointSinusoids:
 
     @property
     def samples(self) -> int:
-        """Samples by the highest harmonic."""
+        """Number of equal time intervals, in proportion to the highest harmonic; see JointMotion."""
         highest = self.coefficients.shape[1] * self.omega / (2.0 * np.pi)
         return int(np.ceil(_SAMPLES * (self.duration * highest + 2.0)))
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return the motion, at rest in q_0 after t_f."""
+        """Return the motion; after t_f it rests in q_0."""
         harmonics = self.coefficients.shape[1]
         parts = np.array_split(times, len(times) * harmonics // _AT_ONCE + 1)
         return np.concatenate([self._sample(part) for part in parts])
@@ -124,10 +124,10 @@ CONFIG = JointSinusoidsConfig
 
 
 def joint_motion(config: JointSinusoidsConfig, robot: Robot) -> JointMotion:
-    """Make the motion that a config describes.
+    """Build the motion that a config describes.
 
     Raises:
-        ConfigError: for values that are not as many as the robot has joints.
+        ConfigError: if the number of values differs from the number of joints.
     """
     names = robot.model.joint_names
     if config.coefficients is None:
@@ -146,9 +146,9 @@ def joint_motion(config: JointSinusoidsConfig, robot: Robot) -> JointMotion:
 
 
 def _draw(amplitude: FloatArray, harmonics: int, generator: np.random.Generator) -> FloatArray:
-    """Return coefficients drawn evenly, scaled so that no joint can leave its amplitude, shape (nq, N, 2)."""
+    """Return uniformly drawn coefficients, scaled so that no joint exceeds its amplitude, shape (nq, N, 2)."""
     drawn = generator.uniform(-1.0, 1.0, (len(amplitude), harmonics, 2))
-    largest = np.linalg.norm(drawn, axis=2).sum(axis=1)  # all harmonics at their peaks at once
+    largest = np.linalg.norm(drawn, axis=2).sum(axis=1)  # all harmonics at their peaks at the same time
     coefficients: FloatArray = drawn * (amplitude / largest)[:, None, None]
     return coefficients
 

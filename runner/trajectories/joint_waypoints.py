@@ -16,20 +16,20 @@ from runner.trajectories.joint_motion import Configuration, JointMotion, configu
 from runner.trajectories.waypoints import check_time_shares, least_jerk_spline, passing_times
 
 _SAMPLES = 256  # between two configurations
-_CLOSEST = 1e-9  # share of all joint motion, below which two configurations are one
+_CLOSEST = 1e-9  # fraction of the total joint motion below which two configurations count as equal
 
 
 class JointWaypointsConfig(StrictModel):
-    """Config of a motion through configurations; the first is the start.
+    """Config of a motion from the start through configurations.
 
     Attributes:
-        kind: Its name in the registry.
-        start_configuration: Joint positions at t = 0, in rad; m where a joint slides. One for all joints or a list with
-            one for each; None is home.
-        configurations: The configurations after the start, in rad; m where a joint slides. Each one value for all
-            joints or a list with one for each.
-        time_shares: When each of them is passed, as share of the duration, ascending to 1; None makes the time between
-            two configurations proportional to the norm of their difference.
+        kind: Name of the kind in the registry.
+        start_configuration: Joint positions at t = 0, in rad; m for prismatic joints. One value for all joints, or a
+            list with one for each joint; None is the home configuration.
+        configurations: Configurations after the start, in rad; m for prismatic joints. Each is one value for all
+            joints, or a list with one for each joint.
+        time_shares: Time of each configuration as a fraction of the duration, ascending to 1. None makes the time
+            between two configurations proportional to the norm of their difference.
         duration: t_f, in s.
     """
 
@@ -54,12 +54,12 @@ class JointWaypointsConfig(StrictModel):
 
 @dataclass(frozen=True)
 class JointWaypoints:
-    """The joint motion of least jerk through configurations at given times; see Waypoints, and JointMotion.
+    """Minimum-jerk motion of the joints through configurations at given times; see Waypoints and JointMotion.
 
     Attributes:
         spline: Joint positions over time, in rad and s.
         duration: t_f, in s.
-        samples: Samples of all parts together.
+        samples: Number of equal time intervals; see JointMotion.
     """
 
     spline: "splines.BSpline"
@@ -67,7 +67,7 @@ class JointWaypoints:
     samples: int
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return the motion, at rest in the last configuration after t_f."""
+        """Return the motion; after t_f it rests in the last configuration."""
         within = np.clip(times, 0.0, self.duration)
         return np.stack([self.spline(within, order) for order in range(3)], axis=1)
 
@@ -76,11 +76,11 @@ CONFIG = JointWaypointsConfig
 
 
 def joint_motion(config: JointWaypointsConfig, robot: Robot) -> JointMotion:
-    """Make the motion that a config describes.
+    """Build the motion that a config describes.
 
     Raises:
-        ConfigError: for a configuration that has not as many values as the robot has joints, or two in succession that
-            are the same.
+        ConfigError: if the length of a configuration differs from the number of joints, or if two consecutive
+            configurations are equal.
     """
     given = [
         configuration_of(f"trajectory.configurations.{n}", value, robot)

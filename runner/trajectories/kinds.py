@@ -13,14 +13,14 @@ from runner.plugins.guard import Asked, Guard, Method, checked, describe_fault, 
 from runner.plugins.registry import KindConfig, Registry
 from runner.trajectories.trajectory import OfTip, Trajectory
 
-if TYPE_CHECKING:  # they import Pinocchio, which who reads a stored run does not need
+if TYPE_CHECKING:  # these modules import Pinocchio, which readers of stored runs do not need
     from runner.robots.robot import Robot
     from runner.trajectories.joint_motion import JointMotion
 
 
 @runtime_checkable
 class HasStart(Protocol):
-    """A config of trajectories that may say where they start; else they do where the tip is at home."""
+    """Config of a trajectory with an optional start."""
 
     start: list[float] | None
     """Tip position at t = 0, in m; None is the tip at home."""
@@ -28,7 +28,7 @@ class HasStart(Protocol):
 
 @runtime_checkable
 class HasGoal(Protocol):
-    """A config of trajectories that end at a point, which must be within reach."""
+    """Config of a trajectory with a goal, which must be within reach."""
 
     goal: list[float] | None
     """Tip position at the end, in m."""
@@ -39,15 +39,15 @@ class TrajectoryFeatures(Features):
     """Optional members of the module of a trajectory.
 
     Attributes:
-        joint_motion: Function of the config and the robot that returns the motion of the robot's joints that the config
-            describes, or None if it describes a motion of the tip.
+        joint_motion: Function of the config and the robot; returns the motion of the joints, or None if the config
+            describes a motion of the tip.
     """
 
     joint_motion: "Callable[[Any, Robot], JointMotion | None]" = lambda config, robot: None
 
 
 class _ByRun(Method):
-    """A method that is asked run by run if it gets the points of several runs."""
+    """Rule for a method that is called once for each run if it receives the points of several runs."""
 
     def bind(self, asked: Asked) -> Any:
         """Return the member of the proxy."""
@@ -68,10 +68,10 @@ _GUARD = Guard(
 
 
 def guard_trajectory(trajectory: Any, *_: object) -> Any:
-    """Return a user-supplied trajectory behind its checks, with copies of its points and times.
+    """Return a guarded user-supplied trajectory, with copies of its points and times.
 
     Raises:
-        ConfigError: if these or the motion are wrong; names the place.
+        ConfigError: if the points, the times or the motion are invalid; the message contains the line of the method.
     """
     guarded, problems = _GUARD(trajectory), list[str]()
     try:
@@ -102,16 +102,16 @@ def guard_trajectory(trajectory: Any, *_: object) -> Any:
 
 
 class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):
-    """The kinds of trajectories; `build` gives each the tip position at t = 0, shape (3,), in m."""
+    """Kinds of trajectories; `build` also takes the tip position at t = 0, shape (3,), in m."""
 
     def features(self, kind: str) -> TrajectoryFeatures:
         """Return the optional members of the module of a kind."""
         return read_features(TrajectoryFeatures, self.module(kind))
 
     def joint_motion(self, config: KindConfig, robot: "Robot") -> "JointMotion | None":
-        """Return the motion of a robot's joints that a built-in kind describes, or None; see TrajectoryFeatures.
+        """Return the joint motion of a built-in kind, or None; see TrajectoryFeatures.
 
         Raises:
-            ConfigError: if the config does not fit the robot.
+            ConfigError: if the config does not match the robot.
         """
         return self.features(config.kind).joint_motion(config, robot) if self.is_ours(config.kind) else None

@@ -19,8 +19,8 @@ class LineConfig(StrictModel):
     """Config of a line.
 
     Attributes:
-        kind: Its name in the registry.
-        start: A, the tip position at t = 0, in m; None is the tip at home.
+        kind: Name of the kind in the registry.
+        start: A, the tip position at t = 0, in m; None is the tip at the home configuration.
         goal: B, the tip position half a period later, in m.
         duration: Period T, from A to B and back, in s.
     """
@@ -33,16 +33,16 @@ class LineConfig(StrictModel):
 
 @dataclass(frozen=True)
 class Line(TrackedMotion):
-    r"""The periodic line of the xArm7 report, between its points P_A and P_B; see Trajectory for the attributes.
+    r"""Periodic line of the xArm7 report between its points P_A and P_B; see Trajectory for the attributes.
 
     The report ("Trajectory planning") slows the tip down towards both ends by "a sinusoidal function" of its
-    coordinate P_ey and prints no formula. Read as the harmonic motion that starts at rest in A, with D = B - A:
+    coordinate P_ey and prints no formula. It is interpreted as a harmonic motion from rest in A, with D = B - A:
 
     .. math:: x(t) = A + \tfrac{1}{2} D (1 - \cos(2 \pi t / T))
 
-    Its speed is then such a function of the place: proportional to the sine whose cosine is the place. Peak speed is
-    pi |D| / T half way, peak acceleration 2 pi^2 |D| / T^2 at both ends, also at t = 0, where the arm stands at rest:
-    acceleration steps there.
+    The position is then a cosine of the phase, and the speed is the sine of the same phase. The peak speed is
+    pi |D| / T, half way. The peak acceleration is 2 pi^2 |D| / T^2, at both ends. The acceleration has a step at t = 0,
+    because the arm is at rest before.
 
     Attributes:
         end: B, shape (3,), in m.
@@ -59,7 +59,7 @@ class Line(TrackedMotion):
         return self.duration
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the motion, which goes on after a period."""
+        """Return the motion, which continues after one period."""
         rate = 2.0 * np.pi / self.duration
         D = self.end - self.start
         motion = np.empty((len(times), 3, 3))
@@ -77,10 +77,10 @@ CONFIG = LineConfig
 
 
 def build(config: LineConfig, start: FloatArray) -> Trajectory:
-    """Make the line that a config describes; `start` is the tip at t = 0.
+    """Build the line that a config describes; `start` is the tip at t = 0.
 
     Raises:
-        ConfigError: if it has no length.
+        ConfigError: if the length of the line is zero.
     """
     end = np.array(config.goal)
     if np.array_equal(start, end):

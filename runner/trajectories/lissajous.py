@@ -21,12 +21,12 @@ class LissajousConfig(StrictModel):
     """Config of a Lissajous figure, along the x, y and z axes of the base frame.
 
     Attributes:
-        kind: Its name in the registry.
-        start: Tip position at t = 0, in m; None is the tip at home.
-        amplitudes: Half of the extent along each axis, in m.
-        frequencies: Sines along each axis in one figure, 100 at most.
+        kind: Name of the kind in the registry.
+        start: Tip position at t = 0, in m; None is the tip at the home configuration.
+        amplitudes: Half the extent of the figure along each axis, in m.
+        frequencies: Number of sine periods along each axis in one figure, at most 100.
         phases: Phase of each sine at t = 0, in rad.
-        easing: "quintic" for one figure from rest to rest, "none" for an even phase, over and over.
+        easing: "quintic" for one figure from rest to rest, "none" for a periodic motion with constant phase rate.
         duration: Time of one figure, in s.
     """
 
@@ -57,14 +57,14 @@ class LissajousConfig(StrictModel):
 
 @dataclass(frozen=True)
 class Lissajous:
-    r"""A Lissajous figure: with theta = 2 pi u, along axis i, it is as follows.
+    r"""A Lissajous figure, with theta = 2 pi u.
 
     .. math:: c_i(u) = x_{0i} + A_i (\sin(n_i \theta + \varphi_i) - \sin \varphi_i)
 
     Attributes:
         start: x_0, shape (3,), in m.
         amplitudes: A, shape (3,), in m.
-        frequencies: n, whole numbers, shape (3,).
+        frequencies: n, integers, shape (3,).
         phases: varphi, shape (3,), in rad.
     """
 
@@ -74,7 +74,7 @@ class Lissajous:
     phases: FloatArray
 
     def derivatives(self, u: FloatArray) -> FloatArray:
-        """Return point and derivatives in u, shape (T, 3, 3), in m."""
+        """Return the point and its first two derivatives by u, shape (T, 3, 3), in m."""
         rate = 2.0 * np.pi * self.frequencies
         phase = np.outer(u, rate) + self.phases
         sine = self.amplitudes * np.sin(phase)
@@ -88,7 +88,7 @@ class Lissajous:
         )
 
     def distance(self, points: FloatArray) -> FloatArray:
-        """Return each point's distance to the figure, shapes (..., 3) to (...), in m."""
+        """Return the distance of each point to the figure, shapes (..., 3) to (...), in m."""
         samples = _SAMPLES * int(self.frequencies.max())
         return distance_to_curve(points, self.derivatives, np.linspace(0.0, 1.0, samples + 1))
 
@@ -97,6 +97,6 @@ CONFIG = LissajousConfig
 
 
 def build(config: LissajousConfig, start: FloatArray) -> Trajectory:
-    """Make the Lissajous figure that a config describes; `start` is the tip at t = 0."""
+    """Build the Lissajous figure that a config describes; `start` is the tip at t = 0."""
     values = (np.array(value, dtype=float) for value in (config.amplitudes, config.frequencies, config.phases))
     return ClosedFigure(Lissajous(start, *values), config.duration, config.easing)

@@ -24,24 +24,24 @@ def distance_to_segment(points: FloatArray, start: FloatArray, end: FloatArray) 
     return np.sqrt(squared)
 
 
-_TABLE = 50_000  # distances of points to samples at a time
-_SEARCHED = 20_000  # points whose nearest places are searched together
+_TABLE = 50_000  # distances from points to samples in one table
+_SEARCHED = 20_000  # points in one search
 _MAX_STEPS = 60
-_CONVERGED = 1e-14  # share of the curve's range of parameters
+_CONVERGED = 1e-14  # step size at convergence, as a fraction of the parameter range of the curve
 
 
 def distance_to_curve(points: FloatArray, curve: Callable[[FloatArray], FloatArray], samples: FloatArray) -> FloatArray:
-    """Return each point's distance to a curve, to rounding, shapes (..., 3) to (...), in m.
+    """Return the distance of each point to a curve, exact to rounding, shapes (..., 3) to (...), in m.
 
-    Every sample that is nearer than its two neighbours, and near enough to have the nearest place beside it, starts a
-    search between them for the place where the line to the point is perpendicular to the curve; the nearest place
-    counts. Samples must lie so close that between two of them the distance has one minimum, and that the curve is no
-    longer than twice the way straight on.
+    A search starts at each sample that is nearer to the point than both neighbours and close enough to be next to the
+    nearest point of the curve. It finds, between the neighbours, where the line to the point is perpendicular to the
+    curve. The smallest distance counts. The samples must be dense: between two samples the distance has one minimum,
+    and the curve is at most twice as long as the straight segment.
 
     Args:
         points: The points, shape (..., 3), in m.
-        curve: From parameters, shape (N,), to point and first two derivatives, shape (N, 3, 3).
-        samples: Ascending parameters, from the curve's start to its end, shape (M,).
+        curve: Function of the parameters, shape (N,); returns points and first two derivatives, shape (N, 3, 3).
+        samples: Ascending parameters from the start of the curve to its end, shape (M,).
     """
     every = points.reshape(-1, 3)
     at_samples = curve(samples)[:, 0]
@@ -73,9 +73,9 @@ def _nearest(
 
 
 def _starts(points: FloatArray, at_samples: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp], FloatArray]:
-    """Return where searches start, as numbers of point and sample, and each point's distance to the nearest sample."""
+    """Return the starts of searches as indices of point and sample, and each point's distance to its nearest sample."""
     squared = np.zeros((len(points), len(at_samples)))
-    for axis in range(3):  # not by a matrix product, which rounds a point by its place among the others
+    for axis in range(3):  # a matrix product would round a point depending on its position in the array
         squared += (points[:, axis, None] - at_samples[:, axis]) ** 2
     nearest: FloatArray = np.sqrt(squared.min(axis=1))
     reach = 2.0 * float(np.linalg.norm(np.diff(at_samples, axis=0), axis=1).max())
@@ -89,10 +89,10 @@ def _starts(points: FloatArray, at_samples: FloatArray) -> tuple[NDArray[np.intp
 def _perpendicular(
     points: FloatArray, curve: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray, enough: float
 ) -> FloatArray:
-    """Return parameters where g = (c - p) . c' vanishes, by Newton steps, or halving where they leave low..high.
+    """Return parameters where g = (c - p) . c' vanishes, by Newton steps, or by bisection if a step leaves low..high.
 
-    It ends with a step that is small enough. It starts in the middle: at a curve's end where the motion rests, c' and
-    so g vanish for every point.
+    The search ends after a step of at most `enough`. It starts in the middle, because at an end of the curve where the
+    motion rests c' is zero, and therefore g is zero for every point.
     """
     place = 0.5 * (low + high)
     searching = np.arange(len(points))

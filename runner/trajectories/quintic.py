@@ -19,8 +19,8 @@ class QuinticConfig(StrictModel):
     """Config of a quintic.
 
     Attributes:
-        kind: Its name in the registry.
-        start: Tip position at t = 0, in m; None is the tip at home.
+        kind: Name of the kind in the registry.
+        start: Tip position at t = 0, in m; None is the tip at the home configuration.
         goal: Tip position at t_f, in m.
         duration: t_f, in s.
     """
@@ -33,13 +33,13 @@ class QuinticConfig(StrictModel):
 
 @dataclass(frozen=True)
 class Quintic(TrackedMotion):
-    r"""The rest-to-rest quintic (thesis eq. 3.39 with its six end conditions); see Trajectory for the attributes.
+    r"""Rest-to-rest quintic (thesis eq. 3.39 with its six end conditions); see Trajectory for the attributes.
 
-    The conditions leave one solution, with D = goal - start and u = t / t_f:
+    The only solution of the conditions, with D = goal - start and u = t / t_f, is
 
     .. math:: x(t) = x_0 + D (10 u^3 - 15 u^4 + 6 u^5)
 
-    Peak speed is 1.875 |D| / t_f at half time.
+    The peak speed is 1.875 |D| / t_f, at half time.
     """
 
     start: FloatArray
@@ -47,7 +47,7 @@ class Quintic(TrackedMotion):
     duration: float
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the motion, at rest at the goal after t_f."""
+        """Return the motion; after t_f it rests at the goal."""
         return quintic_motion(self.start, self.goal, self.duration, times)
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
@@ -59,5 +59,5 @@ CONFIG = QuinticConfig
 
 
 def build(config: QuinticConfig, start: FloatArray) -> Trajectory:
-    """Make the quintic that a config describes; `start` is the tip at t = 0."""
+    """Build the quintic that a config describes; `start` is the tip at t = 0."""
     return Quintic(start, np.array(config.goal), config.duration)

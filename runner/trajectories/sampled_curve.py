@@ -10,14 +10,14 @@ _DEGREE = 5
 
 
 class SampledCurve:
-    """Curve that has the positions and the first two derivatives of some samples.
+    """Curve that interpolates the positions and first two derivatives of samples.
 
-    Between two samples it is a Bezier curve (Farin, Curves and Surfaces for CAGD, 2002, chapter 5), whose derivatives
-    are Bezier curves of the differences of its control points.
+    The curve between two samples is a Bezier curve (Farin, Curves and Surfaces for CAGD, 2002, chapter 5). The
+    derivatives are Bezier curves of the differences of its control points.
 
     Args:
         times: Times of the samples, ascending, shape (N,), in s.
-        samples: Position and two derivatives at each, shape (N, 3, k).
+        samples: Position and two derivatives at each sample, shape (N, 3, k).
     """
 
     def __init__(self, times: FloatArray, samples: FloatArray) -> None:
@@ -37,7 +37,7 @@ class SampledCurve:
         )
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return position and two derivatives at times within those of the samples, shape (T,) to (T, 3, k)."""
+        """Return position and two derivatives at times from the first sample to the last, shapes (T,) to (T, 3, k)."""
         place = np.clip(np.searchsorted(self._times, times, side="right") - 1, 0, len(self._steps) - 1)
         step = self._steps[place][:, None]
         share = (times - self._times[place])[:, None] / step

@@ -11,57 +11,57 @@ from runner.base.arrays import FloatArray
 from runner.trajectories.impulses import Impulses
 from runner.trajectories.trajectory import OfTip, Trajectory
 
-if TYPE_CHECKING:  # readers of stored runs use Shifted, and do without the simulator
+if TYPE_CHECKING:  # readers of stored runs use Shifted and do not need the simulator
     from runner.trajectories.joint_motion import JointMotion
 
 
 @dataclass(frozen=True)
 class DerivedMotion(OfTip):
-    """A desired motion of the tip made of another, which it follows in what it does not change; see Trajectory.
+    """Desired motion of the tip derived from another one, whose properties are the defaults; see Trajectory.
 
     Attributes:
-        motion: The motion.
+        motion: The original motion.
     """
 
     motion: Trajectory
 
     @property
     def start(self) -> FloatArray:
-        """Start of the motion."""
+        """Start of the original motion."""
         return self.motion.start
 
     @property
     def goal(self) -> FloatArray | None:
-        """Goal of the motion."""
+        """Goal of the original motion."""
         return self.motion.goal
 
     @property
     def duration(self) -> float:
-        """Time of the motion, in s."""
+        """Duration of the original motion, in s."""
         return self.motion.duration
 
     @property
     def run_duration(self) -> float:
-        """Time of a run, in s."""
+        """Default duration of a run, in s."""
         return self.motion.run_duration
 
     @property
     def tracked(self) -> bool:
-        """Whether there is a motion to track."""
+        """True if the original motion is tracked."""
         return self.motion.tracked
 
 
 @dataclass(frozen=True)
 class Shaped(DerivedMotion):
-    r"""A desired motion of the tip, convolved with impulses; see Trajectory for the attributes.
+    r"""Desired motion of the tip, convolved with impulses; see Trajectory for the attributes.
 
     .. math:: x_s(t) = \sum_i A_i x(t - t_i)
 
-    and so its velocity and acceleration, at exact times, whatever the ticks; each x rests at the start before its time.
-    The path is that of the motion as it is asked for, from which a shaped motion strays where it is curved.
+    The same sum gives velocity and acceleration. The times t_i are exact, not rounded to ticks, and x(t) for t < 0 is
+    the start at rest. The path is that of the original motion; a shaped motion deviates from a curved path.
 
     Attributes:
-        motion: The motion, which comes to rest.
+        motion: The original motion, which ends at rest.
         impulses: The impulses.
     """
 
@@ -69,12 +69,12 @@ class Shaped(DerivedMotion):
 
     @property
     def duration(self) -> float:
-        """Time after which the motion rests, in s: later by the last impulse."""
+        """Duration of the original motion plus the delay of the last impulse, in s."""
         return self.motion.duration + self.impulses.delay
 
     @property
     def run_duration(self) -> float:
-        """Time of a run, in s, longer by as much."""
+        """Default duration of a run plus the delay of the last impulse, in s."""
         return self.motion.run_duration + self.impulses.delay
 
     def sample(self, times: FloatArray) -> FloatArray:
@@ -82,16 +82,16 @@ class Shaped(DerivedMotion):
         return _convolved(self.motion.sample, self.motion.start, self.impulses, times)
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
-        """Return the distance to the path of the motion as it is asked for."""
+        """Return the distance to the path of the original motion."""
         return self.motion.distance_to_path(points)
 
 
 @dataclass(frozen=True)
 class ShapedJoints:
-    """A desired motion of the joints, convolved with impulses; see JointMotion, and Shaped.
+    """Desired motion of the joints, convolved with impulses; see JointMotion and Shaped.
 
     Attributes:
-        motion: The motion.
+        motion: The original motion.
         impulses: The impulses.
     """
 
@@ -100,12 +100,12 @@ class ShapedJoints:
 
     @property
     def duration(self) -> float:
-        """Time after which the joints rest, in s: later by the last impulse."""
+        """Duration of the original motion plus the delay of the last impulse, in s."""
         return self.motion.duration + self.impulses.delay
 
     @property
     def samples(self) -> int:
-        """As many in a second as the motion has."""
+        """Number of time intervals, as many per second as in the original motion."""
         return ceil(self.motion.samples * self.duration / self.motion.duration)
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
@@ -117,7 +117,7 @@ class ShapedJoints:
 def _convolved(
     sample: Callable[[FloatArray], FloatArray], start: FloatArray, impulses: Impulses, times: FloatArray
 ) -> FloatArray:
-    """Return a motion with two derivatives, shape (T, 3, k), convolved with impulses; at rest at its start before."""
+    """Return a motion with two derivatives, shape (T, 3, k), convolved with impulses; it rests before t = 0."""
     motion = np.zeros((len(times), 3, len(start)))
     for at, share in zip(impulses.times, impulses.shares, strict=True):
         late = times - at
@@ -130,26 +130,26 @@ def _convolved(
 
 @dataclass(frozen=True)
 class Shifted(DerivedMotion):
-    """A desired motion less a constant offset; see Trajectory.
+    """Desired motion minus a constant offset; see Trajectory.
 
     Attributes:
-        offset: What is subtracted from its positions, shape (3,), in m.
+        offset: Offset that is subtracted from the positions, shape (3,), in m.
     """
 
     offset: FloatArray
 
     @property
     def start(self) -> FloatArray:
-        """Start of the motion, shifted."""
+        """Shifted start of the original motion."""
         return self.motion.start - self.offset
 
     @property
     def goal(self) -> FloatArray | None:
-        """Goal of the motion, shifted."""
+        """Shifted goal of the original motion."""
         return None if self.motion.goal is None else self.motion.goal - self.offset
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the motion, shifted."""
+        """Return the shifted motion."""
         motion = self.motion.sample(times)
         motion[:, 0] -= self.offset
         return motion

@@ -16,15 +16,15 @@ from runner.trajectories.vectors import Direction, InPlane, Point, plane_axes
 
 
 class SquareConfig(StrictModel):
-    """Config of a square, which starts at a corner.
+    """Config of a square whose first corner is the start.
 
     Attributes:
-        kind: Its name in the registry.
-        start: Tip position at t = 0, in m; None is the tip at home.
+        kind: Name of the kind in the registry.
+        start: Tip position at t = 0, in m; None is the tip at the home configuration.
         half_edge: Half the length of an edge, in m.
-        normal: Axis about which the square is gone round counter-clockwise, of any length.
+        normal: Axis of the counter-clockwise motion; the length of the vector has no effect.
         edge_direction: Direction of the first edge, perpendicular to the normal, of any length.
-        duration: t_f, the time of all four edges, in s.
+        duration: Time t_f of all four edges, in s.
     """
 
     kind: Literal["square"]
@@ -37,13 +37,13 @@ class SquareConfig(StrictModel):
 
 @dataclass(frozen=True)
 class Square(TrackedMotion):
-    """A square, gone round once, each edge from rest to rest by the quintic; see Trajectory for the attributes.
+    """One round of a square, with a quintic from rest to rest along each edge; see Trajectory for the attributes.
 
-    The corners are met exactly, and the motion is twice continuously differentiable. Peak speed is 1.875 times an
-    edge over a quarter of t_f.
+    The motion passes the corners exactly and is twice continuously differentiable. The peak speed is 1.875 times the
+    edge divided by t_f / 4.
 
     Attributes:
-        corners: The corners in order, the first one again at the end, shape (5, 3), in m.
+        corners: The corners in order, with the first one repeated at the end, shape (5, 3), in m.
     """
 
     corners: FloatArray
@@ -60,7 +60,7 @@ class Square(TrackedMotion):
         return self.start
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the motion, at rest in the first corner after t_f."""
+        """Return the motion; after t_f it rests at the first corner."""
         rate = 4.0 / self.duration
         edge = np.clip(np.floor(rate * times), 0, 3).astype(int)
         D = self.corners[edge + 1] - self.corners[edge]
@@ -78,7 +78,7 @@ CONFIG = SquareConfig
 
 
 def build(config: SquareConfig, start: FloatArray) -> Trajectory:
-    """Make the square that a config describes; `start` is the tip at t = 0."""
+    """Build the square that a config describes; `start` is the tip at t = 0."""
     first, second = (2.0 * config.half_edge * axis for axis in plane_axes(config.normal, config.edge_direction))
     corners = np.array([start, start + first, start + first + second, start + second, start])
     return Square(corners, config.duration)

@@ -1,4 +1,4 @@
-"""Motion tables in CSV or Parquet files, with the line of every error."""
+"""Motion tables in CSV or Parquet files; error messages contain the line."""
 
 import csv
 import math
@@ -23,13 +23,14 @@ _MOST_TOLD = 5  # problems of one file
 
 
 def read_table(path: Path) -> dict[str, list[float]]:
-    """Return the columns of a data file, as they stand there.
+    """Return the columns of a data file, without unit conversion.
 
     Args:
-        path: A CSV file, or one of Parquet where its name ends so.
+        path: A Parquet file if the name ends in .parquet; otherwise a CSV file.
 
     Raises:
-        ConfigError: if it cannot be read, is too large, or is no motion; names the lines.
+        ConfigError: if the file cannot be read, is too large, or does not describe a motion; the message contains the
+            lines.
     """
     parquet = path.suffix.lower() == ".parquet"
     try:
@@ -49,9 +50,9 @@ def read_table(path: Path) -> dict[str, list[float]]:
 
 
 def parts_of(names: Sequence[str]) -> list[list[str]]:
-    """Return names of columns in groups: positions, then velocities and accelerations where there are any.
+    """Return the column names in groups: positions, then velocities and accelerations if they exist.
 
-    It is empty where they are none of a motion; see ALLOWED.
+    The list is empty if the names do not describe a motion; see ALLOWED.
     """
     if list(names[:1]) != ["t"]:
         return []
@@ -65,11 +66,11 @@ def parts_of(names: Sequence[str]) -> list[list[str]]:
 
 
 def wrong_columns(columns: Columns, place: Callable[[int], str]) -> Iterator[str]:
-    """Yield what is wrong with the columns of a motion from rest to rest.
+    """Yield a message for each problem in the columns of a motion from rest to rest.
 
     Args:
         columns: The columns.
-        place: Says where a row stands, by its number from 0.
+        place: Function of a row's index from 0; returns the row's label in messages.
     """
     parts = parts_of(list(columns))
     if not parts:

@@ -6,54 +6,55 @@ from runner.base.arrays import FloatArray
 
 
 class Trajectory(Protocol):
-    """A desired motion of the tip in the base frame."""
+    """Desired motion of the tip in the base frame."""
 
     @property
     def start(self) -> FloatArray:
-        """Tip position where the arm stands at t = 0, shape (3,), in m."""
+        """Tip position at t = 0, shape (3,), in m."""
         ...
 
     @property
     def goal(self) -> FloatArray | None:
-        """Tip position where the motion comes to rest, shape (3,), in m; None for a periodic one."""
+        """Tip position at the end of the motion, shape (3,), in m; None for a periodic motion."""
         ...
 
     @property
     def duration(self) -> float:
-        """Time t_f after which the desired tip rests, in s: zero for a goal; one period if periodic."""
+        """Time t_f after which the desired tip position is constant, in s; 0 for a goal, one period if periodic."""
         ...
 
     @property
     def run_duration(self) -> float:
-        """How long a run lasts that is not told otherwise, in s."""
+        """Default duration of a run, in s."""
         ...
 
     @property
     def tracked(self) -> bool:
-        """Whether there is a motion to track: False for a bare goal."""
+        """True if there is a motion to track; False for a goal only."""
         ...
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return desired position, velocity and acceleration, shape (T, 3, 3): rows in m, m/s, m/s^2."""
+        """Return desired position, velocity and acceleration, shape (T, 3, 3), in m, m/s and m/s^2."""
         ...
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
-        """Return each point's distance to the path taken as a curve, shapes (T, 3) to (T,), in m.
+        """Return the distance of each point to the geometric path, shapes (T, 3) to (T,), in m.
 
-        Ours take points of any shape (..., 3) and give (...), each as if it were alone.
+        Built-in trajectories take points of shape (..., 3) and return shape (...). The result of a point does not
+        depend on the other points, not even by rounding.
         """
         ...
 
     def sample_joints(self, times: FloatArray) -> FloatArray | None:
         """Return the joint motion from which the motion of the tip follows, shape (T, 3, nq); None if there is none.
 
-        Rows are q, dq/dt and d2q/dt2, in rad, rad/s, rad/s^2; m if a joint is prismatic.
+        Rows are q, dq/dt and d2q/dt2, in rad, rad/s, rad/s^2; m for prismatic joints.
         """
         ...
 
 
 class OfTip:
-    """Default of a trajectory that is not derived from a joint motion."""
+    """Default of trajectories that are not derived from a joint motion."""
 
     def sample_joints(self, times: FloatArray) -> FloatArray | None:
         """Return None; see Trajectory."""
@@ -66,11 +67,11 @@ class _HasDuration(Protocol):
 
 
 class TrackedMotion(OfTip):
-    """Defaults of a motion of the tip that comes to rest; see Trajectory."""
+    """Defaults of tip motions that end at rest; see Trajectory."""
 
     tracked = True
 
     @property
     def run_duration(self: _HasDuration) -> float:
-        """One second more than the motion, so that the rest of the arm is visible."""
+        """One second more than the motion, so that the settling of the arm is visible."""
         return self.duration + 1.0

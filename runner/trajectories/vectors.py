@@ -7,7 +7,7 @@ from pydantic import AfterValidator, Field, ValidationInfo
 
 from runner.base.arrays import FloatArray
 
-_PERPENDICULAR = 1e-6  # largest cosine of an angle that counts as right
+_PERPENDICULAR = 1e-6  # largest cosine of an angle that counts as a right angle
 
 
 def _check_direction(value: list[float]) -> list[float]:
@@ -17,10 +17,10 @@ def _check_direction(value: list[float]) -> list[float]:
 
 
 def check_perpendicular(value: list[float], normal: list[float]) -> list[float]:
-    """Return a direction that lies in the plane of a normal.
+    """Return a direction after checking that it is perpendicular to a normal.
 
     Raises:
-        ValueError: if it does not; gives the angle.
+        ValueError: if it is not perpendicular; the message contains the angle.
     """
     unit, axis = (np.array(v) / np.linalg.norm(v) for v in (value, normal))
     cosine = float(unit @ axis)
@@ -37,13 +37,13 @@ def _check_in_plane(value: list[float], info: ValidationInfo) -> list[float]:
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 Direction = Annotated[Point, AfterValidator(_check_direction)]
 InPlane = Annotated[Direction, AfterValidator(_check_in_plane)]
-"""A direction in the plane of the field `normal`, which stands before it."""
+"""Direction perpendicular to the field `normal`, which must precede it in the model."""
 
 
 def component(points: FloatArray, direction: FloatArray) -> FloatArray:
     """Return the scalar product of points with a direction, shapes (..., 3) and (3,) to (...).
 
-    A product of each point alone: BLAS, behind `@`, rounds a point by its place among the others.
+    `@` is not used, because the rounding of BLAS depends on the position of a point in the array.
     """
     product: FloatArray = points[..., 0] * direction[0] + points[..., 1] * direction[1] + points[..., 2] * direction[2]
     return product
@@ -54,10 +54,10 @@ def plane_axes(normal: list[float], direction: list[float]) -> tuple[FloatArray,
 
     Args:
         normal: Normal of the plane, of any length.
-        direction: Direction of the first vector, perpendicular to the normal; rounding is taken out.
+        direction: Direction of the first vector, perpendicular to the normal; rounding errors are removed.
 
     Returns:
-        The first vector, and the one a quarter turn further, counter-clockwise about the normal.
+        The first vector, and that vector rotated by 90 degrees counter-clockwise about the normal.
     """
     n = np.array(normal) / np.linalg.norm(normal)
     first = np.array(direction) - n * (n @ np.array(direction))

@@ -17,14 +17,14 @@ from runner.trajectories.trajectory import TrackedMotion, Trajectory
 from runner.trajectories.vectors import Point
 
 _SAMPLES = 64  # between two way-points, from which the nearest point is refined
-_CLOSEST = 1e-9  # share of the duration or the length between two way-points, below which rounding would tell
+_CLOSEST = 1e-9  # smallest distance of two way-points, as a fraction of the duration or of the total length
 
 
 def check_time_shares(value: list[float] | None, info: ValidationInfo, places: str) -> list[float] | None:
-    """Return time shares that fit the field of way-points, by its name, which stands before them.
+    """Return time shares after checking them against the field of way-points named `places`, which precedes them.
 
     Raises:
-        ValueError: if they do not.
+        ValueError: if their number differs, if they do not ascend, or if the last one is not 1.
     """
     if value is None or places not in info.data:
         return value
@@ -35,15 +35,15 @@ def check_time_shares(value: list[float] | None, info: ValidationInfo, places: s
 
 
 class WaypointsConfig(StrictModel):
-    """Config of a motion through way-points; the first is the start.
+    """Config of a motion from the start through way-points.
 
     Attributes:
-        kind: Its name in the registry.
-        start: Tip position at t = 0, in m; None is the tip at home.
-        origin: Point of the base frame from which the way-points are measured, in m; None is the start.
-        scale: What one unit of the way-points is, in m: 1 for points in m.
-        points: The way-points after the start, in units of scale, along the axes of the base frame.
-        time_shares: When each of them is passed, as share of the duration, ascending to 1; None makes the time between
+        kind: Name of the kind in the registry.
+        start: Tip position at t = 0, in m; None is the tip at the home configuration.
+        origin: Origin of the way-points in the base frame, in m; None is the start.
+        scale: Length of one unit of the way-points, in m; 1 for points in m.
+        points: Way-points after the start, in units of scale, along the axes of the base frame.
+        time_shares: Time of each way-point as a fraction of the duration, ascending to 1. None makes the time between
             two way-points proportional to their distance.
         duration: t_f, in s.
     """
@@ -71,15 +71,15 @@ class WaypointsConfig(StrictModel):
 
 @dataclass(frozen=True)
 class Waypoints(TrackedMotion):
-    """The motion of least jerk through points at given times; see Trajectory for the attributes.
+    """Minimum-jerk motion through points at given times; see Trajectory for the attributes.
 
-    Of all motions that pass the way-points at their times, from rest to rest, the one with the smallest integral of
-    squared jerk is a polynomial of fifth order between each two, with four continuous derivatives (Flash and Hogan
-    1985, whose hand motions it describes). With one way-point beside the start it is the quintic.
+    Among the motions that pass the way-points at their times, from rest to rest, the one with the smallest integral of
+    squared jerk is a spline of fifth order with four continuous derivatives (Flash and Hogan 1985, who describe human
+    hand motions with it). With one way-point after the start it is the quintic.
 
     Attributes:
-        points: The way-points, the start first, shape (N, 3), in m.
-        times: When each is passed, ascending from 0, shape (N,), in s.
+        points: The start and the way-points, shape (N, 3), in m.
+        times: Time of each point, ascending from 0, shape (N,), in s.
         spline: Tip position over time, in m and s.
     """
 
@@ -89,7 +89,7 @@ class Waypoints(TrackedMotion):
 
     @property
     def start(self) -> FloatArray:
-        """The first way-point."""
+        """The first point."""
         return np.array(self.points[0])
 
     @property
@@ -103,7 +103,7 @@ class Waypoints(TrackedMotion):
         return float(self.times[-1])
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the motion, at rest in the last way-point after t_f."""
+        """Return the motion; after t_f it rests at the last way-point."""
         within = np.clip(times, 0.0, self.duration)
         return np.stack([self.spline(within, order) for order in range(3)], axis=1)
 
@@ -114,19 +114,19 @@ class Waypoints(TrackedMotion):
 
 
 def minimum_jerk(points: FloatArray, times: FloatArray) -> Waypoints:
-    """Return the motion of least jerk through points at times; see Waypoints for both."""
+    """Return the minimum-jerk motion through points at times; see Waypoints for both."""
     return Waypoints(points, times, least_jerk_spline(points, times))
 
 
 def passing_times(lengths: FloatArray, shares: list[float] | None, duration: float) -> FloatArray:
-    """Return the times of N + 1 way-points in s, from the N lengths between them or the given shares."""
+    """Return the times of N + 1 points, in s, from the N distances between them or the given time shares."""
     ends = np.cumsum(lengths) / lengths.sum() if shares is None else np.array(shares)
     times: FloatArray = duration * np.concatenate([[0.0], ends[:-1], [1.0]])
     return times
 
 
 def least_jerk_spline(points: FloatArray, times: FloatArray) -> "splines.BSpline":
-    """Return the spline of least jerk from rest to rest through points at times, shapes (N, k) and (N,)."""
+    """Return the minimum-jerk spline from rest to rest through points at times, shapes (N, k) and (N,)."""
     rest = [(order, np.zeros(points.shape[1])) for order in (1, 2)]
     return splines.make_interp_spline(times, points, k=5, bc_type=(rest, rest))
 
@@ -135,10 +135,10 @@ CONFIG = WaypointsConfig
 
 
 def build(config: WaypointsConfig, start: FloatArray) -> Trajectory:
-    """Make the motion that a config describes; `start` is the tip at t = 0.
+    """Build the motion that a config describes; `start` is the tip at t = 0.
 
     Raises:
-        ConfigError: if two way-points in succession coincide.
+        ConfigError: if two consecutive way-points coincide.
     """
     origin = start if config.origin is None else np.array(config.origin)
     points = np.vstack([start, origin + config.scale * np.array(config.points)])
