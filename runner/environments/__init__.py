@@ -13,7 +13,7 @@ from runner.plugins.registry import KindConfig, Registry
 
 
 def _check_points(points: Any, _: Asked) -> dict[str, FloatArray]:
-    """Return the points of an environment by link."""
+    """Return the checked points of an environment by link."""
     found = dict(points)
     for link, point in found.items():
         if fault := find_fault(point, (3,)):

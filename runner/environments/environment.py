@@ -6,17 +6,17 @@ from runner.base.arrays import FloatArray
 
 
 class Environment:
-    """The world around the arm. An environment must define `reset` and `wrench`; the rest has defaults.
+    """Base class of environments. An environment must define `reset` and `wrench`; the other members have defaults.
 
     Attributes:
-        points: Where it pushes links of the arm, in addition to the tip: by the name of a link, a point in the frame of
-            that link, in m. It is read once, before the run.
+        points: Points of links on which the environment exerts forces, in addition to the tip: for the name of each
+            link, a point in the link's frame, in m. The runner reads them once, before the run.
     """
 
     points: Mapping[str, Sequence[float]] = {}
 
     def reset(self, tip: FloatArray) -> None:
-        """Start with the tip at a position in the base frame, shape (3,), in m."""
+        """Reset the environment at the start of a run, with the tip position in the base frame, shape (3,), in m."""
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return the wrench on the tip.
@@ -24,10 +24,10 @@ class Environment:
         Args:
             time: Time since the start, in s.
             tip: Tip position in the base frame, shape (3,), in m.
-            velocity: Its linear velocity, shape (3,), in m/s.
+            velocity: Linear velocity of the tip, shape (3,), in m/s.
 
         Returns:
-            Force in N and moment about the tip in N m, along the base's axes, shape (6,).
+            Force in N and moment about the tip in N m, along the axes of the base, shape (6,).
         """
         raise NotImplementedError
 
@@ -36,23 +36,23 @@ class Environment:
 
         Args:
             time: Time since the start, in s.
-            positions: Positions of the points in the base frame, in their order, shape (n, 3), in m.
-            velocities: Their velocities, shape (n, 3), in m/s.
+            positions: Positions of the points in the base frame, in the order of `points`, shape (n, 3), in m.
+            velocities: Velocities of the points, shape (n, 3), in m/s.
 
         Returns:
-            Forces in N along the base's axes, shape (n, 3).
+            Forces in N along the axes of the base, shape (n, 3).
         """
         raise NotImplementedError
 
     def joint_torques(self, time: float, q: FloatArray, dq: FloatArray) -> FloatArray | None:
-        """Return torques on the joints, such as those of a cable or of a spring about an axis; None if there are none.
+        """Return torques on the joints, such as those of a cable or a torsion spring, or None.
 
         Args:
             time: Time since the start, in s.
-            q: True joint positions, shape (nq,), in rad; m if a joint is prismatic.
-            dq: True joint velocities, shape (nq,), in rad/s; m/s if a joint is prismatic.
+            q: True joint positions, shape (nq,), in rad; m for prismatic joints.
+            dq: True joint velocities, shape (nq,), in rad/s; m/s for prismatic joints.
 
         Returns:
-            Shape (nq,), in N m; N if a joint is prismatic.
+            Shape (nq,), in N m; N for prismatic joints.
         """
         return None

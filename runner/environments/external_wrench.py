@@ -12,18 +12,18 @@ from runner.sensing.wrench import cross, wrench_transform
 
 
 class Interaction:
-    """The wrench on the tip and its way into the arm, tick by tick.
+    """External wrenches on the arm, updated at each tick.
 
-    The load of the wrist's sensor is the tool's rigid-body balance, exact in motion, where PyBullet's joint reaction
-    is off by a term in the square of the speeds.
+    The load on the wrist sensor follows from the rigid-body balance of the tool. It is exact also during motion. The
+    joint reaction of PyBullet has an error proportional to the square of the speeds.
 
     Args:
-        robot: The robot; a tool on its flange is what the sensor bears.
-        environment: The world around the arm; None where a plant makes the contact itself, or there is none.
+        robot: The robot, including the tool on the flange, whose weight and inertia load the sensor.
+        environment: The environment; None in free space, or if the plant simulates the contact itself.
         tick: Time between two updates, in s.
 
     Raises:
-        ConfigError: if the environment pushes a link that the robot does not have.
+        ConfigError: if the environment exerts a force on a link that the robot does not have.
     """
 
     def __init__(self, robot: Robot, environment: Environment | None, tick: float) -> None:
@@ -39,26 +39,26 @@ class Interaction:
         self._zero = np.zeros(robot.model.nq)
         self._last_dq = np.zeros(robot.model.nq)
         self.external = np.zeros(6)
-        """Wrench of the world on the tip: force in N, moment about the tip in N m, along the base's axes."""
+        """Wrench of the environment on the tip: force in N, moment about the tip in N m, along the axes of the base."""
         self.load = np.zeros(6)
-        """Wrench of world and tool on the flange: force in N, moment about its origin in N m, along its axes."""
+        """Wrench of environment and tool on the flange: force in N, moment about its origin in N m, along its axes."""
 
     def reset(self, q: FloatArray) -> None:
-        """Start at rest at joint positions, shape (nq,), in rad."""
+        """Reset to rest at joint positions, shape (nq,), in rad."""
         self._last_dq = np.zeros_like(q)
         pin.framesForwardKinematics(self._model, self._data, q)
         if self._environment is not None:
             self._environment.reset(self._data.oMf[self._tip].translation.copy())
 
     def update(self, time: float, q: FloatArray, dq: FloatArray, contact: FloatArray) -> FloatArray:
-        """Take the arm's true state, and return the joint torques of the world that the plant does not make itself.
+        """Update the wrenches from the true state, and return the joint torques of the environment outside the plant.
 
         Args:
             time: Time since the start, in s.
             q: Joint positions, shape (nq,), in rad.
             dq: Joint velocities, shape (nq,), in rad/s.
-            contact: Wrench of contacts that the plant made in the last tick: force in N and moment about the base's
-                origin in N m, along its axes, shape (6,).
+            contact: Wrench of the contacts that the plant simulated in the last tick: force in N and moment about the
+                origin of the base in N m, along the axes of the base, shape (6,).
 
         Returns:
             Shape (nq,), in N m.
@@ -85,7 +85,7 @@ class Interaction:
         return torques
 
     def to_flange_axes(self, wrench: FloatArray) -> FloatArray:
-        """Return a wrench given along the base's axes, shape (6,), along the flange's."""
+        """Return a wrench, shape (6,), in the axes of the flange instead of the base."""
         R = self._data.oMf[self._flange].rotation
         return np.concatenate([wrench[:3] @ R, wrench[3:] @ R])
 

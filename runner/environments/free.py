@@ -10,7 +10,7 @@ class FreeConfig(StrictModel):
     """Config of free space.
 
     Attributes:
-        kind: Its name in the registry.
+        kind: Name of the kind in the registry.
     """
 
     kind: Literal["free"]
@@ -20,5 +20,5 @@ CONFIG = FreeConfig
 
 
 def build(config: FreeConfig) -> Environment | None:
-    """Return None: there is nothing to feel."""
+    """Return None, because free space exerts no wrench."""
     return None

@@ -13,15 +13,15 @@ from runner.trajectories.blend import quintic_blend
 
 
 class HandConfig(StrictModel):
-    """Config of a hand.
+    """Config of human guidance.
 
     Attributes:
-        kind: Its name in the registry.
-        displacement: Where it leads the tip, from where the tip starts, along the base's axes, in m.
-        start_time: When it sets out, in s.
-        duration: How long it takes, from rest to rest, in s; then it holds still.
-        stiffness: Of its grip, in N/m.
-        damping: Of its grip, in N s/m.
+        kind: Name of the kind in the registry.
+        displacement: Displacement of the hand from the start position of the tip, along the axes of the base, in m.
+        start_time: Start time of the hand's motion, in s.
+        duration: Duration of the hand's motion from rest to rest, in s; the hand then holds its position.
+        stiffness: Stiffness of the grip, in N/m.
+        damping: Damping of the grip, in N s/m.
     """
 
     kind: Literal["hand_guiding"]
@@ -33,7 +33,7 @@ class HandConfig(StrictModel):
 
 
 class Hand(Environment):
-    """The hand; see Environment. It moves as the rest-to-rest quintic does, and turns nothing."""
+    """Hand that moves along a rest-to-rest quintic and exerts no moment; see Environment."""
 
     def __init__(self, config: HandConfig) -> None:
         self._config = config
@@ -41,7 +41,7 @@ class Hand(Environment):
         self._origin = np.zeros(3)
 
     def reset(self, tip: FloatArray) -> None:
-        """Take hold of the tip where it is."""
+        """Grip the tip at its start position."""
         self._origin = tip.copy()
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:

@@ -11,18 +11,19 @@ from runner.sensing.wrench import cross_matrix
 
 
 class LinkForces:
-    r"""The points at which an environment pushes links, and its forces there.
+    r"""Forces of an environment at points of links.
 
     .. math:: \tau = \sum_i (J_{v,i} - [r_i]_\times J_{\omega,i})^T f_i
 
-    with the Jacobian of each link, linear and angular, and r_i from the link's origin to the point.
+    J_v and J_omega are the linear and angular Jacobian of a link, and r_i is the vector from the link's origin to the
+    point.
 
     Args:
         environment: The environment.
         model: The arm's Pinocchio model.
 
     Raises:
-        ConfigError: if a link is none of the arm's.
+        ConfigError: if the arm does not have a link.
     """
 
     def __init__(self, environment: Environment, model: "pin.Model") -> None:
@@ -39,12 +40,12 @@ class LinkForces:
         self._points = [(model.getFrameId(link), np.array(point, dtype=np.float64)) for link, point in points.items()]
 
     def torques(self, time: float, model: "pin.Model", data: "pin.Data", dq: FloatArray) -> FloatArray:
-        """Return the joint torques of the forces, shape (nq,), in N m.
+        """Return the joint torques equivalent to the forces, shape (nq,), in N m.
 
         Args:
             time: Time since the start, in s.
             model: The arm's Pinocchio model.
-            data: Its placements and joint Jacobians at the arm's true state.
+            data: Placements and joint Jacobians of the model at the true state of the arm.
             dq: True joint velocities, shape (nq,), in rad/s.
         """
         jacobians, positions = [], []

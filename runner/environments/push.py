@@ -19,13 +19,14 @@ class PushConfig(StrictModel):
     """Config of a push.
 
     Attributes:
-        kind: Its name in the registry.
-        force: Force along the base's axes, in N; the amplitude of a sine.
-        moment: Moment about the tip along the base's axes, in N m; likewise. 0 where a link is pushed.
+        kind: Name of the kind in the registry.
+        force: Force along the axes of the base, in N; the amplitude if frequency is above 0.
+        moment: Moment about the tip along the axes of the base, in N m; the amplitude if frequency is above 0. It must
+            be zero if a link is pushed.
         link: Link whose origin the force acts on; None is the tip.
-        start_time: When it sets in, in s.
-        duration: How long it lasts, in s; None is for ever.
-        frequency: Of the sine, in Hz; 0 is a steady push.
+        start_time: Start time of the push, in s.
+        duration: Duration of the push, in s; None means until the end of the run.
+        frequency: Frequency of a sinusoidal push, in Hz; 0 for a constant push.
     """
 
     kind: Literal["push"]
@@ -38,7 +39,7 @@ class PushConfig(StrictModel):
 
 
 class Push(Environment):
-    """The push on the tip; see Environment."""
+    """Push on the tip; see Environment."""
 
     def __init__(self, config: PushConfig) -> None:
         self._wrench = np.array([*config.force, *config.moment])
@@ -51,7 +52,7 @@ class Push(Environment):
         return self._wrench * self.share(time)
 
     def share(self, time: float) -> float:
-        """Return how much of the push acts at a time, in s."""
+        """Return the factor of force and moment, from -1 to 1, at a time in s."""
         since = time - self._start
         if since < -1e-9 or time > self._end - 1e-9:
             return 0.0
@@ -59,19 +60,19 @@ class Push(Environment):
 
 
 class PushOnLink(Environment):
-    """The push on a link; see Environment."""
+    """Push on a link; see Environment."""
 
     def __init__(self, config: PushConfig, link: str) -> None:
         self._push, self._force = Push(config), np.array(config.force)
         self.points = {link: (0.0, 0.0, 0.0)}
-        """Where the force acts: a point in the link's frame, in m."""
+        """Point of application in the link's frame, in m, by link."""
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
-        """Return that nothing acts on the tip; see Environment.wrench."""
+        """Return zero, because nothing acts on the tip; see Environment.wrench."""
         return np.zeros(6)
 
     def link_forces(self, time: float, positions: FloatArray, velocities: FloatArray) -> FloatArray:
-        """Return the force on the link; see Environment."""
+        """Return the force on the link; see Environment.link_forces."""
         return self._push.share(time) * self._force[None]
 
 
@@ -79,10 +80,10 @@ CONFIG = PushConfig
 
 
 def build(config: PushConfig) -> Environment:
-    """Make the push that a config describes.
+    """Build the push that a config describes.
 
     Raises:
-        ConfigError: for a moment on a link.
+        ConfigError: if a moment acts on a link.
     """
     if config.link is None:
         return Push(config)

@@ -12,19 +12,20 @@ from runner.schema.units import Damping, Metres, Stiffness
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 
-_LENGTH = 1e-6  # by which a typed unit vector may differ from 1
+_LENGTH = 1e-6  # tolerance of the length of a unit vector
 
 
 class WallConfig(StrictModel):
     """Config of a wall.
 
     Attributes:
-        kind: Its name in the registry.
-        distance: From the tip at its start to the wall, against the normal, in m; below 0 it stands in the wall.
-        normal: Unit vector out of the wall, along the base's axes.
-        stiffness: In N/m.
-        damping: In N s/m.
-        friction: Coulomb's coefficient along the face; 0 is a frictionless wall.
+        kind: Name of the kind in the registry.
+        distance: Distance from the start of the tip to the wall, against the normal, in m; below 0 the tip starts
+            inside the wall.
+        normal: Unit vector out of the wall, along the axes of the base.
+        stiffness: Stiffness of the wall, in N/m.
+        damping: Damping of the wall, in N s/m.
+        friction: Coulomb friction coefficient along the surface; 0 is a frictionless wall.
     """
 
     kind: Literal["wall"]
@@ -47,20 +48,20 @@ class WallConfig(StrictModel):
 
 
 class Wall(Environment):
-    r"""The wall, felt by the tip as a point; see Environment.
+    r"""Wall in point contact with the tip; see Environment.
 
-    The tip at a depth d > 0 is pushed out by k d + c dd, and never pulled. Friction is a spring and a damper like these
-    along the face, from the place where the tip sticks, which slides where they would pull more than Coulomb's limit
-    (Cundall and Strack, Geotechnique 29(1), 1979):
+    At a depth d > 0 the wall pushes the tip out with the force k d + c dd/dt, and never pulls. Friction is a spring and
+    a damper with the same k and c along the surface, between the tip p and the point a where it sticks. This point
+    slides if the force would exceed Coulomb's limit (Cundall and Strack, Geotechnique 29(1), 1979):
 
     .. math:: f_t = -k (p - a) - c v_t, \qquad |f_t| \le \mu f_n
 
-    So a tip at rest stays at rest, and the wall gives way alike in every direction.
+    So a tip at rest stays at rest, and the compliance of the wall is the same in every direction.
 
     Attributes:
-        config: Its numbers.
-        normal: Unit vector out of it, shape (3,).
-        point: A point of its face, shape (3,), in m; set by reset.
+        config: Config of the wall.
+        normal: Unit vector out of the wall, shape (3,).
+        point: A point of the surface, shape (3,), in m; set by reset.
     """
 
     def __init__(self, config: WallConfig) -> None:
@@ -70,12 +71,12 @@ class Wall(Environment):
         self._sticks_at: FloatArray | None = None
 
     def reset(self, tip: FloatArray) -> None:
-        """Stand at its distance from the tip."""
+        """Place the wall at its distance from the tip."""
         self.point = tip - self.config.distance * self.normal
         self._sticks_at = None
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
-        """Return the wrench on the tip, which is asked in the order of time; see Environment.wrench."""
+        """Return the wrench on the tip; calls must be in the order of time; see Environment.wrench."""
         depth = float((self.point - tip) @ self.normal)
         if depth <= 0.0:
             self._sticks_at = None
@@ -87,7 +88,7 @@ class Wall(Environment):
         return np.concatenate([push, np.zeros(3)])
 
     def _friction(self, limit: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
-        """Return the force along the face, shape (3,), in N, and let the place where the tip sticks slide."""
+        """Return the force along the surface, shape (3,), in N, and update the point where the tip sticks."""
         stiffness, n = self.config.stiffness, self.normal
         place, drag = tip - (tip @ n) * n, self.config.damping * (velocity - (velocity @ n) * n)
         if self._sticks_at is None:

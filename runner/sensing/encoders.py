@@ -13,16 +13,16 @@ from runner.sensing.velocity import DEFAULT_BANDWIDTH, State, Velocity, first_st
 
 @dataclass(frozen=True)
 class EncoderNoise:
-    """Noise, bias and steps of the encoders of a robot's joints.
+    """Noise, bias and resolution of joint encoders.
 
     Attributes:
-        position: Half-width (uniform) or standard deviation (gaussian) of each joint's position noise, shape (nq,),
-            in rad.
-        bias: Constant error of each joint's measured position, shape (nq,), in rad: a zero that is set wrong.
-        resolution: Step to which each joint's biased, noisy position is rounded, shape (nq,), in rad; 0 for none.
-        distribution: Shape of the position noise.
-        velocity: How velocities are known: exactly, or from the measured positions at the loop's ticks.
-        velocity_bandwidth: Bandwidth of that, in rad/s, where it has one.
+        position: Half-width (uniform) or standard deviation (gaussian) of the position noise of each joint,
+            shape (nq,), in rad.
+        bias: Constant error of the measured position of each joint, as from a wrong zero, shape (nq,), in rad.
+        resolution: Step to which the biased, noisy position of each joint is rounded, shape (nq,), in rad; 0 for none.
+        distribution: Distribution of the position noise.
+        velocity: Source of the velocities: exact, or an estimate from the positions measured at the ticks of the loop.
+        velocity_bandwidth: Bandwidth of the velocity estimate, in rad/s, if it has one.
     """
 
     position: FloatArray
@@ -34,15 +34,15 @@ class EncoderNoise:
 
 
 class JointEncoders:
-    """The joint measurement of one control loop: a fresh noise draw per joint at each of its ticks.
+    """Joint measurement of one control loop, with new random noise for each joint at each tick of the loop.
 
-    All draws are made when the sensor is made, so that equal generators give equal noise whatever the loop does.
+    The constructor draws all random numbers. So equal generators give equal noise, independent of the loop.
 
     Args:
-        ticks: Number of measurements to come.
+        ticks: Number of measurements.
         period: Time between two measurements, in s.
-        noise: Noise, bias and steps of the joints.
-        generator: Source of the draws.
+        noise: Noise, bias and resolution of the joints.
+        generator: Random generator.
     """
 
     def __init__(self, ticks: int, period: float, noise: EncoderNoise, generator: np.random.Generator) -> None:
@@ -58,8 +58,8 @@ class JointEncoders:
     def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return measured joint positions and velocities, shapes (nq,), from the true ones at a tick.
 
-        A velocity that is not exact starts from the first measurement: it is zero there, as the arm starts at rest. So
-        a bias is not in it.
+        An estimated velocity is zero at the first measurement, because the arm starts at rest. So the bias has no
+        effect on it.
         """
         measured = q + self.errors[tick]
         if len(self._resolution):
@@ -72,13 +72,13 @@ class JointEncoders:
 
 
 def encoder_errors(noises: Sequence[EncoderNoise], seeds: Sequence[Sequence[int]], ticks: int) -> FloatArray:
-    """Return the errors of the measured positions of many runs, before they are rounded to steps.
+    """Return the errors of the measured positions of many runs, before rounding to the resolution.
 
-    They are those of `JointEncoders` with the generator `np.random.default_rng(seed)`, to the last bit.
+    The errors are bitwise equal to those of `JointEncoders` with the generator `np.random.default_rng(seed)`.
 
     Args:
-        noises: Noise of each run's encoders, all of as many joints.
-        seeds: Seed of each run's draws: seed, repetition and place of the control loop.
+        noises: Noise of the encoders of each run, all with the same number of joints.
+        seeds: Random seed of each run: seed, repetition and index of the control loop.
         ticks: Number of measurements of a run.
 
     Returns:
@@ -90,7 +90,7 @@ def encoder_errors(noises: Sequence[EncoderNoise], seeds: Sequence[Sequence[int]
 def _errors(noises: Sequence[EncoderNoise], ticks: int, generators: Iterable[np.random.Generator]) -> FloatArray:
     nq = len(noises[0].position)
     errors = np.empty((len(noises), ticks * nq))
-    rows: dict[int, tuple[FloatArray, FloatArray | None]] = {}  # of a noise, which many runs may share
+    rows: dict[int, tuple[FloatArray, FloatArray | None]] = {}  # by noise, because many runs can share one
     for noise, error, generator in zip(noises, errors, generators, strict=True):
         if id(noise) not in rows:
             rows[id(noise)] = (
@@ -102,7 +102,7 @@ def _errors(noises: Sequence[EncoderNoise], ticks: int, generators: Iterable[np.
             error[:] = 0.0
         elif noise.distribution == "uniform":
             generator.random(out=error)
-            error *= 2.0  # together with the next line exact, as `uniform(-1, 1)` is
+            error *= 2.0  # with the next line, bitwise equal to `uniform(-1, 1)`
             error -= 1.0
             error *= width
         else:

@@ -12,15 +12,16 @@ from runner.sensing.velocity import State, Velocity, first_state, gains, next_ve
 
 
 class EndpointSensorConfig(StrictModel):
-    """Config of a sensor of the tip's position.
+    """Config of a tip position sensor.
 
     Attributes:
-        read_by: Names of the control loops that read it; a loop is named after its stage. None: there is no sensor.
-        noise: Standard deviation of each coordinate, in m; a fresh draw for each measurement.
-        period: Time between two measurements, in s; None is each tick of the loop that reads it.
-        delay: Time from a measurement until the loop knows it, in s.
-        velocity: How the tip's velocity is known: exactly, or from the measured positions as joint velocities are.
-        velocity_bandwidth: Bandwidth of that, in rad/s, where it has one.
+        read_by: Names of the control loops that read the sensor; a loop has the name of its stage. An empty list means
+            no sensor.
+        noise: Standard deviation of the noise of each coordinate, in m, drawn again for each measurement.
+        period: Time between two measurements, in s; None measures at each tick of the loop that reads the sensor.
+        delay: Time from a measurement until the loop receives it, in s.
+        velocity: Source of the tip velocity: exact, or an estimate from the measured positions as for the joints.
+        velocity_bandwidth: Bandwidth of the velocity estimate, in rad/s, if it has one.
     """
 
     read_by: list[str]
@@ -33,11 +34,11 @@ class EndpointSensorConfig(StrictModel):
 
 @dataclass(frozen=True)
 class EndpointTicks:
-    """When a control loop measures the tip, in its own ticks.
+    """Times of tip measurements, in ticks of the control loop.
 
     Attributes:
-        every: Ticks between two measurements.
-        late: Ticks until one is known.
+        every: Number of ticks between two measurements.
+        late: Number of ticks until a measurement is available.
     """
 
     every: int
@@ -45,21 +46,21 @@ class EndpointTicks:
 
 
 class EndpointSensor:
-    r"""The tip as one control loop measures it, against the tip that its joints' encoders tell.
+    r"""Tip measurement of one control loop, as the difference from the tip position computed from the encoders.
 
     .. math:: \Delta = y - p(\hat q), \qquad \dot\Delta = \dot y - J(\hat q) \hat{\dot q}
 
-    A law that leads the tip by the encoders to x_d - Delta leads the measured tip to x_d: so each law takes the
-    sensor in place of what lies between the encoders and the tip, whatever bends there. Measurement and encoders are
-    compared at one instant; the result is known by the delay later and held until the next one. Before the first it
-    is 0. All draws are made when the sensor is made; a longer run starts alike.
+    If a control law moves the tip according to the encoders to x_d - Delta, the measured tip is at x_d. So every law
+    can use the sensor, and the measurement corrects any bending between encoders and tip. Measurement and encoders
+    refer to the same instant. Their difference is available after the delay and is constant until the next one; it is 0
+    before the first one. The constructor draws all random numbers, so the start of a longer run is the same.
 
     Args:
-        ticks: Number of ticks of the loop to come.
-        period: Time between two, in s.
-        config: The sensor's numbers.
-        times: When it measures.
-        generator: Source of the draws.
+        ticks: Number of ticks of the loop.
+        period: Time between two ticks, in s.
+        config: Config of the sensor.
+        times: Times of the measurements.
+        generator: Random generator.
     """
 
     def __init__(
@@ -78,16 +79,16 @@ class EndpointSensor:
         self._found: list[FloatArray] = []
 
     def due(self, tick: int) -> bool:
-        """Tell whether the tip is measured at a tick of the loop."""
+        """Return True if the tip is measured at a tick of the loop."""
         return tick % self._times.every == 0
 
     def measure(self, tick: int, tip: FloatArray, told: FloatArray) -> None:
-        """Compare the tip with what the encoders tell of it, at a tick at which it is due.
+        """Compare the measured tip with that from the encoders, at a tick at which a measurement is due.
 
         Args:
-            tick: Number of the loop's tick, from 0.
+            tick: Index of the loop's tick, from 0.
             tip: True position and velocity of the tip, shape (2, 3), in m and m/s.
-            told: The same as the joints' encoders tell it, likewise.
+            told: Position and velocity of the tip from the encoders, same shape and units.
         """
         position = tip[0] + self._noise[tick // self._times.every]
         velocity = tip[1]
@@ -97,6 +98,6 @@ class EndpointSensor:
         self._found.append(np.array([position, velocity]) - told)
 
     def correction(self, tick: int) -> FloatArray:
-        """Return Delta and its rate as they are known at a tick of the loop, shape (2, 3), in m and m/s."""
+        """Return Delta and its derivative that are available at a tick of the loop, shape (2, 3), in m and m/s."""
         known = (tick - self._times.late) // self._times.every
         return self._found[known] if known >= 0 else np.zeros((2, 3))

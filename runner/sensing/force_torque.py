@@ -17,18 +17,18 @@ _Six = Field(min_length=6, max_length=6)
 
 
 class ForceTorqueConfig(StrictModel):
-    """Config of the sensor; lists hold Fx, Fy, Fz in N and Mx, My, Mz in N m.
+    """Config of the sensor; lists contain Fx, Fy, Fz in N and Mx, My, Mz in N m.
 
     Attributes:
-        range: Largest reading of each axis, in N and N m, both ways.
-        resolution: Step of each axis' reading, in N and N m; 0 for none.
-        noise: Standard deviation of each axis' reading at rest, in N and N m, a fresh draw per tick.
-        bias: Reading without load, in N and N m.
-        drift: Standard deviation of the bias' random walk after one second, per axis.
-        low_pass: Cut-off frequency of the first-order low-pass through which the load is seen, in Hz; None for none.
-        rotation: theta, turn of the sensor about the flange's z axis, in rad.
-        height: Distance of the sensor's origin from the flange along its z axis, in m.
-        mass: Mass of the sensor, in kg: a load of the arm, which the sensor itself does not feel.
+        range: Largest absolute reading of each axis, in N and N m.
+        resolution: Step of the reading of each axis, in N and N m; 0 for none.
+        noise: Standard deviation of the reading of each axis, in N and N m, drawn again at each tick.
+        bias: Reading of each axis without load, in N and N m.
+        drift: Standard deviation of the random walk of the bias after one second, for each axis.
+        low_pass: Cut-off frequency of a first-order low-pass filter of the load, in Hz; None for no filter.
+        rotation: Rotation theta of the sensor about the z axis of the flange, in rad.
+        height: Distance of the sensor's origin from the flange along the z axis of the flange, in m.
+        mass: Mass of the sensor, in kg; it loads the arm and does not appear in the readings.
     """
 
     range: AxisWrench[Annotated[list[PositiveFloat], _Six]]
@@ -43,14 +43,15 @@ class ForceTorqueConfig(StrictModel):
 
     @property
     def pose(self) -> FloatArray:
-        """The sensor's frame in the flange's, shape (4, 4)."""
+        """Pose of the sensor's frame in the flange's frame, shape (4, 4)."""
         c, s = np.cos(self.rotation), np.sin(self.rotation)
         return np.array([[c, -s, 0.0, 0.0], [s, c, 0.0, 0.0], [0.0, 0.0, 1.0, self.height], [0.0, 0.0, 0.0, 1.0]])
 
     def reading_variance(self, samples: int) -> FloatArray:
-        """Return the variance of the mean of some readings at rest, shape (6,): noise, and q^2/12 of quantisation.
+        """Return the variance of the mean of several readings at rest, shape (6,): noise, and q^2/12 for quantisation.
 
-        The second holds, and falls with the number of readings, where the noise is no smaller than half a step.
+        The term for quantisation is valid only if the noise is at least half a step; otherwise it does not decrease
+        with the number of readings.
         """
         variance: FloatArray = (np.square(self.noise) + np.square(self.resolution) / 12.0) / samples
         return variance
@@ -67,21 +68,22 @@ IDEAL = ForceTorqueConfig(
     height=0.0,
     mass=0.0,
 )
-"""An exact sensor without mass in the flange's frame."""
+"""Exact sensor without mass in the flange's frame."""
 
 
 class ForceTorqueSensor:
-    """Readings of the wrench that the world and the tool put on the sensor, at the ticks of one control loop.
+    """Readings of the wrench of environment and tool on the sensor, at the ticks of one control loop.
 
-    A load is turned into the sensor's frame, and the drifting bias added; it passes the low-pass, which starts settled;
-    noise is added, and the sum is rounded to the resolution. Beyond the range the reading stays at the range, bias
-    included, as a real one does. All draws are made when the sensor is made; a longer run starts alike.
+    The load is transformed to the sensor's frame, and the drifting bias is added. The sum passes the low-pass filter,
+    which starts in steady state. Then noise is added, and the sum is rounded to the resolution. The reading, including
+    the bias, saturates at the range. The constructor draws all random numbers, so the start of a longer run is the
+    same.
 
     Args:
-        ticks: Number of readings to come.
+        ticks: Number of readings.
         period: Time between two readings, in s.
-        config: The sensor's numbers.
-        generator: Source of the draws.
+        config: Config of the sensor.
+        generator: Random generator.
     """
 
     def __init__(self, ticks: int, period: float, config: ForceTorqueConfig, generator: np.random.Generator) -> None:
@@ -91,7 +93,7 @@ class ForceTorqueSensor:
         steps[:1] = 0.0
         self._bias = np.array(config.bias) + np.cumsum(steps, axis=0)
         self._transform = np.linalg.inv(wrench_transform(config.pose))
-        # Exact for a load that is held between ticks.
+        # Exact for a load that is constant between ticks.
         self._share = 1.0 if config.low_pass is None else -np.expm1(-2.0 * np.pi * config.low_pass * period)
         self._seen: FloatArray | None = None
         self._range = np.array(config.range)
@@ -104,9 +106,9 @@ class ForceTorqueSensor:
         """Return the reading at a tick.
 
         Args:
-            tick: Number of the reading, from 0.
-            wrench: What world and tool, its weight and inertia included, put on the flange: force in N and moment
-                about its origin in N m, along its axes, shape (6,).
+            tick: Index of the reading, from 0.
+            wrench: Wrench of environment and tool, with its weight and inertia, on the flange: force in N and moment
+                about the flange's origin in N m, along the flange's axes, shape (6,).
 
         Returns:
             Force in N and moment about the sensor's origin in N m, along the sensor's axes, shape (6,).
@@ -120,7 +122,7 @@ class ForceTorqueSensor:
         return reading
 
     def overloads(self) -> list[str]:
-        """Return a text for each axis that has been loaded beyond its range: peak, range and what becomes of it."""
+        """Return a message with the peak and the range of each axis whose load exceeded its range."""
         return [
             f"{axis} reached {peak:.4g} {unit}, beyond the sensor's range of {limit:g} {unit}; its reading stayed there"
             for axis, unit, peak, limit in zip(AXES, UNITS, self._peak, self._range, strict=True)

@@ -11,22 +11,23 @@ from runner.schema.values import expand
 
 
 class JointTorqueConfig(StrictModel):
-    """Config of the torque sensors in the joints.
+    """Config of the joint torque sensors.
 
     Attributes:
-        noise: Standard deviation of each reading, in N m; N where a joint slides. One for all joints or a list with one
-            for each; None where there are no sensors.
-        bias: Constant error of each reading, in N m; N where a joint slides. Likewise.
+        noise: Standard deviation of each reading, in N m; N for prismatic joints. One value for all joints, or a list
+            with one for each joint; None for no sensors.
+        bias: Constant error of each reading, in N m; N for prismatic joints. One value for all joints, or a list with
+            one for each joint.
     """
 
     noise: JointTorque[NonNegativeFloat | list[NonNegativeFloat] | None]
     bias: JointTorque[FiniteFloat | list[FiniteFloat]]
 
     def by_joint(self, arm: Robot) -> tuple[FloatArray, FloatArray] | None:
-        """Return noise and bias of each joint of a robot, shapes (nq,), in N m; None where there are no sensors.
+        """Return the noise and bias of each joint of a robot, shapes (nq,), in N m; None if there are no sensors.
 
         Raises:
-            ConfigError: for a list of another length; names the joints.
+            ConfigError: if the length of a list differs from the number of joints; the message contains their names.
         """
         if self.noise is None:
             return None
@@ -36,21 +37,21 @@ class JointTorqueConfig(StrictModel):
 
 
 class JointTorqueSensor:
-    """Readings of the torques that the drives put on the links: what they give, less the friction of the joints.
+    """Readings of the torques on the links: the torques of the drives minus the joint friction.
 
-    All draws are made when the sensor is made; a longer run starts alike.
+    The constructor draws all random numbers, so the start of a longer run is the same.
 
     Args:
-        ticks: Number of readings to come.
-        noise: Standard deviation of each joint's reading, shape (nq,), in N m.
-        bias: Constant error, shape (nq,), in N m.
-        generator: Source of the draws.
+        ticks: Number of readings.
+        noise: Standard deviation of the reading of each joint, shape (nq,), in N m.
+        bias: Constant error of each joint, shape (nq,), in N m.
+        generator: Random generator.
     """
 
     def __init__(self, ticks: int, noise: FloatArray, bias: FloatArray, generator: np.random.Generator) -> None:
         self._errors = bias + noise * generator.standard_normal((ticks, len(noise)))
 
     def read(self, tick: int, torque: FloatArray) -> FloatArray:
-        """Return the reading at a tick of the mean torques since the last one, shapes (nq,), in N m."""
+        """Return the reading at a tick, from the mean torques since the last tick, shapes (nq,), in N m."""
         reading: FloatArray = torque + self._errors[tick]
         return reading

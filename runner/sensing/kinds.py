@@ -11,21 +11,21 @@ from runner.plugins.registry import KindConfig, Registry
 
 
 class Encoders(Protocol):
-    """The joint measurement of one control loop."""
+    """Joint measurement of one control loop."""
 
     def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return measured joint positions and velocities from the true ones.
 
         Args:
-            tick: Number of the measurement, from 0.
-            q: True joint positions, shape (nq,), in rad; m where a joint slides.
-            dq: True joint velocities, shape (nq,), in rad/s; m/s where a joint slides.
+            tick: Index of the measurement, from 0.
+            q: True joint positions, shape (nq,), in rad; m for prismatic joints.
+            dq: True joint velocities, shape (nq,), in rad/s; m/s for prismatic joints.
         """
         ...
 
 
 class WristSensor(Protocol):
-    """A force/torque sensor between flange and tool."""
+    """Force/torque sensor between flange and tool."""
 
     def read(self, tick: int, wrench: FloatArray) -> FloatArray:
         """Return the reading of a load on the flange; see ForceTorqueSensor.read."""
@@ -36,14 +36,14 @@ class TorqueSensors(Protocol):
     """Torque sensors in the joints."""
 
     def read(self, tick: int, torque: FloatArray) -> FloatArray:
-        """Return the readings of mean torques on the links; see JointTorqueSensor.read."""
+        """Return the readings of the mean torques on the links; see JointTorqueSensor.read."""
         ...
 
 
 def _check_measurement(
     answer: Any, asked: Asked, _: int, q: FloatArray, dq: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return measured positions and velocities."""
+    """Return the checked positions and velocities of a measurement."""
     if not isinstance(answer, tuple | list) or len(answer) != 2:
         at = place(asked.part.measure)
         raise SimulationError(f"{at} gave {answer!r:.200}; it must be positions and velocities")
@@ -53,14 +53,14 @@ def _check_measurement(
 NOISES = Registry[KindConfig, [tuple[str, ...], int, float, np.random.Generator], Encoders](
     "noise", {}, Guard("noise", measure=Method(_check_measurement))
 )
-"""`build` gets the names of the joints, the number of measurements, the time between two in s, and a generator."""
+"""`build` takes the joint names, the number of measurements, the time between two in s, and a random generator."""
 
 WRIST_SENSORS = Registry[KindConfig, [int, float, np.random.Generator], WristSensor](
     "wrist_sensor", {}, Guard("wrist_sensor", read=Method(like(1)))
 )
-"""`build` gets the number of readings, the time between two in s, and a generator."""
+"""`build` takes the number of readings, the time between two in s, and a random generator."""
 
 JOINT_TORQUE_SENSORS = Registry[KindConfig, [tuple[str, ...], int, np.random.Generator], TorqueSensors](
     "joint_torque_sensor", {}, Guard("joint_torque_sensor", read=Method(like(1)))
 )
-"""`build` gets the names of the joints, the number of readings, and a generator."""
+"""`build` takes the joint names, the number of readings, and a random generator."""

@@ -1,9 +1,8 @@
 """Random streams of many runs, identical to `np.random.default_rng([seed, repetition, place])`.
 
-The streams agree to the last bit. NumPy hashes such numbers to the state of its generator (O'Neill's seed_seq without
-bias, and PCG64). NEP 19 and the NumPy documentation keep this algorithm fixed. This module hashes the numbers of all
-runs at once and sets one generator to each state in turn. This takes a fifth of the time of a new generator for each
-run.
+The streams are bitwise equal. NumPy hashes such numbers to the state of its generator (O'Neill's seed_seq without bias,
+and PCG64). NEP 19 and the NumPy documentation guarantee this algorithm. This module hashes the numbers of all runs
+together and sets one generator to each state in turn. This takes one fifth of the time of a new generator for each run.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,7 +13,7 @@ from numpy.typing import NDArray
 Words = NDArray[np.uint32]
 
 MISMATCH, JOINT_TORQUES, TIP, COMPUTATION = 2**32 - 1, 2**32 - 2, 2**32 - 3, 2**32 - 4
-"""Places of these draws in `[seed, repetition, place]`; the places of control loops and wrist sensor count from 0."""
+"""Values of `place` for these random streams; control loops and the wrist sensor have the values from 0."""
 
 _POOL = 4  # words of 32 bits
 _INIT_A, _MULT_A = 0x43B0D7E5, 0x931E8875
@@ -26,9 +25,9 @@ _BITS_32, _BITS_128 = 2**32 - 1, 2**128 - 1
 
 
 def generators(numbers: Sequence[Sequence[int]]) -> Iterator[np.random.Generator]:
-    """Yield a generator for each list of whole numbers from 0, all lists as long, equal to `default_rng` of the list.
+    """Yield a generator for each list of non-negative integers, equal to `default_rng` of the list.
 
-    It is one generator, set anew each time: what it is to draw must be drawn before the next is asked for.
+    All lists must have the same length. The generator is the same object each time: draw from it before the next step.
     """
     stream = np.random.PCG64(0)
     generator = np.random.Generator(stream)
@@ -40,7 +39,7 @@ def generators(numbers: Sequence[Sequence[int]]) -> Iterator[np.random.Generator
 
 
 def _states(numbers: Sequence[Sequence[int]]) -> Iterator[tuple[int, int]]:
-    """Yield the state of PCG64 that each list of numbers gives: its state and its increment, of 128 bits."""
+    """Yield the state and the increment of PCG64, of 128 bits each, for each list of numbers."""
     for first, second, third, fourth in _seeds(numbers):
         increment = (third << 65 | fourth << 1 | 1) & _BITS_128
         start = (first << 64 | second) + increment
@@ -48,7 +47,7 @@ def _states(numbers: Sequence[Sequence[int]]) -> Iterator[tuple[int, int]]:
 
 
 def _seeds(numbers: Sequence[Sequence[int]]) -> list[list[int]]:
-    """Return the four words of 64 bits that each list of numbers is hashed to."""
+    """Return the hash of each list of numbers, four words of 64 bits."""
     entropies = [[word for number in own for word in _words(number)] for own in numbers]
     lengths = np.array([len(entropy) for entropy in entropies])
     seeds = np.empty((len(entropies), _POOL), dtype=np.uint64)
@@ -59,14 +58,14 @@ def _seeds(numbers: Sequence[Sequence[int]]) -> list[list[int]]:
 
 
 def _words(number: int) -> list[int]:
-    """Return a whole number's digits to the base 2^32, the lowest first."""
+    """Return the digits of an integer to the base 2^32, the lowest first."""
     if number <= _BITS_32:
         return [number]
     return [number & _BITS_32, *_words(number >> 32)]
 
 
 def _hashed(entropy: Words) -> NDArray[np.uint64]:
-    """Return what SeedSequence makes of entropy, shape (words, runs): its state, four words of 64 bits, (runs, 4)."""
+    """Return the state of SeedSequence, four words of 64 bits, shape (runs, 4), from entropy, shape (words, runs)."""
     hashing = _Hashing(_INIT_A, _MULT_A)
     pool = [hashing.mix(entropy[i] if i < len(entropy) else np.zeros_like(entropy[0])) for i in range(_POOL)]
     for source in range(_POOL):

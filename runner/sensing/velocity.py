@@ -23,17 +23,17 @@ from typing import Any, Literal
 import numpy as np
 
 Velocity = Literal["exact", "finite_difference", "low_pass", "luenberger"]
-"""How joint velocities are known: as they are, or by one of the ways above."""
+"""Source of joint velocities: exact, or one of the methods above."""
 
 DEFAULT_BANDWIDTH = 200.0
-"""Of a way that has one, in rad/s, where a config names none."""
+"""Default bandwidth of low_pass and luenberger, in rad/s."""
 
 State = list[Any]
-"""What a way keeps from tick to tick: arrays of shape (nq,)."""
+"""State of a method between ticks: arrays of shape (nq,)."""
 
 
 def gains(way: Velocity, bandwidth: float, h: float) -> tuple[float, ...]:
-    """Return the numbers of a way for its bandwidth in rad/s and the time between two measurements in s."""
+    """Return the gains of a method from its bandwidth, in rad/s, and the time between two measurements, in s."""
     if way == "low_pass":
         return (-math.expm1(-bandwidth * h),)
     if way == "luenberger":
@@ -43,14 +43,14 @@ def gains(way: Velocity, bandwidth: float, h: float) -> tuple[float, ...]:
 
 
 def first_state(way: Velocity, measured: Any) -> State:
-    """Return what stands before the first measurement, shape (nq,), of an arm at rest; nothing where it is exact."""
+    """Return the state before the first measurement, shape (nq,), for an arm at rest; empty for exact velocities."""
     if way == "exact":
         return []
     return [measured] if way == "finite_difference" else [measured, np.zeros_like(measured)]
 
 
 def next_velocity(way: Velocity, numbers: Sequence[Any], h: Any, measured: Any, state: State) -> tuple[Any, State]:
-    """Return the velocity after a measurement, shape (nq,), and what is kept; of a way that is not exact."""
+    """Return the estimated velocity after a measurement, shape (nq,), and the new state; not for exact velocities."""
     if way == "luenberger":
         p_squared, gain = numbers
         error = measured - state[0] - h * state[1]

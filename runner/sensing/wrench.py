@@ -9,32 +9,32 @@ from runner.base.arrays import FloatArray
 
 
 def cross(a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
-    """Return a x b, shapes (3,), of any kind of scalar; numpy's own takes ten times as long for single vectors."""
+    """Return a x b, shapes (3,), for any scalar type; ten times as fast as numpy.cross for single vectors."""
     (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
     return np.array((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
 
 
 def cross_matrix(vector: FloatArray) -> FloatArray:
-    """Return [v]_x, shape (3, 3), so that [v]_x w = v x w."""
+    """Return [v]_x, shape (3, 3), with [v]_x w = v x w."""
     x, y, z = vector
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def wrench_transform(pose: FloatArray) -> FloatArray:
-    r"""Return the matrix that takes wrenches from a frame S1 to a frame S2.
+    r"""Return the matrix that transforms wrenches from a frame S1 to a frame S2.
 
     With R and p the orientation and origin of S1 in S2,
 
     .. math:: F_2 = R F_1, \qquad M_2 = R M_1 + p \times R F_1
 
-    The power of a wrench is the same in both. The report writes the moment about q as that about p plus the lever
-    from q to p times the force, and in one of three lines "M_p" where M_q is meant; its final matrix is this one.
+    The power of a wrench is the same in both frames. In the report, the moment about q is the moment about p plus the
+    lever from q to p times the force. One of its three lines prints "M_p" instead of M_q. Its final matrix is this one.
 
     Args:
         pose: Homogeneous transform of S1 in S2, shape (4, 4).
 
     Returns:
-        Shape (6, 6), for wrenches of a force in N and then a moment about the frame's origin in N m.
+        Shape (6, 6), for wrenches as force in N, then moment about the frame's origin in N m.
     """
     R, p = pose[:3, :3], pose[:3, 3]
     transform = np.zeros((6, 6))

@@ -1,4 +1,4 @@
-"""Sensitivity of a run's metrics to its parameters: exact derivatives through the compiled closed loop."""
+"""Sensitivity of the metrics of a run to its parameters: exact derivatives by the compiled closed loop."""
 
 from runner.analysis.sensitivity.analysis import Sensitivity, analyse, of_run
 from runner.analysis.sensitivity.differences import differences

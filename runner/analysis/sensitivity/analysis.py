@@ -1,4 +1,4 @@
-"""Derivatives of a run's metrics by its parameters."""
+"""Derivatives of the metrics of a run by its parameters."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -29,16 +29,16 @@ from runner.symbolic.engine import evaluator
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """The derivatives of a run's metrics by its parameters.
+    """Derivatives of the metrics of a run by its parameters.
 
     Attributes:
         scene: The run.
-        metrics: Its smooth metrics by name.
-        parameters: The parameters on which it depends.
-        derivatives: Of each metric by each parameter, shape (parameters,).
+        metrics: Values of the smooth metrics by name.
+        parameters: The parameters on which the run depends.
+        derivatives: Derivatives of each metric by the parameters, shape (parameters,), by the name of the metric.
         left_out: Names of the parameters without a derivative, by the reason.
-        error: Root mean square of the tip's error over the run, in m.
-        moves: Largest way of the tip by each parameter, per relative change of it, shape (parameters,), in m.
+        error: RMS tip error over the run, in m.
+        moves: Largest change of a tip coordinate per relative change of each parameter, shape (parameters,), in m.
     """
 
     scene: Scene
@@ -50,33 +50,33 @@ class Sensitivity:
     moves: FloatArray
 
     def elasticities(self, metric: str) -> FloatArray:
-        """Return d ln metric / d ln parameter of each parameter, shape (parameters,); NaN where the metric is 0."""
+        """Return d ln metric / d ln parameter for each parameter, shape (parameters,); NaN if the metric is 0."""
         value = self.metrics[metric]
         values = np.array([parameter.value for parameter in self.parameters])
         found: FloatArray = self.derivatives[metric] * values / value if value else np.full(len(values), np.nan)
         return found
 
     def ranked(self, metric: str) -> list[int]:
-        """Return the places of the parameters, first the one that matters most."""
+        """Return the indices of the parameters, the one with the largest effect first."""
         size = np.abs(self.elasticities(metric) if self.metrics[metric] else self.derivatives[metric])
         places: list[int] = np.argsort(-size, kind="stable").tolist()
         return places
 
 
 def analyse(composed: Composed, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sensitivity:
-    """Return the derivatives of all smooth metrics of a run by its parameters; of a compiled Runge-Kutta plant.
+    """Return the derivatives of all smooth metrics of a run by its parameters, for a compiled Runge-Kutta plant.
 
-    A derivative by a key of the config is that of the run composed again with another value there: keys that take this
-    value, such as `${controller.natural_frequency}`, go with it.
+    A derivative by a config key includes the keys that refer to it, as in `${controller.natural_frequency}`: the config
+    is composed again with another value of the key.
 
     Args:
-        composed: The run's config, and the overrides that give it.
-        groups: Which parameters, some of GROUPS.
-        repetition: Number of the repetition.
+        composed: Config of the run with its overrides.
+        groups: Groups of the parameters, from GROUPS.
+        repetition: Index of the repetition.
 
     Raises:
-        RunnerError: where the run has no compiled form, ends early, or depends on no such parameter.
-        ConfigError: where it cannot start.
+        RunnerError: if the run has no compiled form, ends early, or depends on no parameter of the groups.
+        ConfigError: if the run cannot start.
     """
     slopes = slopes_of(composed, groups, repetition)
     scene = slopes.scene
@@ -106,7 +106,7 @@ def analyse(composed: Composed, groups: Sequence[str] = GROUPS, repetition: int 
 
 
 def slopes_of(composed: Composed, groups: Sequence[str], repetition: int) -> Slopes:
-    """Return the derivatives of the numbers that a repetition of a run depends on; see analyse."""
+    """Return the derivatives of the inputs of a repetition of a run; see analyse."""
 
     def recomposed(*overrides: str) -> RunConfig:
         again = compose([*composed.overrides, *overrides], composed.config_dirs) if overrides else composed
@@ -121,7 +121,7 @@ def slopes_of(composed: Composed, groups: Sequence[str], repetition: int) -> Slo
 
 
 def by_runge_kutta(composed: Composed) -> RunConfig:
-    """Return the checked config of a run, with the Runge-Kutta plant instead of another one that takes torques."""
+    """Return the checked config of a run; the Runge-Kutta plant replaces any other plant that takes torques."""
     config = validate(composed)
     if config.plant.kind == "rk4" or is_flexible(config) or PLANTS.commands(config.plant.kind) != "torque":
         return config
@@ -135,22 +135,22 @@ def simulate_run(run: RunSpec) -> tuple[Trace, Mapping[str, float | None]]:
     """Return the trace and metrics of one run.
 
     Raises:
-        RunnerError: where it ends early.
+        RunnerError: if the run ends early.
     """
     (found,) = BatchSimulator().simulate([run])
     if not isinstance(found, BatchResult):
         failure = found[1].failure
-        assert failure is not None  # noqa: S101 - it is why the run is not among those that ended well
+        assert failure is not None  # noqa: S101 - only failed runs are not a BatchResult
         raise RunnerError(f"the run has no derivatives: it ended at {failure.time:g} s, {failure.reason}")
     return found.traces.run(0), summary.of_run(measure(found.traces, found.context), 0)
 
 
 def scene_of(config: RunConfig, repetition: int) -> Scene:
-    """Return a repetition of a run that is compiled whole.
+    """Return a repetition of a run whose closed loop is compiled.
 
     Raises:
-        RunnerError: where it is not, with the reason.
-        ConfigError: where it cannot start.
+        RunnerError: if the closed loop is not compiled; the message contains the reason.
+        ConfigError: if the run cannot start.
     """
     why = _why_not(config)
     found = None if why else assemble_program(config, repetition)
@@ -161,7 +161,7 @@ def scene_of(config: RunConfig, repetition: int) -> Scene:
 
 
 def _why_not(config: RunConfig) -> str:
-    """Return why a run has no derivatives; nothing where it may have."""
+    """Return the reason why a run has no derivatives; empty if no reason is found."""
     if not evaluator():
         return "llvmlite, which compiles runs, is not installed; `pip install llvmlite`"
     if config.commands != "torque":
@@ -181,15 +181,15 @@ def _why_not(config: RunConfig) -> str:
 
 
 def of_run(run: Run, groups: Sequence[str] = GROUPS, repetition: int = 0) -> Sensitivity:
-    """Return the derivatives of a stored run's smooth metrics by its parameters; see analyse.
+    """Return the derivatives of the smooth metrics of a stored run by its parameters; see analyse.
 
     Args:
         run: The run.
-        groups: Which parameters, some of GROUPS.
-        repetition: Number of the repetition.
+        groups: Groups of the parameters, from GROUPS.
+        repetition: Index of the repetition.
 
     Raises:
-        RunnerError: where there is no such repetition, its command gives another run today, or it has no derivatives.
+        RunnerError: if the repetition does not exist, the overrides now give another run, or it has no derivatives.
     """
     count = int(run.record["repetitions"])
     if not 0 <= repetition < count:

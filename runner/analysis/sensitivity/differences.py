@@ -1,4 +1,4 @@
-"""Central differences of metrics over whole runs, to check exact derivatives."""
+"""Central differences of metrics of whole runs, to check exact derivatives."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,17 +10,17 @@ from runner.base.arrays import FloatArray
 from runner.metrics import measure
 from runner.simulation.batch import BatchResult, BatchSimulator
 
-_LARGEST, _STEPS = 2.0**-8, 9  # of a parameter's value, and of the error; each step is half the one before
-_ROUNDING = 4e-15  # of metrics that follow from lengths, angles or torques of about 1 in SI units
+_LARGEST, _STEPS = 2.0**-8, 9  # fraction of the parameter and of the error; each step is half the previous one
+_ROUNDING = 4e-15  # of metrics from lengths, angles or torques of about 1 in SI units
 
 
 @dataclass(frozen=True)
 class Differences:
-    """Derivatives by differences.
+    """Derivatives of a metric from differences.
 
     Attributes:
-        derivatives: By each parameter, shape (parameters,).
-        doubts: How far they may be off, as their steps tell, likewise.
+        derivatives: Derivative by each parameter, shape (parameters,).
+        doubts: Error estimate of each derivative from its steps, shape (parameters,).
     """
 
     derivatives: FloatArray
@@ -28,16 +28,16 @@ class Differences:
 
 
 def differences(found: Sensitivity, names: Sequence[str]) -> dict[str, Differences]:
-    """Return the derivatives of some metrics by all parameters, by runs of ordinary compiled code.
+    """Return the derivatives of metrics by all parameters, from runs with the ordinary compiled code.
 
-    Central differences at nine steps are extrapolated to none, and the order is taken at which two neighbours agree
-    best (Ridders 1982, Advances in Engineering Software 4, 75-76).
+    Central differences at nine steps are extrapolated to step zero. The estimate with the best agreement between
+    neighbours is taken (Ridders 1982, Advances in Engineering Software 4, 75-76).
 
     Args:
         found: The run with its exact derivatives.
-        names: Which metrics.
+        names: Names of the metrics.
     """
-    # The tip moves by a small part of its error, so that samples keep their signs and largest ones their places.
+    # The tip moves by a small fraction of its error, so that the signs and the positions of maxima do not change.
     first = _LARGEST * np.minimum(1.0, found.error / np.maximum(found.moves, 1e-300))
     steps = first[:, None] * 0.5 ** np.arange(_STEPS)
     runs = [
@@ -54,7 +54,7 @@ def differences(found: Sensitivity, names: Sequence[str]) -> dict[str, Differenc
     pairs = values.reshape(len(names), len(found.parameters), _STEPS, 2)
     size = np.array([parameter.value for parameter in found.parameters])[:, None] * steps  # of a step
     slopes = (pairs[..., 1] - pairs[..., 0]) / (2.0 * size)
-    # Gains may make rounding larger: neighbours at the smallest steps then scatter though their order is removed.
+    # Gains can amplify rounding errors: the smallest steps then scatter although their error order is removed.
     smallest = (4.0 * slopes[..., -3:] - slopes[..., -4:-1]) / 3.0
     scatter = np.abs(np.diff(smallest)).max(axis=-1, keepdims=True) * np.abs(size[:, -1:])
     rounding = [
@@ -65,11 +65,11 @@ def differences(found: Sensitivity, names: Sequence[str]) -> dict[str, Differenc
 
 
 def _extrapolated(slopes: FloatArray, rounding: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return limits of central differences at steps each half the one before, and their doubts, shapes (n,).
+    """Return the limits of central differences and their error estimates, shapes (n,).
 
     Args:
-        slopes: The differences, shape (n, steps).
-        rounding: What rounding alone may give of each, likewise.
+        slopes: The differences, each at half the step of the previous one, shape (n, steps).
+        rounding: Bound of the rounding error of each difference, shape (n, steps).
     """
     best, doubt = slopes[:, 0].copy(), np.full(len(slopes), np.inf)
     column = slopes

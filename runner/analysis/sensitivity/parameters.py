@@ -21,27 +21,27 @@ from runner.robots.robot import Robot, with_armature, with_models
 from runner.store import simulated_part
 from runner.trajectories.joint_motion import TipOfJoints
 
-# The words of each group; the first of them in a key's name gives the key its group.
+# Key segments of each group; the first known segment of a key determines its group.
 _WORDS: Mapping[str, Sequence[str]] = {
     "gains": ("controller", "disturbance_observer", "notch"), "masses": ("masses", "tool"), "armature": ("armature",),
     "lengths": (), "payload": ("payload",), "friction": ("friction",), "gravity": ("gravity",),
     "limits": ("torque_limits",), "noise": ("noise",), "mismatch": ("mismatch",), "others": (),
 }  # fmt: skip
 GROUPS = tuple(_WORDS)
-_SMALL = 1e-6  # replaces 0, to see if the key acts
+_SMALL = 1e-6  # replaces 0 in the test whether a key has an effect
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number on which a run depends.
+    """Parameter of a run.
 
     Attributes:
-        name: Dotted key of the config; or armature.JOINT, mass.JOINT or length.JOINT of the link that a joint moves.
+        name: Dotted key of the config; or armature.JOINT, mass.JOINT or length.JOINT, for the link moved by a joint.
         group: One of GROUPS.
-        value: Its value.
-        unit: Its unit.
-        with_value: Returns the run's config with another value.
-        followers: Other keys of the config that change with it.
+        value: Value of the parameter.
+        unit: Unit of the value.
+        with_value: Function of another value; returns the config of the run with it.
+        followers: Other keys of the config that change with the parameter.
     """
 
     name: str
@@ -54,14 +54,14 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Key:
-    """A key of a config that holds a number, or a list of numbers.
+    """Key of a config whose value is a number or a list of numbers.
 
     Attributes:
-        name: Its dotted name.
+        name: Dotted name of the key.
         group: One of GROUPS.
-        numbers: Its numbers by their places in the config.
-        config: The run's checked config.
-        recomposed: Returns the checked config with a further override.
+        numbers: Numbers of the key by their paths in the config.
+        config: Checked config of the run.
+        recomposed: Function of an additional override; returns the checked config.
     """
 
     name: str
@@ -71,12 +71,12 @@ class Key:
     recomposed: Callable[[str], RunConfig]
 
     def changed(self, share: float) -> RunConfig:
-        """Return the config with each number changed by another share, because only a list's direction may act."""
+        """Return the config with each number changed by a different fraction: a run may depend on ratios in a list."""
         shares = enumerate(self.numbers.items(), start=1)
         return self._with({place: number * (1.0 + n * share) or _SMALL for n, (place, number) in shares})
 
     def parameters(self, changed: RunConfig) -> Iterator[Parameter]:
-        """Yield a parameter for each number, given the config in which they have changed."""
+        """Yield a parameter for each number, given the config with changed numbers."""
         before, after = _numbers(self.config), _numbers(changed)
         names = dict.fromkeys(_name(place) for place in before if before[place] != after.get(place))
         followers = [name for name in names if name != self.name]
@@ -96,12 +96,12 @@ class Key:
 
 
 def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Callable[[str], RunConfig]) -> Iterator[Key]:
-    """Yield the keys of a run's config that hold numbers, in some groups.
+    """Yield the numeric keys of the config of a run.
 
     Args:
-        config: The run's checked config.
-        groups: Some of GROUPS.
-        recomposed: Returns the checked config with a further override.
+        config: Checked config of the run.
+        groups: Groups of the keys, from GROUPS.
+        recomposed: Function of an additional override; returns the checked config.
     """
     for name, found in groupby(_numbers(config).items(), lambda number: _name(number[0])):
         group = next((group for word in name.split(".") for group, words in _WORDS.items() if word in words), "others")
@@ -110,9 +110,9 @@ def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Callable[[st
 
 
 def _numbers(config: RunConfig) -> dict[Place, float]:
-    """Return the numbers of a config by their places."""
+    """Return the numbers of a config by their paths."""
     own = simulated_part(config.resolved)
-    own["robot"] = own.pop("robot")  # last: of two keys with one effect the first has the row
+    own["robot"] = own.pop("robot")  # last, because the first of two keys with the same effect is listed
     numbers = ((place, value) for place, value in leaves(own) if isinstance(value, int | float))
     return {place: float(value) for place, value in numbers if not isinstance(value, bool) and np.isfinite(value)}
 
@@ -122,7 +122,7 @@ def _name(place: Place) -> str:
 
 
 def find_links(config: RunConfig, groups: Sequence[str]) -> Iterator[Parameter]:
-    """Yield the masses, armature and lengths of an arm, in some of GROUPS, that are not 0."""
+    """Yield the nonzero masses, armatures and lengths of an arm that are in the given groups."""
     model = config.arm.model
     for joint, name in enumerate(model.joint_names, start=1):
         mass, length = float(model.pin_model.inertias[joint].mass), _length(model, joint)
@@ -136,7 +136,7 @@ def find_links(config: RunConfig, groups: Sequence[str]) -> Iterator[Parameter]:
 
 
 def _length(model: RobotModel, joint: int) -> float:
-    """Return the way from a joint to the next one, or to the tip, in m."""
+    """Return the distance from a joint to the next one, or to the tip, in m."""
     arm = model.pin_model
     for after in range(joint + 1, arm.njoints):
         if arm.parents[after] == joint:
@@ -145,8 +145,8 @@ def _length(model: RobotModel, joint: int) -> float:
 
 
 def _with_scaled(config: RunConfig, row: int, joint: int, own: float, value: float) -> RunConfig:
-    """Return a config in which the mass (row 0) or the length (row 1) of a link has another value."""
-    factors = np.ones((2, config.arm.model.nq + 1))  # of the base and each link
+    """Return a config with another mass (row 0) or length (row 1) of a link."""
+    factors = np.ones((2, config.arm.model.nq + 1))  # of masses and lengths, for the base and each link
     factors[row, joint] = value / own
 
     def change(model: RobotModel, joints: slice, _: bool) -> RobotModel:
@@ -163,6 +163,6 @@ def _with_armature(config: RunConfig, joint: int, value: float) -> RunConfig:
 
 
 def _with_robot(config: RunConfig, changed: Robot) -> RunConfig:
-    """Return a config with another arm, of the plant and of the controllers."""
+    """Return a config with another arm in the plant and in the controllers."""
     loops = CONTROLLERS.build_for(config.controller, changed, isinstance(config.path, TipOfJoints))
     return replace(config, arm=changed, loops=loops)

@@ -1,4 +1,4 @@
-"""Derivatives of the numbers of a closed loop by a parameter, exact to rounding."""
+"""Derivatives of the inputs of a closed loop by a parameter, exact to rounding."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,23 +18,23 @@ from runner.simulation.compiled.directed import Setting
 from runner.simulation.compiled.law import structure_cache_key
 from runner.trajectories.trajectory import Trajectory
 
-_PART = 1.0 / 512.0  # of a parameter's value, between the nine at which numbers are taken
-_EIGHTH = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)  # exact for polynomials of up to that degree
+_PART = 1.0 / 512.0  # step as a fraction of the parameter's value; the stencil has nine points
+_EIGHTH = (4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0)  # exact for polynomials up to degree 8
 _SIXTH = (3.0 / 4.0, -3.0 / 20.0, 1.0 / 60.0, 0.0)
 _AGREES, _ROUNDING = 1e-9, 1e-12
 _CODE = "it changes the code of the law"
 
 
 class NoDerivativeError(RunnerError):
-    """A run has no derivative by a parameter; the message is the reason."""
+    """A run has no derivative by a parameter; the message is the reason why."""
 
 
 class Scene(RunSpec):
-    """One repetition of a run, and the derivatives of the numbers that it depends on."""
+    """One repetition of a run, with the derivatives of its inputs."""
 
     @property
     def setting(self) -> Setting:
-        """The numbers that it depends on."""
+        """Inputs of the run: numbers of the loop, start state and encoder errors."""
         loops, settings = self.loop_program.commands.loops, self.config.settings
         errors = [
             encoder_errors(
@@ -48,10 +48,11 @@ class Scene(RunSpec):
         return Setting(self.loop_program.numbers, start, errors)
 
     def at(self, parameter: Parameter, value: float) -> "Scene":
-        """Return the run with another value of a parameter; where the arm starts and the desired motion are held.
+        """Return the run with another value of a parameter; the start of the arm and the desired motion do not change.
 
         Raises:
-            ConfigError: where there is no such run.
+            NoDerivativeError: if the value changes the ticks, the steps or the code of the law.
+            ConfigError: if the value is not allowed.
         """
         return self._changed(parameter.with_value(value))
 
@@ -61,7 +62,7 @@ class Scene(RunSpec):
             raise NoDerivativeError("it changes the ticks or steps of the run, which are held")
         if _fixed(loop_program) != _fixed(self.loop_program):
             raise NoDerivativeError(_CODE)
-        # Metrics depend on the arm itself, such as on its home.
+        # Metrics depend on the arm, for example on its home configuration.
         return replace(
             self, config=replace(config, arm=self.config.arm, path=self.config.path), loop_program=loop_program
         )
@@ -70,8 +71,8 @@ class Scene(RunSpec):
         """Return True if another config gives another run.
 
         Raises:
-            NoDerivativeError: where it does so in a way that has no derivative.
-            ConfigError: where it cannot start.
+            NoDerivativeError: if the dependence has no derivative.
+            ConfigError: if the other run cannot start.
         """
         times: FloatArray = np.arange(self.rows, dtype=np.float64) * self.loop_program.tick
         if not np.array_equal(_motion(self.config.path, times), _motion(config.path, times)):
@@ -81,14 +82,14 @@ class Scene(RunSpec):
         return not np.array_equal(_vector(self.setting), _vector(self._changed(config).setting))
 
     def slope(self, parameter: Parameter) -> Setting:
-        """Return the derivatives by a parameter of the numbers that the run depends on.
+        """Return the derivatives of the inputs of the run by a parameter.
 
-        These numbers are polynomials of low degree in a parameter, as omega_n^2 is, or ratios of such: the formula of
-        eighth order through values near the parameter's own is exact to rounding, and that of sixth order must agree.
+        These inputs are polynomials of low degree in a parameter, such as omega_n^2, or ratios of polynomials. So
+        central differences of eighth order are exact to rounding, and those of sixth order must agree.
 
         Raises:
-            NoDerivativeError: where they do not.
-            ConfigError: if a value near the parameter's own is not allowed.
+            NoDerivativeError: if the two differences do not agree.
+            ConfigError: if a neighbouring value of the parameter is not allowed.
         """
         base, h = self.setting, _PART * parameter.value
         scenes = {step: self.at(parameter, parameter.value + step * h) for step in (*range(-4, 0), *range(1, 5))}
@@ -98,7 +99,7 @@ class Scene(RunSpec):
             taken = {step: of(setting) for step, setting in settings.items()}
             if any(value.shape != of(base).shape for value in taken.values()):
                 raise NoDerivativeError(_CODE)
-            finite = np.isfinite(of(base))  # a limit that is none stays none
+            finite = np.isfinite(of(base))  # an infinite limit stays infinite
             taken = {step: np.where(finite, value, 0.0) for step, value in taken.items()}
             found, other = (
                 sum(weight * (taken[step] - taken[-step]) for step, weight in enumerate(weights, start=1)) / h
@@ -106,7 +107,7 @@ class Scene(RunSpec):
             )
             near = np.abs(np.where(finite, of(base), 0.0)) / abs(parameter.value)
             size = np.maximum(np.abs(found), near)
-            # Where large numbers have cancelled, rounding is of their size.
+            # After cancellation of large numbers, the rounding error is relative to their size.
             if not np.all(np.abs(found - other) <= _AGREES * size + _ROUNDING * near.max(initial=0.0)):
                 raise NoDerivativeError("the numbers of the loop are no smooth functions of it")
             exact: FloatArray = np.where(np.abs(found) <= _ROUNDING * size, 0.0, found)
@@ -134,13 +135,13 @@ def _vector(setting: Setting) -> FloatArray:
 
 @dataclass
 class Slopes:
-    """Derivatives of the numbers that a run depends on, by its parameters.
+    """Derivatives of the inputs of a run by its parameters.
 
     Attributes:
         scene: The run.
         parameters: The parameters.
-        settings: The derivative by each.
-        left_out: Names of the parameters by which there is none, by the reason.
+        settings: Derivatives of the inputs by each parameter.
+        left_out: Names of the parameters without a derivative, by the reason.
     """
 
     scene: Scene
@@ -149,7 +150,7 @@ class Slopes:
     left_out: dict[str, list[str]] = field(default_factory=dict)
 
     def add_key(self, key: Key) -> None:
-        """Add the numbers of a key, if the run depends on them."""
+        """Add the numbers of a key if the run depends on them."""
         with self._leaving_out(key.name):
             changed = key.changed(_PART)
             if self.scene.depends(changed):
@@ -157,7 +158,7 @@ class Slopes:
                     self.add(parameter)
 
     def add(self, parameter: Parameter) -> None:
-        """Add a parameter, if the run depends on it and no other one has the same effect."""
+        """Add a parameter if the run depends on it and no other parameter has the same effect."""
         with self._leaving_out(parameter.name):
             if parameter.value == 0.0:
                 raise NoDerivativeError("its value is 0 (a small value shows its effect)")

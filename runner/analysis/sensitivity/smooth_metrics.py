@@ -1,4 +1,4 @@
-"""Derivatives of metrics that are smooth functionals of a run's signals; see the families of runner/metrics.
+"""Derivatives of metrics that are smooth functionals of the signals of a run; see the families in runner/metrics.
 
 The derivative of a maximum is the derivative of the sample at which it is reached. It is exact if there is only one
 such sample.
@@ -23,18 +23,18 @@ WITHOUT = {
     "reach_loss_fraction": "it counts ticks",
     "cross_track_error": "it is the distance to the nearest point of a curve, whose change is not worked out",
 }
-"""Metrics without a derivative, and why."""
+"""Metrics without a derivative, with the reason."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """How the signals of a run change with parameters: derivatives, first of all by parameters.
+    """Derivatives of the signals of a run by parameters.
 
     Attributes:
-        q: Of joint positions, shape (parameters, T, nq).
-        dq: Of joint velocities, likewise.
-        tau: Of torques, likewise, a row as in the trace.
-        end_points: Of the end points of the stages, shape (stages, parameters, T, 3).
+        q: Derivatives of joint positions, shape (parameters, T, nq).
+        dq: Derivatives of joint velocities, shape (parameters, T, nq).
+        tau: Derivatives of torques, shape (parameters, T, nq), with rows as in the trace.
+        end_points: Derivatives of the end points of the stages, shape (stages, parameters, T, 3).
     """
 
     q: FloatArray
@@ -44,12 +44,12 @@ class Change:
 
 
 def derivatives(trace: Trace, change: Change, context: MetricContext) -> dict[str, FloatArray]:
-    """Return the derivative of each smooth metric of a run by each parameter, shapes (parameters,), by name.
+    """Return the derivatives of the smooth metrics of a run by each parameter, shapes (parameters,), by metric.
 
     Args:
-        trace: The run's trace.
-        change: How it changes.
-        context: What the run's metrics need to know.
+        trace: Trace of the run.
+        change: Derivatives of the signals of the trace.
+        context: Context of the metrics of the run.
     """
     found = _of_tip(trace, change.end_points[-1], context) | _of_joints(trace, change, context.period)
     for index, stage in enumerate(trace.stage_names[:-1]):
@@ -60,10 +60,10 @@ def derivatives(trace: Trace, change: Change, context: MetricContext) -> dict[st
 
 
 def check_smooth(name: str, known: Mapping[str, object]) -> None:
-    """Refuse a metric that has no derivative.
+    """Check that a metric has a derivative.
 
     Raises:
-        RunnerError: with the reason, and the metrics that have one.
+        RunnerError: if it has none; the message contains the reason and the metrics with a derivative.
     """
     if name in known:
         return
@@ -74,7 +74,7 @@ def check_smooth(name: str, known: Mapping[str, object]) -> None:
 
 
 def _of_tip(trace: Trace, tip: FloatArray, context: MetricContext) -> dict[str, FloatArray]:
-    """Return the derivatives of what is measured of an end point, which changes by `tip`, shape (parameters, T, 3)."""
+    """Return the derivatives of the metrics of an end point, whose derivatives are `tip`, shape (parameters, T, 3)."""
     trajectory, error, found = context.trajectory, trace.error, dict[str, FloatArray]()
 
     def largest(rows: slice, axes: slice) -> FloatArray:
@@ -134,7 +134,7 @@ def _of_joints(trace: Trace, change: Change, period: float) -> dict[str, FloatAr
 def _over_joints(
     name: str, derivative: Callable[..., FloatArray], signal: FloatArray, changed: FloatArray, joints: NDArray[np.intp]
 ) -> dict[str, FloatArray]:
-    """Return the derivatives of a metric over joints, and of each alone."""
+    """Return the derivatives of a metric over all given joints and of each joint."""
     alone = {f"{name}_q{j + 1}": derivative(signal[:, [j]], changed[:, :, [j]]) for j in joints}
     return {name: derivative(signal[:, joints], changed[:, :, joints]), **alone}
 
