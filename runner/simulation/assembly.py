@@ -33,18 +33,17 @@ from runner.trajectories.joint_motion import TipOfJoints
 
 
 def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
-    """Make the closed loop that a config describes; `ClosedLoop.close` releases it.
+    """Build the closed loop of a config; `ClosedLoop.close` releases it.
 
-    Controllers and servos get the arm as they believe it to be, in a repetition; plant, path and start are of the true
-    one.
+    Controllers and servos use the nominal model of a repetition. Plant, path and start use the true arm.
 
     Args:
         config: The checked config.
-        repetition: Number of the repetition, from which the nominal model follows.
+        repetition: Number of the repetition, which determines the nominal model.
 
     Raises:
-        ConfigError: where the start of the trajectory cannot be reached, joints that are told where to go cannot
-            follow it, or a part refuses its config.
+        ConfigError: if the start of the trajectory cannot be reached, position-controlled joints cannot follow it, or a
+            component rejects its config.
     """
     arm, path, timing = config.arm, config.path, config.timing
     q_start = find_start(config)
@@ -79,11 +78,11 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
 
 
 def assemble_program(config: RunConfig, repetition: int = 0) -> tuple[LoopProgram, FloatArray] | None:
-    """Return a closed loop that is compiled as a whole, and where it starts, shape (nq,), in rad; None where none is.
+    """Return a closed loop compiled as a whole, and its start, shape (nq,), in rad; None if it is not compiled.
 
     Args:
         config: The checked config.
-        repetition: Number of the repetition, from which the nominal model follows.
+        repetition: Number of the repetition, which determines the nominal model.
 
     Raises:
         ConfigError: see assemble.
@@ -97,11 +96,11 @@ def assemble_program(config: RunConfig, repetition: int = 0) -> tuple[LoopProgra
 
 
 def describe_loop(config: RunConfig, repetition: int = 0) -> LoopProgram | None:
-    """Return a closed loop whose code could be made as a whole, without making it; None where there is none.
+    """Return a closed loop that can be compiled as a whole, without compiling it; None if it cannot.
 
     Args:
         config: The checked config.
-        repetition: Number of the repetition, from which the nominal model follows.
+        repetition: Number of the repetition, which determines the nominal model.
     """
     if config.commands != "torque" or config.has_contact or not config.compilable or is_flexible(config):
         return None
@@ -116,7 +115,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> LoopProgram | None:
 
 
 def find_start(config: RunConfig) -> FloatArray:
-    """Return where the arm starts, shape (nq,), in rad."""
+    """Return the initial joint positions, shape (nq,), in rad."""
     arm, path = config.arm, config.path
     if isinstance(path, TipOfJoints):
         q_start = path.q_start
@@ -144,7 +143,7 @@ def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loo
 
 
 def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> LoopProgram | CompiledCommands | None:
-    """Return the closed loop as compiled code, or what its loops ask; None where neither can be had."""
+    """Return the compiled closed loop, or its compiled control loops; None if neither can be compiled."""
     if config.commands != "torque" or not config.compilable or is_flexible(config):
         return None
     commands = find_commands(
@@ -156,7 +155,7 @@ def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> LoopProgram | Compil
 
 
 def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall | None = None) -> Plant:
-    """Return the plant, behind joint servos where it takes torques and loops of a period command joint positions."""
+    """Return the plant, with joint servos if it takes torques and loops of a period command joint positions."""
     arm, timing = config.arm, config.timing
     ticks_per_command = round(period / timing.tick)
     if PLANTS.commands(config.plant.kind) == "position":
@@ -173,7 +172,7 @@ def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall 
 
 
 def _make_torque_plant(config: RunConfig) -> Plant:
-    """Return the plant; one of each payload where that changes on the way."""
+    """Return the plant; one for each payload if the payload changes during the motion."""
     timing = config.timing
     with ExitStack() as on_error:
         plants: list[Plant] = []
@@ -186,7 +185,7 @@ def _make_torque_plant(config: RunConfig) -> Plant:
 
 
 def _make_touched_plant(config: RunConfig, wall: Wall) -> Plant:
-    """Return the plant of an arm without a tool, whose tip touches a wall within its steps."""
+    """Return the plant of an arm without a tool, whose tip touches a wall in its integration steps."""
     timing = config.timing
     plant = PLANTS.build(config.plant, config.arm, timing.step, 1)
     lead = 0.5 if PLANTS.features(config.plant.kind).moves_exactly(config.plant) else 0.0
@@ -194,10 +193,10 @@ def _make_touched_plant(config: RunConfig, wall: Wall) -> Plant:
 
 
 def metric_context(config: RunConfig) -> MetricContext:
-    """Return what the metrics need to know of a run beside its trace."""
+    """Return the data of a run that metrics need besides its trace."""
     return MetricContext(config.path, config.robot.settling_band, config.timing.tick, reach_of(config.controller))
 
 
 def reach_of(controller: ControllerConfig) -> float | None:
-    """Return up to where a riding stage follows its target, in m; None where no law has such a limit."""
+    """Return the distance up to which a mounted stage follows its target, in m; None without such a limit."""
     return controller.reach if isinstance(controller, FollowsWithinReach) else None

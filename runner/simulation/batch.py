@@ -26,10 +26,10 @@ from runner.simulation.compiled.closed_loop import LoopProgram, Signals, run_all
 from runner.simulation.failures import ended_well, find_failure
 from runner.simulation.results import Collector
 
-_MOST_BYTES = 32e6  # of the signals of runs that are simulated together
-_GROWTH = math.log(1.25)  # of the longest run over the shortest that are simulated together
+_MOST_BYTES = 32e6  # limit of the signals of runs that are simulated together
+_GROWTH = math.log(1.25)  # limit of the longest over the shortest run in a batch
 _MOST_KEPT = 2000
-_MEMORY = Memory(4096)  # the controllers of runs
+_MEMORY = Memory(4096)  # for controllers
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class RunSpec:
     Attributes:
         config: The run's checked config.
         repetition: Number of the repetition.
-        loop_program: Its closed loop.
-        q_start: Where the arm starts, shape (nq,), in rad.
+        loop_program: The closed loop.
+        q_start: Initial joint positions, shape (nq,), in rad.
     """
 
     config: RunConfig
@@ -50,12 +50,12 @@ class RunSpec:
 
     @property
     def rows(self) -> int:
-        """Number of rows of its trace."""
+        """Number of rows of the trace."""
         return self.config.timing.ticks + 1
 
     @property
     def code(self) -> Hashable:
-        """What runs have in common that are simulated together."""
+        """Key of the runs that are simulated together."""
         loop_program = self.loop_program
         every = tuple(loop.every for loop in loop_program.commands.loops)
         return (
@@ -69,7 +69,7 @@ class RunSpec:
 
     @property
     def scene(self) -> Hashable:
-        """What runs have in common that are measured together."""
+        """Key of the runs that are measured together."""
         config = self.config
         reach = _MEMORY.recall(reach_of, config.controller)
         return id(config.arm), id(config.path), self.rows, config.robot.settling_band, reach
@@ -77,12 +77,12 @@ class RunSpec:
 
 @dataclass(frozen=True)
 class BatchResult:
-    """Runs that ended well and are measured together.
+    """Runs that succeeded and are measured together.
 
     Attributes:
-        places: Which they are among those that were asked for.
-        traces: Their traces.
-        context: What their metrics need to know.
+        places: Indices among the requested runs.
+        traces: Traces of the runs.
+        context: Data for the metrics.
     """
 
     places: Sequence[int]
@@ -91,23 +91,23 @@ class BatchResult:
 
 
 class BatchSimulator:
-    """Simulates runs together; it keeps what runs have in common, as long as their configs share the same objects."""
+    """Simulator of runs in batches; it keeps shared results as long as configs share the same objects."""
 
     def __init__(self) -> None:
         self.memory = Memory(_MOST_KEPT)
-        """What follows from parts that runs share."""
+        """Results that follow from shared components."""
 
     def repetitions(self, config: RunConfig, chosen: range | None = None) -> list[RunSpec] | None:
-        """Return repetitions of a run as they can be simulated together; None where they cannot be.
+        """Return the repetitions of a run for batch simulation; None if they cannot be simulated in a batch.
 
         Args:
             config: The run's checked config.
-            chosen: Which repetitions; None for all.
+            chosen: Numbers of the repetitions; None for all.
 
         Raises:
             ConfigError: see assemble.
         """
-        if added_parts("metric") or not config.compilable:  # metrics of one trace; sensors that no code has
+        if added_parts("metric") or not config.compilable:  # one trace at a time; not compiled
             return None
         numbers = range(config.settings.repetitions) if chosen is None else chosen
         if config.mismatch.spread == 0.0:
@@ -122,12 +122,12 @@ class BatchSimulator:
         return found
 
     def _loop(self, config: RunConfig, repetition: int) -> tuple[LoopProgram, FloatArray] | None:
-        """Return the closed loop of a repetition, and where it starts; see assemble_program."""
-        drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else ()  # beliefs of each repetition
+        """Return the closed loop of a repetition and its start; see assemble_program."""
+        drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else ()  # one model each
         return self.memory.known(("loop", *drawn, *config.cache_key), lambda: assemble_program(config, repetition))
 
     def simulate(self, runs: Sequence[RunSpec]) -> Iterator[BatchResult | tuple[int, Trace]]:
-        """Simulate runs; yield those that ended well, many at a time, and the place and trace of each that failed."""
+        """Simulate runs; yield successful runs in batches, and the index and trace of each failed run."""
         for places in _grouped(range(len(runs)), lambda place: runs[place].code):
             first = runs[places[0]]
             signals = 4 * len(first.q_start) + 3 * len(first.config.arm.stages) + 1
@@ -143,7 +143,7 @@ class BatchSimulator:
                 add_ticks(ticks)
 
     def _simulate(self, runs: Sequence[RunSpec]) -> Iterator[BatchResult | tuple[int, Trace]]:
-        """Simulate runs that share their code; places are those in this sequence."""
+        """Simulate runs with the same code; indices refer to this sequence."""
         began, rows, loop_program = time.perf_counter(), max(run.rows for run in runs), runs[0].loop_program
         times = np.arange(rows, dtype=np.float64) * loop_program.tick
         paths = [self._desired(run, times) for run in runs]
@@ -181,7 +181,7 @@ class BatchSimulator:
                 yield BatchResult([places[index] for index in good], kept, metric_context(one.config))
 
     def _shared(self, runs: Sequence[RunSpec], times: FloatArray, paths: Sequence[FloatArray]) -> FloatArray:
-        """Return what ticks are given of time and path, of one run for all alike or of each."""
+        """Return time and path at each tick, of one run if all are the same, else of each."""
         commands, one = runs[0].loop_program.commands, len(runs) == 1
         joints = [run.config.path.sample_joints(times) for run in runs] if commands.follow_joints else []
         return commands.shared(
@@ -201,7 +201,7 @@ class BatchSimulator:
         times: FloatArray,
         seconds: float,
     ) -> Traces:
-        """Return the traces of runs that have their scene in common."""
+        """Return the traces of runs with the same scene."""
         one = runs[places[0]]
         config, own = one.config, slice(None) if len(places) == len(runs) else list(places)
         t = times[: one.rows]
@@ -225,7 +225,7 @@ class BatchSimulator:
 
 
 def _start(runs: Sequence[RunSpec], errors: Sequence[FloatArray]) -> FloatArray:
-    """Return the state in which each run begins, as its own loops have it; see Commands.start."""
+    """Return the initial state of each run according to its loops; see Commands.start."""
     states: dict[int, FloatArray] = {}
     for own in _grouped(range(len(runs)), lambda place: id(runs[place].loop_program)):
         q = np.array([runs[place].q_start for place in own])
@@ -240,7 +240,7 @@ def _home_points(arm: Robot, ignore_base_rotation: bool) -> FloatArray:
 
 
 def _grouped(places: Sequence[int], key: Callable[[int], Hashable]) -> list[list[int]]:
-    """Return places that have a key in common, each group in order."""
+    """Return groups of indices with the same key, each group in order."""
     groups: dict[Hashable, list[int]] = {}
     for place in places:
         groups.setdefault(key(place), []).append(place)
@@ -248,7 +248,7 @@ def _grouped(places: Sequence[int], key: Callable[[int], Hashable]) -> list[list
 
 
 def simulate_together(runs: Sequence[Sequence[RunSpec]], batcher: BatchSimulator) -> Iterator[list[Collector]]:
-    """Simulate several runs; yield the results of complete runs, some at a time.
+    """Simulate several runs; yield the results of complete runs in groups.
 
     Args:
         runs: Repetitions of each run, in order.
@@ -279,7 +279,7 @@ def _collector(place: int, runs: Sequence[RunSpec], batcher: BatchSimulator) -> 
 
 
 def _collect(found: BatchResult, owners: Sequence[tuple[Collector, int]]) -> list[Collector]:
-    """Measure repetitions that succeeded, given the collector and the number of each; return complete collectors."""
+    """Measure successful repetitions, given the collector and number of each; return complete collectors."""
     traces, complete = found.traces, []
     metrics = measure(traces, found.context)
     names, values = tuple(metrics), np.stack(list(metrics.values()), axis=1)

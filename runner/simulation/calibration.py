@@ -17,7 +17,7 @@ from runner.simulation import provenance
 LEVEL = 0.99
 """Probability of the band in which the mean normalised error squared must lie."""
 TICKS = 200
-"""Ticks of a run that take as long as one repetition of a calibration."""
+"""Ticks of a run that take about as long as one repetition of a calibration."""
 
 
 def simulate_calibration(config: CalibrationConfig) -> dict[str, Any]:

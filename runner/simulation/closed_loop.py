@@ -19,20 +19,20 @@ class ClosedLoop:
 
     Attributes:
         robot: The robot, for its true end points.
-        plant: The simulated robot, which takes what the loops give.
+        plant: The simulated robot, driven by the loops.
         loops: The control loops; together they command every joint once.
         trajectory: The desired motion of the tip.
-        limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
+        limits: Torque limit of each joint, shape (nq,), in N m; infinite without a limit.
         tick: Time between two ticks of the fastest loop, in s; every loop's period is a multiple of it.
         ticks: Number of ticks.
-        commands: Whether the loops give joint torques, or joint positions to a plant that follows them.
-        interaction: What the tip feels of the world; None where there is nothing to feel.
+        commands: Quantity that the loops command: joint torques, or joint positions for a position plant.
+        interaction: External wrench on the tip; None without contact.
         q_start: Joint positions at t = 0, shape (nq,), in rad; the robot starts at rest.
-        ignore_base_rotation: Whether riding stages keep the orientation of home, as the plant has it.
-        delay: Ticks from a command until it acts; None where they differ, see CommandTiming.
-        motor_side: What drives and encoders know of the motors of flexible joints; None where joints are rigid.
-        nominal: The nominal robot, which its controllers use.
-        compiled: The closed loop as compiled code, or what its loops ask; None where neither is to be had.
+        ignore_base_rotation: True if mounted stages keep their orientation at home, as in the plant.
+        delay: Ticks from a command until it acts; None if delays differ, see CommandTiming.
+        motor_side: Encoders and drives at the motors of flexible joints; None for rigid joints.
+        nominal: The nominal robot of the controllers.
+        compiled: The compiled closed loop, or its compiled control loops; None if neither is available.
     """
 
     robot: Robot
@@ -52,7 +52,7 @@ class ClosedLoop:
     compiled: LoopProgram | CompiledCommands | None = None
 
     def close(self) -> None:
-        """Release what the plant holds."""
+        """Release the resources of the plant."""
         self.plant.close()
 
     def every(self, loop: Loop) -> int:

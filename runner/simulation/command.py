@@ -17,17 +17,17 @@ Law = Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
 
 
 class Command:
-    """A control loop at work: it reads the encoders, asks its law, and holds the answer, clipped, until its next tick.
+    """The command of a control loop: computed from the encoders at its ticks, clipped, and held until its next tick.
 
     Args:
         closed: The closed loop.
         loop: The control loop; its controller is reset here.
-        encoders: Its joint measurement, with a draw for each of its ticks.
-        recorder: Holds reference and time, and takes what is asked for.
-        tip: What the loop knows of the tip beside the encoders; None where that is nothing.
+        encoders: Joint measurement of the loop, with a draw for each of its ticks.
+        recorder: Recorder with reference and time, which stores the command.
+        tip: Tip measurement of the loop besides the encoders; None without one.
 
     Attributes:
-        every: Ticks between two of its own.
+        every: Ticks between two ticks of the loop.
     """
 
     def __init__(
@@ -39,13 +39,13 @@ class Command:
         self._times = recorder.times
         self._desired = recorder.joints if loop.follows_joints and recorder.joints is not None else recorder.desired
         self._motors, self._joints = closed.motor_side, loop.joints
-        self._held: FloatArray = recorder.command[loop.joints]  # a view: what is written there is what is asked for
+        self._held: FloatArray = recorder.command[loop.joints]  # a view: values written here are the command
         self._highest: FloatArray = closed.limits[loop.joints]
         self._lowest: FloatArray = -self._highest
         self._clipped = closed.commands == "torque" and bool(np.isfinite(self._highest).any())
 
     def update(self, k: int, q: FloatArray, dq: FloatArray) -> None:
-        """Ask the law in tick k, from the true state, shapes (nq,)."""
+        """Compute the command of tick k from the true state, shapes (nq,)."""
         tick, desired = k // self.every, self._desired[k]
         q, dq = self._measure(tick, q, dq)
         if self._tip is not None:
@@ -60,7 +60,7 @@ class Command:
 
 
 def _reset(closed: ClosedLoop, loop: Loop) -> Law:
-    """Reset a loop's controller, and return its law."""
+    """Reset a loop's controller; return its control law."""
     if closed.commands == "torque":
         controller = cast(Controller, loop.controller)
         controller.reset()
@@ -71,35 +71,35 @@ def _reset(closed: ClosedLoop, loop: Loop) -> Law:
 
 
 class PlantInput(Protocol):
-    """What carries the loops' commands to the plant."""
+    """Input of the plant from the loops' commands."""
 
     def advance(self, k: int, load: FloatArray | None) -> None:
-        """Move the plant from tick k to the next one, under the world's joint torques, shape (nq,), in N m."""
+        """Advance the plant from tick k to the next one under external joint torques, shape (nq,), in N m."""
 
 
 class TorqueInput:
-    """The loops' torques and the world's act on the plant together.
+    """Input of a plant from the loops' torques and external torques.
 
     Args:
         plant: The plant.
-        recorder: Holds the commands, and tells which act.
+        recorder: Recorder with the commands and their timing.
     """
 
     def __init__(self, plant: Plant, recorder: Recorder) -> None:
         self._plant, self._timing, self._commands = plant, recorder.timing, recorder.commands
 
     def advance(self, k: int, load: FloatArray | None) -> None:
-        """Move the plant; see PlantInput."""
+        """Advance the plant; see PlantInput."""
         command = self._timing.at(self._commands, k)
         self._plant.advance(command) if load is None else self._plant.push(command, load)
 
 
 class PositionInput:
-    """The plant follows joint positions, and tells the torques that it took.
+    """Input of a plant that follows joint positions; its torques are recorded.
 
     Args:
         plant: The plant.
-        recorder: Holds the commands, tells which act, and takes the torques.
+        recorder: Recorder with the commands and their timing, which stores the torques.
     """
 
     def __init__(self, plant: PositionPlant, recorder: Recorder) -> None:
@@ -107,7 +107,7 @@ class PositionInput:
         self._torques = recorder.torques
 
     def advance(self, k: int, load: FloatArray | None) -> None:
-        """Move the plant; see PlantInput."""
+        """Advance the plant; see PlantInput."""
         if load is not None:
             self._plant.load[:] = load
         self._plant.advance(self._timing.at(self._commands, k))
@@ -115,7 +115,7 @@ class PositionInput:
 
 
 def make_plant_input(closed: ClosedLoop, recorder: Recorder) -> PlantInput:
-    """Return what drives the plant of a closed loop, as its loops command it."""
+    """Return the input of a closed loop's plant, for torque or position commands."""
     if closed.commands == "position":
         return PositionInput(cast(PositionPlant, closed.plant), recorder)
     return TorqueInput(closed.plant, recorder)

@@ -23,14 +23,14 @@ def run_commands(
     contact: Contact | None,
     recorder: Recorder,
 ) -> None:
-    """Run a closed loop of which all is compiled that its control loops ask.
+    """Run a closed loop with compiled control loops.
 
     Args:
-        compiled: Their code.
+        compiled: The compiled control loops.
         closed: The closed loop.
-        encoders: The joint measurement of each loop, ours.
-        contact: What the tip feels; None where there is nothing to feel.
-        recorder: Holds times and reference, and takes the rows.
+        encoders: Built-in joint measurement of each loop.
+        contact: Contact of the tip; None without contact.
+        recorder: Recorder with times and reference, which stores the rows.
     """
     errors = [cast(JointEncoders, each).errors for each in encoders]
     run = compiled.begin(recorder.times, recorder.desired, errors, closed.q_start, recorder.joints)
@@ -69,10 +69,10 @@ def run_program(
     """Run a closed loop that is compiled as a whole.
 
     Args:
-        loop_program: Its code.
+        loop_program: The compiled closed loop.
         closed: The closed loop.
-        encoders: The joint measurement of each loop, ours.
-        recorder: Holds times and reference, and takes the rows.
+        encoders: Built-in joint measurement of each loop.
+        recorder: Recorder with times and reference, which stores the rows.
     """
     began, commands = time.perf_counter_ns(), loop_program.commands
     errors = [cast(JointEncoders, each).errors for each in encoders]

@@ -20,10 +20,10 @@ from runner.simulation.closed_loop import ClosedLoop
 
 
 def touches_by_tip(config: RunConfig) -> bool:
-    """Tell whether the tip of a moving arm, a point, touches a wall within the plant's steps; a tool does else.
+    """Return True if the tip, a point, touches a wall in the plant's steps: no tool, and a torque plant.
 
     Raises:
-        ConfigError: where the plant's tip is none that rigid bodies have, or its contacts know no armature.
+        ConfigError: if the tip does not move as in rigid bodies, or the plant's contacts do not support armature.
     """
     if config.ignore_base_rotation:
         raise ConfigError(
@@ -40,10 +40,11 @@ def touches_by_tip(config: RunConfig) -> bool:
 
 
 def add_wall(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
-    """Put up a wall in a plant that makes contacts itself, and return what of it is left for the loop to do.
+    """Add a wall to a plant; return the wall if the loop must compute the contact, None if the plant does.
 
     Raises:
-        ConfigError: where the controller would bounce on it with ideal joints, or the plant makes no friction.
+        ConfigError: if the controller would be unstable on it with ideal joints, or the plant does not support
+            friction.
     """
     ideal = PLANTS.commands(config.plant.kind) == "position"
     if ideal and isinstance(config.controller, ChecksStability) and config.controller.check_stability:
@@ -52,7 +53,7 @@ def add_wall(wall: Wall, config: RunConfig, plant: Plant) -> Environment | None:
         check_wall(controller.law, controller.period, values.stiffness, values.damping, late)
     wall.reset(config.path.start)
     tool = config.robot.tool
-    ball = (0.0 if tool is None else tool.tip_radius) * wall.normal  # it is the ball's centre that is led
+    ball = (0.0 if tool is None else tool.tip_radius) * wall.normal  # the trajectory is that of the ball's centre
     if not plant.add_wall(wall.point - ball, wall.normal.copy(), wall.config.stiffness, wall.config.damping):
         return wall
     if wall.config.friction:
@@ -67,12 +68,12 @@ _NOTHING = np.zeros(6)
 
 
 class Contact:
-    """The interaction of one run: it loads the sensor, passes its reading to the controllers, and keeps a record.
+    """The contact of one run: it loads the sensor, passes readings to the controllers, and records signals.
 
     Args:
         closed: The closed loop.
-        interaction: Between arm and world; reset here.
-        wrist: The force/torque sensor, with a draw for each tick.
+        interaction: Interaction of arm and environment; reset here.
+        wrist: Force/torque sensor, with a draw for each tick.
     """
 
     def __init__(self, closed: ClosedLoop, interaction: Interaction, wrist: WristSensor) -> None:
@@ -84,7 +85,7 @@ class Contact:
         interaction.reset(closed.q_start)
 
     def update(self, k: int, time: float, q: FloatArray, dq: FloatArray) -> FloatArray:
-        """Take the state at tick k, and return the joint torques of the world; see Interaction.update."""
+        """Update with the state of tick k; return the external joint torques. See Interaction.update."""
         interaction, signals = self._interaction, self._signals
         contact = self._plant.contact_wrench()
         torques = interaction.update(time, q, dq, _NOTHING if contact is None else contact)
@@ -100,7 +101,7 @@ class Contact:
         return torques
 
     def signals(self, kept: slice) -> ContactSignals:
-        """Return the record of some ticks."""
+        """Return the record of a range of ticks."""
         return ContactSignals(
             **{field.name: getattr(self._signals, field.name)[kept] for field in fields(ContactSignals)}
         )

@@ -8,12 +8,12 @@ from runner.base.trace import Failure
 from runner.robots.model import RobotModel
 from runner.simulation.compiled.closed_loop import Signals
 
-# Above this the equations still hold but no arm does: a run that gets there has diverged.
-DIVERGED_SPEED = 1e6  # rad/s, or m/s of a joint that slides
+# No arm reaches this speed, so a run above it has diverged.
+DIVERGED_SPEED = 1e6  # rad/s, or m/s for a prismatic joint
 
 
 def find_divergence(q: FloatArray, dq: FloatArray, times: FloatArray, model: RobotModel) -> Failure | None:
-    """Return the first row with a joint that is not finite, or faster than any arm's; None where all are well.
+    """Return the first row with a joint that is not finite or too fast; None if there is none.
 
     Args:
         q: Joint positions, shape (T, nq), in rad.
@@ -31,7 +31,7 @@ def find_divergence(q: FloatArray, dq: FloatArray, times: FloatArray, model: Rob
 
 
 def ended_well(signals: Signals) -> np.ndarray:
-    """Tell of each of some runs that were compiled as a whole whether nothing went wrong in it, shape (runs,)."""
+    """Return True for each run compiled as a whole that ended without a failure, shape (runs,)."""
     finite = np.isfinite(signals.q).all(axis=(1, 2)) & np.isfinite(signals.torque).all(axis=(1, 2))
     slow = np.abs(signals.dq).max(axis=(1, 2)) < DIVERGED_SPEED
     well: np.ndarray = finite & slow & ~signals.fault.any(axis=1)
@@ -39,13 +39,13 @@ def ended_well(signals: Signals) -> np.ndarray:
 
 
 def find_failure(signals: Signals, run: int, times: FloatArray, model: RobotModel) -> Failure | None:
-    """Return why one of some runs that were compiled as a whole ended early; None where it did not.
+    """Return the failure of one of several runs compiled as a whole; None without a failure.
 
     Args:
-        signals: What the runs left behind.
-        run: Which of them.
-        times: Time of each of its rows, shape (T,), in s; it may have fewer than there are.
-        model: The arm.
+        signals: Signals of the runs.
+        run: Index of the run.
+        times: Time of each row of the run, shape (T,), in s; it may have fewer rows than the signals.
+        model: Model of the arm.
     """
     rows = len(times)
     fault = signals.first_fault(run, times)

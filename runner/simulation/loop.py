@@ -29,22 +29,22 @@ def simulate(
 ) -> Trace:
     """Run the control loops once.
 
-    At each of its ticks a loop reads the encoders of every joint afresh, asks its controller, and its torques are
-    clipped joint by joint and held until its next tick, while the plant advances. They act, and stand in the trace, by
-    the delay later; the first act from the start. The last row holds the final state, with the torques that would act
-    from there. Joint positions are handed on as they are; the torques are then the plant's, and the last row repeats
-    those of the last tick.
+    At each of its ticks, a loop reads the encoders of every joint and calls its controller. The torques are clipped
+    joint by joint and held until the loop's next tick. They act after the delay, and the trace contains the acting
+    torques; the first command acts from the start. The last row contains the final state and the torques that would act
+    next. Position commands are not clipped. The trace then contains the plant's torques, and the last row repeats those
+    of the last tick.
 
     Args:
         closed: The control loops; plant and controllers are reset here.
-        encoders: The joint measurement of each loop, with a draw for each of its ticks.
-        wrist: The force/torque sensor, with a draw for each tick; needed where there is something to feel.
-        torques: The torque sensors in the joints, likewise; needed where a control law reads them.
-        timing: Which commands act in each tick; else all act as late as the closed loop says.
-        tips: What loops know of the tip beside their encoders, by loop; needed where one reads a sensor of the tip.
+        encoders: Joint measurement of each loop, with a draw for each of its ticks.
+        wrist: Force/torque sensor, with a draw for each tick; required for contact.
+        torques: Torque sensors in the joints, with a draw for each tick; required if a control law reads them.
+        timing: Command that acts in each tick; None for the constant delay of the closed loop.
+        tips: Tip measurements besides the encoders, by loop; required if a loop reads a tip sensor.
 
     Returns:
-        The trace; one that ends early carries a failure.
+        The trace; it contains a failure if the run ends early.
     """
     recorder = Recorder(closed, timing or constant_delay(closed.robot.model.nq, closed.delay or 0, closed.ticks + 1))
     contact = None
@@ -75,7 +75,7 @@ def _run(
     torques: JointTorques,
     recorder: Recorder,
 ) -> None:
-    """Run control loops that are asked one by one."""
+    """Run control loops that are called one by one."""
     drive, load, k, now = make_plant_input(closed, recorder), None, 0, recorder.now
     recorder.asked = asked = np.zeros_like(recorder.clock)
     closed.plant.reset(closed.q_start, np.zeros_like(closed.q_start))

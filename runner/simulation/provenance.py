@@ -23,11 +23,11 @@ _LIBRARIES = ("arm-control-runner", "pybullet", "mujoco", "pin", "numpy", "scipy
 
 
 def describe_origin(composed: "Composed", *subcommand: str) -> dict[str, Any]:
-    """Return what made a result: date, command, digests of plug-ins, commit, versions, machine.
+    """Return the origin of a result: date, command, digests of plug-ins, commit, versions, machine.
 
     Args:
-        composed: The config that was composed.
-        subcommand: The words behind `runner`; none for a run.
+        composed: The composed config.
+        subcommand: Words after `runner` in the command; none for a run.
     """
     return {
         "date": today(),
@@ -40,7 +40,7 @@ def describe_origin(composed: "Composed", *subcommand: str) -> dict[str, Any]:
 
 
 def job_provenance(config: "RunConfig", notices: Sequence[str] = ()) -> dict[str, Any]:
-    """Return where a run comes from: what made it, choices, time steps, seed, warnings."""
+    """Return the provenance of a run: origin, choices, time steps, seed, warnings."""
     return {
         **describe_origin(config.composed),
         "choices": dict(config.composed.choices),
@@ -55,7 +55,7 @@ def job_provenance(config: "RunConfig", notices: Sequence[str] = ()) -> dict[str
 
 
 def command(composed: "Composed", *subcommand: str) -> str:
-    """Return the command that does what was composed, folders relative to where it was given."""
+    """Return the command for a composed config, with folders relative to the working directory."""
     added = [word for text in discovery.named_parts() for word in ("--plugin", text)]
     own = [word for folder in composed.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
     resolved: Any = composed.resolved
@@ -66,11 +66,12 @@ def command(composed: "Composed", *subcommand: str) -> str:
 
 
 def portable_overrides(overrides: Sequence[str], config: Mapping[str, Any]) -> list[str]:
-    """Return overrides that make the same run on any machine: they name the plant that `default` was.
+    """Return overrides that give the same run on any machine: they name the plant instead of `default`.
 
     Args:
-        overrides: As they were given.
-        config: What they gave. Where nobody named a plant and it is bullet, they are left as they are.
+        overrides: The given overrides.
+        config: The resulting config. If it has the plant bullet and no override names a plant, overrides stay
+            unchanged.
     """
     plant = config.get("plant", {})
     stands_in = plant.get("in_place_of") is not None

@@ -16,13 +16,12 @@ from runner.simulation.failures import find_divergence
 
 
 class CommandTiming:
-    """The commands that act.
+    """The acting commands of each tick.
 
-    A loop's command is a row of its joints, of the tick in which it was given; until its next one it stands in every
-    tick.
+    A loop's command is stored in the row of its tick, and in each later row until the loop's next command.
 
     Args:
-        joints: The joints of each loop.
+        joints: Joints of each loop.
         rows: Tick whose command acts in each tick, of each loop, shapes (T,).
     """
 
@@ -31,49 +30,49 @@ class CommandTiming:
         self._alike = all(np.array_equal(rows[0], own) for own in rows[1:])
 
     def at(self, commands: FloatArray, k: int) -> FloatArray:
-        """Return what acts in tick k, shape (nq,), of commands in each tick, shape (T, nq)."""
+        """Return the acting commands in tick k, shape (nq,), from the commands of each tick, shape (T, nq)."""
         if self._alike:
             acting: FloatArray = commands[self._rows[0][k]]
             return acting
         return np.concatenate([commands[own[k], joints] for joints, own in zip(self._joints, self._rows, strict=True)])
 
     def throughout(self, commands: FloatArray) -> FloatArray:
-        """Return what acts in every tick, shape (T, nq)."""
+        """Return the acting commands in every tick, shape (T, nq)."""
         parts = [commands[own, joints] for joints, own in zip(self._joints, self._rows, strict=True)]
         return np.concatenate(parts, axis=1)
 
 
 def constant_delay(joints: int, delay: int, ticks: int) -> CommandTiming:
-    """Return that all commands act so many ticks late, in some ticks."""
+    """Return a timing in which all commands act after the same delay, in ticks."""
     return CommandTiming([slice(0, joints)], [np.maximum(np.arange(ticks) - delay, 0)])
 
 
 CHECK_EVERY = 64
-"""Ticks between two looks for divergence, which the metrics never see."""
+"""Ticks between two checks for divergence."""
 
 
 class Recorder:
     """Rows of every signal, one for each tick and one for the end.
 
     Args:
-        closed: The closed loop whose run is recorded.
-        timing: Which commands act in each tick.
+        closed: The closed loop of the run.
+        timing: Command that acts in each tick.
 
     Attributes:
         times: Time of each row, shape (T,), in s.
         desired: Desired motion of the tip, shape (T, 3, 3): position, velocity, acceleration.
-        joints: Desired motion of the joints, shape (T, 3, nq), in rad, rad/s, rad/s^2; None where it is of
-            the tip alone.
-        command: What the loops ask for now, shape (nq,): torques in N m, or joint positions in rad.
-        commands: What they asked for in each tick, shape (T, nq).
-        timing: As above.
+        joints: Desired motion of the joints, shape (T, 3, nq), in rad, rad/s, rad/s^2; None if only the tip's motion is
+            given.
+        command: Current commands of the loops, shape (nq,): torques in N m, or joint positions in rad.
+        commands: Commands in each tick, shape (T, nq), in the same unit.
+        timing: Command that acts in each tick.
         torques: Torques of a plant that follows positions, shape (T, nq), in N m.
-        clock: When each tick began, shape (T,), in ns.
-        asked: How long the control loops took in each tick, likewise; None where nobody tells.
-        now: Tells the time for it.
+        clock: Time at which each tick began, shape (T,), in ns.
+        asked: Duration of the control loops in each tick, shape (T,), in ns; None if it was not measured.
+        now: Clock of these times, in ns.
         q: True joint positions in each tick, shape (T, nq), in rad.
-        dq: True joint velocities, likewise, in rad/s.
-        end_points: End point of each stage, shape (stages, T, 3), in m; None until they are worked out.
+        dq: True joint velocities in each tick, shape (T, nq), in rad/s.
+        end_points: End point of each stage, shape (stages, T, 3), in m; None until they are computed.
     """
 
     def __init__(self, closed: ClosedLoop, timing: CommandTiming) -> None:
@@ -96,7 +95,7 @@ class Recorder:
         self._failure: Failure | None = None
 
     def observe(self, k: int) -> tuple[FloatArray, FloatArray]:
-        """Keep the plant's true state in tick k, and return it: joint positions and velocities, shapes (nq,)."""
+        """Store and return the plant's true state in tick k: joint positions and velocities, shapes (nq,)."""
         self.clock[k] = self.now()
         self.q[k] = q = self._plant.q
         self.dq[k] = dq = self._plant.dq
@@ -105,20 +104,20 @@ class Recorder:
         return q, dq
 
     def keep_command(self, k: int) -> None:
-        """Keep what the loops ask for in tick k.
+        """Store the commands of tick k.
 
         Raises:
-            SimulationError: if the run has diverged; it is looked for now and then.
+            SimulationError: if the run has diverged, which is checked every CHECK_EVERY ticks.
         """
         self.commands[k] = self.command
         if k % CHECK_EVERY == 0:
             self.check_divergence(k)
 
     def check_divergence(self, k: int) -> None:
-        """Look for divergence in the rows since the last look, and in that of tick k.
+        """Check for divergence in the rows since the last check, up to tick k.
 
         Raises:
-            SimulationError: at the first row with a joint that is not finite, or faster than any arm's.
+            SimulationError: at the first row with a joint that is not finite or too fast.
         """
         first = self._checked
         found = find_divergence(
@@ -129,7 +128,7 @@ class Recorder:
         self._checked = k
 
     def stop(self, k: int, error: Exception) -> None:
-        """End the record with what was raised in tick k, or with divergence before it, its likely cause."""
+        """End the record with an error in tick k, or with an earlier divergence, its likely cause."""
         failure = Failure(error.reason if isinstance(error, SimulationError) else str(error), float(self.times[k]))
         try:
             self.check_divergence(k)
@@ -138,13 +137,13 @@ class Recorder:
         self.end(failure)
 
     def end(self, failure: Failure | None) -> None:
-        """End the record with a failure, at its time; None is a run that ended well."""
+        """End the record with a failure, at its time; None if the run succeeded."""
         self._failure = failure
         if failure is not None:
             self._kept = slice(0, int(np.searchsorted(self.times, failure.time)) + 1)
 
     def trace(self, contact: Contact | None) -> Trace:
-        """Return the record, with what the tip felt."""
+        """Return the record as a trace, with the signals of the contact."""
         closed, kept = self._closed, self._kept
         positions = closed.commands == "position"
         acted = self.timing.throughout(self.commands)

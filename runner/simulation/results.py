@@ -16,7 +16,7 @@ from runner.metrics.caveats import Found, PlantStep, Watch, signals_of
 from runner.metrics.plant_error import PlantError
 from runner.simulation.provenance import job_provenance
 
-_CLOCKED_TICKS = 1_000_000  # ticks whose time is kept; more would add no information
+_CLOCKED_TICKS = 1_000_000  # limit of the ticks whose time is stored
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class RunResult:
 
 @dataclass(eq=False)
 class Collector:
-    """Results of consecutive repetitions of a run, collected as they end; complete when none is left.
+    """Results of consecutive repetitions of a run, collected as they end; complete when all have ended.
 
     Attributes:
         config: The checked config.
@@ -59,7 +59,7 @@ class Collector:
         failure: The first failure and its repetition; None if there is none.
         trace: Trace of the first repetition; None until that has ended.
         seconds: Wall-clock time of the repetitions that have ended, in s.
-        clocked: Number of ticks whose time is kept.
+        clocked: Number of ticks whose time is stored.
         tick_seconds: Wall-clock time of each tick of some repetitions, in s.
         law_seconds: Wall-clock time of the control loops in each of these ticks, in s; empty if it was not measured.
     """
@@ -90,7 +90,7 @@ class Collector:
         return self.end(1, float(trace.tick_seconds.sum()), trace if repetition == self.first else None)
 
     def put(self, repetitions: Sequence[int], names: tuple[str, ...], values: FloatArray) -> None:
-        """Add the metrics of repetitions that succeeded, shape (n, metrics). Metrics of a plug-in may come later."""
+        """Add the metrics of successful repetitions, shape (n, metrics); later ones may contain more metrics."""
         rows = np.array(repetitions, dtype=np.intp) - self.first
         if names != self.names:
             new = tuple(name for name in names if name not in self.names)
@@ -128,7 +128,7 @@ class Collector:
             self.law_seconds += [] if trace.law_seconds is None else [trace.law_seconds]
 
     def reserve(self, repetitions: int) -> None:
-        """Make room for a number of repetitions, including those that have ended."""
+        """Extend the collector to a number of repetitions, including those that have ended."""
         more = repetitions - len(self.values)
         self.left += more
         self.values = np.vstack([self.values, np.full((more, len(self.names)), np.nan)])

@@ -1,8 +1,8 @@
 """Simulation and measurement of the repetitions of one run.
 
-Repetitions that are compiled as a whole are simulated together, in blocks on several threads. A block takes bounded
-memory, whatever the number of repetitions. Compiled ticks, random draws and array operations release Python's lock for
-most of the time, so that threads use the cores. Results do not depend on the blocks or the number of threads.
+Repetitions that are compiled as a whole are simulated together, in blocks on several threads. The memory of a block
+does not depend on the number of repetitions. Compiled ticks, random draws and array operations mostly release Python's
+lock, so threads use several cores. Results do not depend on the blocks or the number of threads.
 """
 
 import os
@@ -37,7 +37,7 @@ MOST_THREADS = 4
 TICKS = TICKS_AT_ONCE // MOST_THREADS
 """Approximate number of ticks of a block, which take a tenth of a second."""
 
-_AHEAD = 2  # blocks for each thread that are in flight or wait
+_AHEAD = 2  # blocks of each thread, running or queued
 
 
 def simulate_run(config: RunConfig, threads: int = 1) -> RunResult:
@@ -79,7 +79,7 @@ def _simulate_one_by_one(config: RunConfig) -> RunResult:
             metrics: dict[str, float | None] = {}
             try:
                 metrics = evaluate(trace, context, notices)
-            except SimulationError as error:  # of a plug-in
+            except SimulationError as error:  # from a plug-in
                 trace = replace(trace, failure=Failure(error.reason, float(trace.t[-1])))
             collector.add(repetition, trace, metrics)
     finally:
@@ -122,7 +122,7 @@ def simulate_blocks(config: RunConfig, threads: int = 1, ticks: int = TICKS) -> 
     blocks = [range(start, min(start + size, count)) for start in range(0, count, size)]
     threads = threads if config.timing.ticks <= ticks else 1
     simulate_block = partial(_simulate_block, config, batcher)
-    whole = simulate_block(blocks[0])  # before the others, because it creates what all have in common
+    whole = simulate_block(blocks[0])  # first, because it computes the shared results
     if whole is None:
         return None
     whole.reserve(count)
@@ -146,7 +146,7 @@ def _simulate_block(config: RunConfig, batcher: BatchSimulator, block: range) ->
 def _in_order(
     simulate_block: "partial[Collector | None]", blocks: Sequence[range], threads: int
 ) -> Iterator[Collector | None]:
-    """Yield blocks in order as they are simulated, some of them at the same time."""
+    """Yield simulated blocks in order, computed on several threads."""
     if threads == 1 or len(blocks) < 2:
         yield from map(simulate_block, blocks)
         return

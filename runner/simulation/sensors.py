@@ -31,25 +31,25 @@ from runner.simulation.recorder import CommandTiming, Recorder
 
 
 class MeasuredTip:
-    """What a control loop asks of its law, to lead the measured tip and not the one that the encoders tell.
+    """Correction of a control loop's desired motion, so that it tracks the measured tip instead of the encoders' tip.
 
     Args:
         sensor: The sensor, with a draw for each measurement.
         plant: The plant, for the true tip.
-        true: The robot as it is.
-        nominal: The nominal robot.
+        true: Model of the true robot.
+        nominal: Nominal model.
     """
 
     def __init__(self, sensor: EndpointSensor, plant: Plant, true: RobotModel, nominal: RobotModel) -> None:
         self._sensor, self._plant, self._true, self._nominal = sensor, plant, true, nominal
 
     def correct(self, tick: int, q: FloatArray, dq: FloatArray, desired: FloatArray) -> FloatArray:
-        """Return the motion that the law is to ask of the tip as the encoders tell it.
+        """Return the desired motion for the tip as computed from the encoders.
 
         Args:
             tick: Number of the loop's tick, from 0.
             q: Measured joint positions, shape (nq,), in rad.
-            dq: Measured joint velocities, likewise, in rad/s.
+            dq: Measured joint velocities, shape (nq,), in rad/s.
             desired: Desired motion of the tip, shape (3, 3): position, velocity, acceleration.
         """
         if self._sensor.due(tick):
@@ -62,9 +62,9 @@ class MeasuredTip:
 
 
 def make_measured_tips(closed: ClosedLoop, config: RunConfig, repetition: int) -> Mapping[str, MeasuredTip]:
-    """Make what loops know of the tip for one repetition, by the loops that read the sensor.
+    """Build the tip measurements of one repetition, by the loops that read the sensor.
 
-    Its noise follows from (seed, repetition) and the loop's place alone, and changes no other draw.
+    The noise depends only on (seed, repetition) and the loop's index, and does not change other draws.
     """
     ticks = endpoint_ticks(config)
     return {
@@ -92,7 +92,7 @@ def _moves(arm: RobotModel, q: FloatArray, dq: FloatArray) -> FloatArray:
 
 @dataclass
 class _Reader:
-    """A controller that reads the sensors at its ticks: the mean of what acted since the last one."""
+    """A controller that reads the torque sensors at its ticks: the mean since its last tick."""
 
     controller: ControlLaw
     every: int
@@ -101,12 +101,12 @@ class _Reader:
 
 
 class JointTorques:
-    """The sensors at work.
+    """The joint torque sensors during a run.
 
     Args:
         closed: The closed loop.
-        sensor: The sensors, with a draw for each tick; None where there are none.
-        recorder: Holds what the loops asked for, and tells which of it acts.
+        sensor: The sensors, with a draw for each tick; None without sensors.
+        recorder: Recorder with the commands and their timing.
     """
 
     def __init__(self, closed: ClosedLoop, sensor: TorqueSensors | None, recorder: Recorder) -> None:
@@ -118,14 +118,14 @@ class JointTorques:
         ]
 
     def tell(self, k: int) -> None:
-        """Tell those that tick in tick k what acted since their last tick; nothing before the first."""
+        """Pass the mean torques since the last tick to controllers with a tick at k; nothing before the first."""
         for reader in self._readers:
             if k % reader.every == 0 and reader.count and self._sensor is not None:
                 reader.controller.read_joint_torques(self._sensor.read(k, reader.sum / reader.count))
                 reader.sum, reader.count = np.zeros_like(reader.sum), 0
 
     def keep(self, k: int) -> None:
-        """Keep what acted from tick k to the next one."""
+        """Add the torques that acted from tick k to the next one."""
         if not self._readers:
             return
         acted = self._recorder.timing.at(self._recorder.commands, k) - self._closed.plant.friction
@@ -134,9 +134,9 @@ class JointTorques:
 
 
 def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: int) -> TorqueSensors | None:
-    """Make the torque sensors of the joints for one repetition, where there are any.
+    """Build the torque sensors of the joints for one repetition; None without sensors.
 
-    Their noise follows from (seed, repetition) alone, and changes no other draw.
+    The noise depends only on (seed, repetition), and does not change other draws.
     """
     plugged = config.plugged.get("joint_torque_sensor")
     if config.joint_torques is None and plugged is None:
@@ -144,7 +144,7 @@ def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: 
     generator = np.random.default_rng([config.settings.seed, repetition, JOINT_TORQUES])
     if plugged is not None:
         return JOINT_TORQUE_SENSORS.build(plugged, closed.robot.model.joint_names, closed.ticks + 1, generator)
-    assert config.joint_torques is not None  # noqa: S101 - one of both is there
+    assert config.joint_torques is not None  # noqa: S101 - one of them is set
     return JointTorqueSensor(closed.ticks + 1, *config.joint_torques, generator)
 
 
@@ -153,9 +153,9 @@ def make_sensors(
 ) -> tuple[
     Sequence[Encoders], WristSensor | None, TorqueSensors | None, Mapping[str, MeasuredTip], CommandTiming | None
 ]:
-    """Make what differs between repetitions: encoders, sensors at wrist, joints and tip, and which commands act.
+    """Build what differs between repetitions: encoders; sensors at wrist, joints and tip; and command timing.
 
-    Those of plug-ins get random numbers from the same seeds as ours.
+    Sensors from plug-ins get random numbers from the same seeds as the built-in ones.
     """
     seed, plugged = config.settings.seed, config.plugged
     encoders: Sequence[Encoders] = make_encoders(closed, config.noise, seed, repetition)
@@ -180,9 +180,9 @@ def make_sensors(
 
 
 def make_command_timing(closed: ClosedLoop, config: RunConfig, repetition: int) -> CommandTiming | None:
-    """Draw which commands act in each tick of one repetition; None where all act as late as the closed loop says.
+    """Draw the acting command of each tick of one repetition; None for the closed loop's constant delay.
 
-    The draws follow from (seed, repetition) and the loop's place alone, and change no other.
+    The draws depend only on (seed, repetition) and the loop's index, and do not change other draws.
     """
     if closed.delay is not None:
         return None
@@ -197,10 +197,10 @@ def make_command_timing(closed: ClosedLoop, config: RunConfig, repetition: int) 
 
 
 def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:
-    """Make our joint measurement of each loop for one repetition.
+    """Build the built-in joint measurement of each loop for one repetition.
 
-    Its noise follows from (seed, repetition) and the loop's place alone: however long a run or another loop's period
-    is, it starts alike, so that runs can be compared in pairs.
+    The noise depends only on (seed, repetition) and the loop's index. It starts with the same values whatever the
+    length of the run and the periods of other loops, so runs can be compared in pairs.
     """
     return [
         JointEncoders(
@@ -216,7 +216,7 @@ def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition
 def make_wrist_sensor(
     closed: ClosedLoop, sensor: ForceTorqueConfig, seed: int, repetition: int
 ) -> ForceTorqueSensor | None:
-    """Make our force/torque sensor for one repetition, where there is something to feel; noise as for the encoders."""
+    """Build the built-in force/torque sensor of one repetition, with noise as in make_encoders; None without contact."""
     if closed.interaction is None:
         return None
     generator = np.random.default_rng([seed, repetition, len(closed.loops)])

@@ -17,17 +17,17 @@ from runner.symbolic.expression import places
 from runner.symbolic.program import LANES, Expressed, Frame, Program, program
 from runner.symbolic.structure import Values
 
-_AT_ONCE = 10_000  # ticks without a look at interruptions
+_AT_ONCE = 10_000  # ticks between two checks for interrupts
 
 
 class CompiledCommands:
-    """What the loops of one arm ask of it, tick by tick, where something else moves it.
+    """The compiled commands of one arm's loops, tick by tick, for a plant that is not compiled.
 
     Args:
         commands: The loops.
 
     Raises:
-        CannotCompileError: where a law has no compiled form.
+        CannotCompileError: if a control law has no compiled form.
     """
 
     def __init__(self, commands: Commands) -> None:
@@ -51,14 +51,14 @@ class CompiledCommands:
         q: FloatArray,
         joints: FloatArray | None = None,
     ) -> "CommandsRun":
-        """Begin a run at rest.
+        """Start a run at rest.
 
         Args:
             times: Time of each tick, shape (T,), in s.
             desired: Desired motion of the tip, shape (T, 3, 3).
             errors: Errors of the positions at the ticks of each loop, shape (n, nq), in rad.
-            q: Joint positions at the start, shape (nq,), in rad.
-            joints: Desired motion of the joints, shape (T, 3, nq); None where no loop follows it.
+            q: Initial joint positions, shape (nq,), in rad.
+            joints: Desired motion of the joints, shape (T, 3, nq); None if no loop follows it.
         """
         commands, frame = self._commands, self._program.frame(len(times))
         wrong = commands.measured_wrong(errors, len(times))
@@ -72,10 +72,10 @@ class CommandsRun:
     """One run, tick by tick.
 
     Args:
-        frame: Its arrays.
+        frame: Arrays of the run.
         commands: The loops.
         times: Time of each tick, shape (T,), in s.
-        errors: Texts of what may go wrong.
+        errors: Messages of the possible failures.
 
     Attributes:
         q: Joint positions at each tick, shape (T, nq), in rad.
@@ -93,11 +93,11 @@ class CommandsRun:
         self._span, self._call, self._errors, self._guarded = frame.span, frame.call, errors, commands.guarded
 
     def tick(self, k: int, q: FloatArray, dq: FloatArray) -> None:
-        """Compute tick k, after the one before, from the true state, shapes (nq,).
+        """Compute tick k, after the previous one, from the true state, shapes (nq,).
 
         Raises:
-            LinAlgError: where a law has no answer.
-            SimulationError: where a user's law gives no finite numbers.
+            LinAlgError: if a control law has no solution.
+            SimulationError: if a user-supplied law returns values that are not finite.
         """
         self._true_q[:] = q
         self._true_dq[:] = dq
@@ -116,8 +116,8 @@ class LoopProgram:
     """A closed loop that is compiled as a whole.
 
     Attributes:
-        commands: Its loops.
-        motion: What moves.
+        commands: The control loops.
+        motion: The motion of the arms.
         tick: Time between two ticks, in s.
         step: Integration step, in s.
         steps: Steps in a tick.
@@ -133,14 +133,14 @@ class LoopProgram:
 
     @cached_property
     def pattern(self) -> str:
-        """A text that is the same for two whose code is the same."""
+        """A string that is the same for two programs with the same code."""
         return f"run {self.commands.pattern} {motion_pattern(self.motion)}"
 
     def program(self, lanes: int) -> Program:
-        """Return its code.
+        """Return the compiled code.
 
         Raises:
-            CannotCompileError: where a law has no compiled form.
+            CannotCompileError: if a control law has no compiled form.
         """
 
         def express() -> Expressed:
@@ -156,10 +156,10 @@ class LoopProgram:
         )
 
     def express(self, at: Slots, number: Callable[[float], Any]) -> Expressed:
-        """Return its expressions, in fresh places, with its numbers as `number` makes them.
+        """Return the expressions in new slots, with numbers converted by `number`.
 
         Raises:
-            CannotCompileError: where a law has no compiled form.
+            CannotCompileError: if a control law has no compiled form.
         """
         commands, numbers = self._scalars(number)
         torques, kept, errors = expressed_commands(self.commands, commands, at)
@@ -169,14 +169,14 @@ class LoopProgram:
 
     @cached_property
     def values(self) -> FloatArray:
-        """The parameters of its code."""
+        """Values of the code's parameters."""
         values = Values()
         self._scalars(values.number)
         return np.array(values.values)
 
     @cached_property
     def numbers(self) -> FloatArray:
-        """All its numbers, in the order of the parameters: these, and those that are 0, 1 or -1."""
+        """All numbers, in the order of the parameters, including those equal to 0, 1 or -1."""
         values = Values()
         self._scalars(NoConstantFolding(values.number))
         return np.array(values.values)
@@ -187,16 +187,16 @@ class LoopProgram:
 
 @dataclass(frozen=True)
 class Signals:
-    """What runs left behind, true values, a row for each tick.
+    """True signals of runs, a row for each tick.
 
     Attributes:
         q: Joint positions, shape (runs, T, nq), in rad.
         dq: Joint velocities, shape (runs, T, nq), in rad/s.
-        torque: Torques asked for, within their limits, shape (runs, T, nq), in N m.
-        fault: Number of what went wrong in a law, 0 for nothing, shape (runs, T).
+        torque: Commanded torques within their limits, shape (runs, T, nq), in N m.
+        fault: Number of the failure in a control law, 0 for none, shape (runs, T).
         end_points: End point of each stage, shape (stages, runs, T, 3), in m.
-        errors: Texts of what may go wrong, by their numbers less 1.
-        commands: The loops of one of them.
+        errors: Messages of the possible failures; failure 1 is the first.
+        commands: The control loops of one of the runs.
     """
 
     q: FloatArray
@@ -208,7 +208,7 @@ class Signals:
     commands: Commands
 
     def first_fault(self, run: int, times: FloatArray) -> tuple[int, Exception] | None:
-        """Return the first of some ticks in which a run's law had no answer, and the reason; None where all had one."""
+        """Return the first tick in which a run's law failed, and the error; None without a failure."""
         failed = np.flatnonzero(self.fault[run, : len(times)])
         watched = self.torque[run, : len(times) if self.commands.guarded else 0]
         wild = np.flatnonzero(~np.isfinite(watched).all(axis=1))
@@ -225,17 +225,18 @@ class Signals:
 def run_all(
     loop_program: LoopProgram, values: FloatArray, shared: FloatArray, errors: Sequence[FloatArray], start: FloatArray
 ) -> Signals:
-    """Compute runs of as many ticks that share their code; each has the bits that it has alone.
+    """Compute runs with the same code and number of ticks; results are bit-identical to separate runs.
 
     Args:
-        loop_program: The closed loop of one of them.
-        values: The parameters of each, shape (runs, parameters); see LoopProgram.values.
-        shared: What each tick is given of time and path, shape (T, entries) for all alike or (runs, T, entries).
+        loop_program: The closed loop of one of the runs.
+        values: Parameters of each run, shape (runs, parameters); see LoopProgram.values.
+        shared: Time and path at each tick, shape (T, entries) if they are the same for all runs, else (runs, T,
+            entries).
         errors: Errors of the positions at the ticks of each loop, shape (runs, n, nq), in rad.
-        start: The state of the first tick of each, shape (runs, entries); see Commands.start.
+        start: Initial state of each run, shape (runs, entries); see Commands.start.
 
     Raises:
-        CannotCompileError: where a law has no compiled form.
+        CannotCompileError: if a control law has no compiled form.
     """
     count, ticks, nq, stages = (
         len(start),
@@ -251,7 +252,7 @@ def run_all(
     wide, long = shared.shape[-1], start.shape[1]
     for first in range(0, count, code.lanes):
         own = slice(first, min(first + code.lanes, count))
-        used = own.stop - first  # idle lanes go on with what the runs before left there
+        used = own.stop - first  # idle lanes continue with the values of earlier runs
         if shared.ndim == 3 or first == 0:
             frame.given[:, :wide, : used if shared.ndim == 3 else code.lanes] = _lanes(shared, own)
         wrong = loop_program.commands.measured_wrong([each[own] for each in errors], ticks)
@@ -269,6 +270,6 @@ def run_all(
 
 
 def _lanes(shared: FloatArray, runs: slice) -> FloatArray:
-    """Return what ticks are given with the runs last, shape (T, entries, runs), or 1 for all runs alike."""
+    """Return time and path with runs on the last axis, shape (T, entries, runs); 1 if they are the same for all."""
     found: FloatArray = shared[:, :, None] if shared.ndim == 2 else shared[runs].transpose(1, 2, 0)
     return found

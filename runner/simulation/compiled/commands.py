@@ -32,11 +32,11 @@ class LoopCode:
     """A control loop.
 
     Attributes:
-        law: Its law.
-        joints: Joints that it commands.
-        every: Ticks between two of its own.
-        period: Time between them, in s.
-        follows_joints: Whether its reference is the desired motion of the joints.
+        law: Control law.
+        joints: Commanded joints.
+        every: Ticks between two ticks of the loop.
+        period: Time between two ticks of the loop, in s.
+        follows_joints: True if the reference is the desired motion of the joints.
     """
 
     law: TorqueLaw[Any]
@@ -48,15 +48,15 @@ class LoopCode:
 
 @dataclass(frozen=True)
 class Commands:
-    """All loops of a robot and what they measure.
+    """All control loops of a robot, and their measurement.
 
     Attributes:
         robot: The robot.
-        ignore_base_rotation: Whether riding stages keep the orientation of home.
+        ignore_base_rotation: True if mounted stages keep their orientation at home.
         loops: The loops.
-        noise: Noise, bias and steps of the joints.
-        limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
-        guarded: Whether torques that are no finite numbers end the run as a fault of the law.
+        noise: Noise, bias and resolution of the encoders.
+        limits: Torque limit of each joint, shape (nq,), in N m; infinite without a limit.
+        guarded: True if torques that are not finite end the run as a failure of the law.
     """
 
     robot: Robot
@@ -68,14 +68,14 @@ class Commands:
 
     @cached_property
     def pattern(self) -> str:
-        """A text that is the same for two whose code is the same."""
+        """A string that is the same for two sets of loops with the same code."""
         loops = [(law_cache_key(loop.law), loop.joints, loop.every > 1, loop.follows_joints) for loop in self.loops]
         points = point_scalars(self.robot, self.ignore_base_rotation, any_number)
         return repr((loops, points, self._rounded.tolist(), self.noise.velocity))
 
     @property
     def are_ours(self) -> bool:
-        """Whether their laws follow from our source alone."""
+        """True if all laws are built-in."""
         kinds = [kind for loop in self.loops for law in _parts(loop.law) for kind in type(law).__mro__]
         return all(kind.__module__.partition(".")[0] in _OURS for kind in kinds)
 
@@ -86,11 +86,11 @@ class Commands:
 
     @property
     def follow_joints(self) -> bool:
-        """Whether one of them follows the desired motion of the joints."""
+        """True if a loop follows the desired motion of the joints."""
         return any(loop.follows_joints for loop in self.loops)
 
     def scalars(self, number: Callable[[float], Any]) -> "CommandScalars":
-        """Return the numbers of the loops as scalars, as `number` makes them."""
+        """Return the numbers of the loops as scalars, converted by `number`."""
         return CommandScalars(
             [number(limit) for limit in self.limits.tolist()],
             {joint: number(self.noise.resolution[joint]) for joint in np.flatnonzero(self._rounded).tolist()},
@@ -103,7 +103,7 @@ class Commands:
         )
 
     def fault(self, torque: FloatArray, time: float) -> SimulationError | None:
-        """Return what is wrong with torques that a user's law gave, shape (nq,); None where nothing is."""
+        """Return the failure of a user-supplied law with these torques, shape (nq,); None if they are finite."""
         if not self.guarded or np.isfinite(torque).all():
             return None
         for loop in self.loops:
@@ -113,12 +113,12 @@ class Commands:
         return None
 
     def shared(self, times: FloatArray, desired: FloatArray, joints: FloatArray | None = None) -> FloatArray:
-        """Return what ticks are given of time and path, shape (..., T, entries): the space `given`'s first entries.
+        """Return time and path at each tick, shape (..., T, entries): the first entries of the space `given`.
 
         Args:
             times: Time of each tick, shape (T,), in s.
             desired: Desired motion of the tip, shape (..., T, 3, 3), of one run or of several.
-            joints: Desired motion of the joints, shape (..., T, 3, nq); needed where a loop follows it.
+            joints: Desired motion of the joints, shape (..., T, 3, nq); required if a loop follows it.
         """
         ticks, lead = np.arange(len(times)), desired.shape[:-2]
         own = [times, *(ticks % loop.every == 0 for loop in self.loops)]
@@ -128,7 +128,7 @@ class Commands:
         return np.concatenate(parts, axis=-1)
 
     def measured_wrong(self, errors: Sequence[FloatArray], ticks: int) -> FloatArray:
-        """Return the errors of the positions in each tick, shape (..., T, entries): what follows in `given`.
+        """Return the errors of the positions in each tick, shape (..., T, entries): the next entries of `given`.
 
         Args:
             errors: Errors at the ticks of each loop, shape (..., n, nq), in rad.
@@ -142,7 +142,7 @@ class Commands:
         return own[0] if len(own) == 1 else np.concatenate(own, axis=-1)
 
     def start(self, q: FloatArray, errors: Sequence[FloatArray]) -> FloatArray:
-        """Return the state of the first tick of runs at rest, shape (runs, entries).
+        """Return the initial state of runs at rest, shape (runs, entries).
 
         Args:
             q: Joint positions, shape (runs, nq), in rad.
@@ -162,7 +162,7 @@ class Commands:
 
 
 def _parts(law: TorqueLaw[Any]) -> Iterator[TorqueLaw[Any]]:
-    """Yield a law and the laws that it is made of."""
+    """Yield a law and the laws inside it."""
     yield law
     for part in vars(law).values():
         if isinstance(part, TorqueLaw):
@@ -174,10 +174,10 @@ class CommandScalars(NamedTuple):
 
     Attributes:
         limits: Torque limit of each joint, shape (nq,), in N m.
-        resolution: Step of the encoders of some joints, in rad.
-        laws: Those of each loop.
-        points: What the end points of the stages follow from.
-        velocity: Gains of each loop's velocities.
+        resolution: Resolution of the encoders, by joint, in rad; only for joints with one.
+        laws: Numbers of each loop's law.
+        points: Numbers of the stages' end points.
+        velocity: Gains of each loop's velocity estimate.
     """
 
     limits: Sequence[Value]
@@ -188,13 +188,13 @@ class CommandScalars(NamedTuple):
 
 
 def expressed_commands(commands: Commands, numbers: CommandScalars, at: Slots) -> tuple[list[Value], Block, list[str]]:
-    """Return the torques of a tick, what is kept of it, and the texts of what may go wrong.
+    """Return the torques of a tick, the block of stored values, and the messages of possible failures.
 
-    It is the first that takes places. A row holds joint positions, velocities, torques, each of shape (nq,), the
-    number of what went wrong, 0 for nothing, and the end points of the stages.
+    Call this function first, because it takes the first slots. A row contains joint positions, velocities and torques,
+    each of shape (nq,), the number of the failure, 0 for none, and the end points of the stages.
 
     Raises:
-        CannotCompileError: where a law asks for what expressions cannot do.
+        CannotCompileError: if a law uses an operation that expressions do not support.
     """
     nq, loops = len(commands.limits), range(len(commands.loops))
     (time,), due = at.take(GIVEN, 1)[1], at.take(GIVEN, len(loops))[1]
@@ -223,7 +223,7 @@ def expressed_commands(commands: Commands, numbers: CommandScalars, at: Slots) -
 
 
 class _Given(NamedTuple):
-    """What a loop is given in a tick; `due` is 1 in a tick of its own, and 0 else."""
+    """Inputs of a loop in a tick; `due` is 1 in a tick of the loop, else 0."""
 
     time: Value
     due: Value
@@ -242,7 +242,7 @@ def _asked(
     given: _Given,
     at: Slots,
 ) -> tuple[list[Value], list[tuple[str, int, Any]], SymbolicBackend]:
-    """Return the torques that a loop asks for, how the state goes on, and what may go wrong."""
+    """Return the torques of a loop, the changes of its state, and the backend with possible failures."""
     measured = [position + wrong for position, wrong in zip(given.q, given.errors, strict=True)]
     for joint, step in numbers.resolution.items():
         measured[joint] = round_to_even(measured[joint] / step) * step
@@ -268,7 +268,7 @@ def _asked(
 
 
 def _in_own_ticks(loop: LoopCode, given: _Given, before: Sequence[Value], after: Sequence[Value]) -> list[Value]:
-    """Return what changes in the ticks of a loop alone."""
+    """Return values that change only in the ticks of a loop."""
     if loop.every == 1:
         return list(after)
     return [select(less(0.5, given.due), new, old) for new, old in zip(after, before, strict=True)]

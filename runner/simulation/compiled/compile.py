@@ -26,15 +26,15 @@ def find_commands(
     noise: EncoderNoise,
     limits: FloatArray,
 ) -> Commands | None:
-    """Return control loops as they are compiled; None where one of them is no torque law.
+    """Return control loops for compilation; None if one of them is not a torque law.
 
     Args:
-        robot: The robot that they command.
-        ignore_base_rotation: Whether its riding stages keep the orientation of home.
+        robot: The robot of the loops.
+        ignore_base_rotation: True if mounted stages keep their orientation at home.
         loops: The loops.
         tick: Time between two ticks, in s.
-        noise: Noise, bias and steps of the joints.
-        limits: Torque limits, shape (nq,), in N m; infinite where there is none.
+        noise: Noise, bias and resolution of the encoders.
+        limits: Torque limits, shape (nq,), in N m; infinite without a limit.
     """
     laws = [unguarded(loop.controller) for loop in loops]
     if not evaluator() or not all(isinstance(law, TorqueLaw) for law in laws):
@@ -54,7 +54,7 @@ def find_commands(
 
 
 def compile_commands(commands: Commands | None) -> CompiledCommands | None:
-    """Return loops that command a plant, compiled; None where they cannot be, of which the user is told the reason."""
+    """Return compiled control loops; None if they cannot be compiled, after printing the reason."""
     if commands is None:
         return None
     try:
@@ -65,23 +65,23 @@ def compile_commands(commands: Commands | None) -> CompiledCommands | None:
 
 
 def compile_program(commands: Commands | None, motion: Motion, timing: Timing) -> LoopProgram | None:
-    """Return a closed loop compiled as a whole, with what moves; None where it cannot be, as with uneven commands."""
+    """Return a closed loop compiled as a whole; None if it cannot be compiled, for example with varying delays."""
     if commands is None or timing.delay is None:
         return None
     loop_program = describe_program(commands, motion, timing)
     try:
         loop_program.program(1)
     except CannotCompileError:
-        return None  # the commands alone have no compiled form either, and say why
+        return None  # the commands have no compiled form either, and report the reason
     return loop_program
 
 
 def describe_program(commands: Commands, motion: Motion, timing: Timing) -> LoopProgram:
-    """Return a closed loop, of which code can be made as a whole."""
+    """Return a closed loop for compilation as a whole."""
     return LoopProgram(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.late[0])
 
 
 @lru_cache(maxsize=64)
 def _tell(text: str) -> None:
-    """Say something once in a process."""
+    """Print a message once in a process."""
     print(f"runner: {text}", file=sys.stderr)

@@ -19,11 +19,11 @@ _FOLDED = (0.0, 1.0, -1.0)
 
 @dataclass(frozen=True)
 class Setting:
-    """What a run follows from, or how it changes with a parameter.
+    """Numbers, start and errors of a run, or their derivatives by a parameter.
 
     Attributes:
         numbers: All numbers of the closed loop, shape (k,); see LoopProgram.numbers.
-        start: The state of the first tick, shape (entries,); see Commands.start.
+        start: Initial state, shape (entries,); see Commands.start.
         errors: Errors of the positions at the ticks of each loop, shapes (n, nq), in rad.
     """
 
@@ -34,12 +34,12 @@ class Setting:
 
 @dataclass(frozen=True)
 class Motions:
-    """Signals of a run, or their derivatives by some parameters, first of all by runs or parameters.
+    """Signals of runs, or their derivatives by parameters; the runs or parameters are on the axis `runs`.
 
     Attributes:
         q: Joint positions, shape (runs, T, nq), in rad.
         dq: Joint velocities, shape (runs, T, nq), in rad/s.
-        torque: Torques asked for, within their limits, shape (runs, T, nq), in N m.
+        torque: Commanded torques within their limits, shape (runs, T, nq), in N m.
         end_points: End point of each stage, shape (stages, runs, T, 3), in m.
     """
 
@@ -54,12 +54,12 @@ def tangents(loop_program: LoopProgram, setting: Setting, slopes: Sequence[Setti
 
     Args:
         loop_program: The closed loop.
-        setting: What the run follows from.
-        slopes: The derivative of that by each parameter.
-        shared: What each tick is given of time and path, shape (T, entries).
+        setting: Setting of the run.
+        slopes: Derivative of the setting by each parameter.
+        shared: Time and path at each tick, shape (T, entries).
 
     Raises:
-        CannotCompileError: where a law has no compiled form.
+        CannotCompileError: if a control law has no compiled form.
     """
     by_number = np.array([slope.numbers for slope in slopes])
     varied: NDArray[np.bool_] = (by_number != 0.0).any(axis=0)
@@ -98,11 +98,11 @@ def _frame(
 
     Args:
         loop_program: The closed loop.
-        numbers: All its numbers, shape (k,).
-        kept: Which of them are parameters of the code, shape (k,); others are 0, 1 or -1 in it.
-        varied: Which of these change with what is asked for.
-        noisy: Whether the errors of the positions do.
-        shared: What each tick is given of time and path, shape (T, entries).
+        numbers: All numbers of the closed loop, shape (k,).
+        kept: True for parameters of the code, shape (k,); the others are constants 0, 1 or -1.
+        varied: True for parameters that vary.
+        noisy: True if the errors of the positions vary.
+        shared: Time and path at each tick, shape (T, entries).
     """
     folded = np.where(kept, np.nan, numbers)
 
@@ -124,7 +124,7 @@ def _frame(
     pattern = f"tangents {loop_program.pattern} {folded.tolist()} {varied.tolist()} {noisy}"
     joints = len(loop_program.commands.limits)
     code = program(pattern, f"the derivatives of {joints} joints", express, LANES, loop_program.commands.are_ours)
-    assert code.widths[PARS] == 2 * len(varied)  # noqa: S101 - the numbers are asked for in the same order
+    assert code.widths[PARS] == 2 * len(varied)  # noqa: S101 - the numbers are requested in the same order
     assert code.widths[STATE] % 2 == code.widths[ROWS] % 2 == 0  # noqa: S101
     return code.frame(len(shared), loop_program.delay, loop_program.steps)
 

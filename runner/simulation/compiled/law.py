@@ -16,12 +16,12 @@ from runner.symbolic.vectors import as_array
 
 
 class LawScalars(NamedTuple):
-    """The numbers of a law at its ticks.
+    """The numbers of a law.
 
     Attributes:
-        period: Time between its ticks, in s.
-        numbers: Its law's.
-        arms: The law's nominal arms.
+        period: Time between ticks, in s.
+        numbers: Numbers of the law.
+        arms: Nominal arms of the law.
     """
 
     period: Value
@@ -30,7 +30,7 @@ class LawScalars(NamedTuple):
 
 
 def law_scalars(law: TorqueLaw[Any], period: float, number: Callable[[float], Any]) -> LawScalars:
-    """Return the numbers of a law whose ticks are a period apart, in s, as scalars; as `number` makes them."""
+    """Return the numbers of a law with a period, in s, as scalars, converted by `number`."""
     still = [0.0] * 3
     arms = tuple(
         constants_of(model, number, [number(g) for g in model.gravity.tolist()] if law.gravity_compensation else still)
@@ -43,9 +43,9 @@ class ExpressedArm:
     """An arm over expressions; see Arm.
 
     Args:
-        algebra: Its kinematics and dynamics.
-        backend: The functions over expressions.
-        gravity_compensation: True if gravity acts on it.
+        algebra: Kinematics and dynamics of the arm.
+        backend: Functions over expressions.
+        gravity_compensation: True if gravity acts on the arm.
     """
 
     def __init__(self, algebra: ArmAlgebra, backend: SymbolicBackend, gravity_compensation: bool) -> None:
@@ -56,12 +56,12 @@ class ExpressedArm:
         return Tip(*(as_array(part) for part in self._algebra.tip(q.tolist(), dq.tolist())))
 
     def tip_pose(self, q: Array) -> tuple[Array, Array]:
-        """Return where the tip is; see Arm."""
+        """Return the tip's position and rotation; see Arm."""
         tip = self.tip(q, np.zeros(len(q)))
         return tip.x, tip.R
 
     def tip_pose_and_twist(self, q: Array, dq: Array) -> tuple[Array, Array, Array]:
-        """Return where the tip is and its velocity; see Arm."""
+        """Return the tip's position, rotation and velocity; see Arm."""
         tip = self.tip(q, dq)
         return tip.x, tip.R, tip.J.dot(dq)
 
@@ -75,31 +75,31 @@ class ExpressedArm:
         return np.asarray(as_array(self._algebra.inverse_dynamics(q.tolist(), dq.tolist(), ddq.tolist(), given)))
 
     def momentum(self, q: Array, dq: Array, gravity: Array) -> tuple[Array, Array]:
-        """Return the generalised momenta and how they change; see Arm."""
+        """Return the generalised momenta and their rates; see Arm."""
         p, rates = self._algebra.momentum(q.tolist(), dq.tolist(), gravity.tolist())
         return np.asarray(as_array(p)), np.asarray(as_array(rates))
 
     def regressor(self, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:
-        """Return how the torques depend on the inertial parameters; see Arm."""
+        """Return the regressor of the inertial parameters; see Arm."""
         return np.asarray(as_array(self._algebra.regressor(q.tolist(), dq.tolist(), dq_r.tolist(), ddq_r.tolist())))
 
 
 def expressed_torque(
     law: TorqueLaw[Any], own: LawScalars, time: Value, q: Any, dq: Any, reference: Array, memory: Any
 ) -> tuple[list[Value], list[Value], SymbolicBackend]:
-    """Return a law's torques and memory as expressions, and what may go wrong.
+    """Return a law's torques and memory as expressions, and the backend with possible failures.
 
     Args:
         law: The law.
-        own: Its numbers.
-        time: As in TorqueLaw.evaluate, and so are the others.
-        q: Likewise.
-        dq: Likewise.
-        reference: Likewise.
-        memory: Likewise.
+        own: Numbers of the law.
+        time: See TorqueLaw.evaluate.
+        q: See TorqueLaw.evaluate.
+        dq: See TorqueLaw.evaluate.
+        reference: See TorqueLaw.evaluate.
+        memory: See TorqueLaw.evaluate.
 
     Raises:
-        CannotCompileError: where the law asks for what expressions cannot do.
+        CannotCompileError: if the law uses an operation that expressions do not support.
     """
     backend = SymbolicBackend()
     arms = [ExpressedArm(ArmAlgebra(constants), backend, law.gravity_compensation) for constants in own.arms]
@@ -114,10 +114,10 @@ def expressed_torque(
 
 
 def law_cache_key(law: TorqueLaw[Any]) -> str:
-    """Return a text that is the same for two laws whose code is the same.
+    """Return a string that is the same for two laws with the same code.
 
     Raises:
-        CannotCompileError: where the law has kept what cannot be compared.
+        CannotCompileError: if the law has an attribute that cannot be compared.
     """
     kind = type(law)
     return repr(
@@ -132,9 +132,9 @@ def law_cache_key(law: TorqueLaw[Any]) -> str:
 
 
 def structure_cache_key(law: TorqueLaw[Any]) -> str:
-    """Return a text of what is fixed in a law's code: it is the same for laws that differ in their numbers alone.
+    """Return a string for the fixed part of a law's code; it is the same for laws that differ only in their numbers.
 
     Raises:
-        CannotCompileError: where the law has kept what cannot be compared.
+        CannotCompileError: if the law has an attribute that cannot be compared.
     """
     return repr(plain_structure("", law.structure()))

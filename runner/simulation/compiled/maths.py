@@ -11,21 +11,21 @@ from runner.symbolic.expression import absolute, all_of, both, equal, expression
 from runner.symbolic.maths import Array, Chosen
 from runner.symbolic.vectors import as_array, cross, dot, scale
 
-_STEPS = 6  # of Laguerre's method, which triples the digits in each once it is near
+_STEPS = 6  # of Laguerre's method, with cubic convergence
 
 
 class SymbolicBackend:
     """The functions on expressions: both branches of a choice are computed, and an error is a number.
 
     Attributes:
-        errors: The texts of what may go wrong, in the order of the numbers in `fault`.
-        fault: The number of what went wrong first, counted from 1; 0 where nothing did.
+        errors: Messages of the possible failures, in the order of the numbers in `fault`.
+        fault: Number of the first failure, counted from 1; 0 without a failure.
     """
 
     def __init__(self) -> None:
         self.errors: list[str] = []
         self.fault: Any = 0.0
-        self._within: list[Any] = []  # conditions of the choices around
+        self._within: list[Any] = []  # conditions of the enclosing choices
 
     def choose(self, condition: Any, yes: Callable[[], Chosen], no: Callable[[], Chosen]) -> Chosen:
         """Return one of two arrays or tuples of them, entry by entry; see Backend."""
@@ -40,7 +40,7 @@ class SymbolicBackend:
         return less(a, b)
 
     def any_of(self, *conditions: Any) -> Any:
-        """Return the condition that one or more hold; see Backend."""
+        """Return the condition that at least one condition holds; see Backend."""
         return negated(all_of([negated(condition) for condition in conditions]))
 
     def maximum(self, a: Any, b: Any) -> Any:
@@ -48,11 +48,11 @@ class SymbolicBackend:
         return select(less(b, a), a, b)
 
     def floor(self, a: Any) -> Any:
-        """Return the largest whole number that is not above; see Backend."""
+        """Return the largest integer that is not greater; see Backend."""
         return floor(a)
 
     def absolute(self, a: Any) -> Any:
-        """Return the size of a scalar; see Backend."""
+        """Return the absolute value of a scalar; see Backend."""
         return absolute(a)
 
     def sqrt(self, a: Any) -> Any:
@@ -60,7 +60,7 @@ class SymbolicBackend:
         return sqrt(a)
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Any]:
-        """Return A^-1 b and det A by Cramer's rule; singular is what is so up to rounding; see Backend."""
+        """Return A^-1 b and det A by Cramer's rule; a singular A, up to rounding, is a failure. See Backend."""
         first, second, third = (list(column) for column in A.T)
         rows = [cross(second, third), cross(third, first), cross(first, second)]
         determinant = expression(dot(first, rows[0]))
@@ -88,17 +88,17 @@ class SymbolicBackend:
         .. math:: \lambda^+ = \lambda + n / (s_1 + \sqrt{(n - 1)(n s_2 - s_1^2)}), \qquad
             s_k = \mathrm{tr} (A - \lambda)^{-k}
 
-        All eigenvalues are real, so that it goes up to the smallest one without passing it.
+        All eigenvalues are real, so the iteration increases to the smallest one without passing it.
         """
         n, size = len(A), expression(np.trace(A))
-        found = -1e-14 * size  # so that the inverse exists where the eigenvalue is 0
+        found = -1e-14 * size  # so that the inverse exists if the eigenvalue is 0
         for _ in range(_STEPS):
             inverse = Factors((A - found * np.eye(n)).tolist()).inverse()
             s_1 = sum(inverse[i][i] for i in range(n))
             s_2 = dot(*2 * [[entry for row in inverse for entry in row]])
             spread = self.maximum((n - 1.0) * (n * s_2 - s_1 * s_1), 0.0)
             step = n / (s_1 + sqrt(spread))
-            ahead = both(less(0.0, s_1), less(0.0, step))  # else it is found, up to rounding
+            ahead = both(less(0.0, s_1), less(0.0, step))  # else it has converged, up to rounding
             found = found + select(ahead, step, 0.0)
         return found
 
@@ -108,7 +108,7 @@ class SymbolicBackend:
         squared = dot(axis, axis)
         twice = sqrt(squared)
         angle = angle_of(twice, np.trace(R) - 1.0)
-        # At rest the ratio tends to 1/2; of smaller squares nothing is left.
+        # At zero rotation the ratio tends to 1/2; smaller squares underflow.
         return np.asarray(as_array(scale(select(less(1e-300, squared), angle / twice, 0.5), axis)))
 
     def _inside(self, condition: Any, branch: Callable[[], Chosen]) -> Chosen:
@@ -119,7 +119,7 @@ class SymbolicBackend:
             self._within.pop()
 
     def _watch(self, failed: Any, text: str) -> None:
-        """Take note that something may fail, where the choices around lead there."""
+        """Record a possible failure, under the conditions of the enclosing choices."""
         if text not in self.errors:
             self.errors.append(text)
         if self._within:
