@@ -216,7 +216,7 @@ def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition
 def make_wrist_sensor(
     closed: ClosedLoop, sensor: ForceTorqueConfig, seed: int, repetition: int
 ) -> ForceTorqueSensor | None:
-    """Build the built-in force/torque sensor of one repetition, with noise as in make_encoders; None without contact."""
+    """Build the built-in force/torque sensor of one repetition, with noise as for encoders; None without contact."""
     if closed.interaction is None:
         return None
     generator = np.random.default_rng([seed, repetition, len(closed.loops)])

@@ -30,11 +30,11 @@ _IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], _Z]
 
 
 class ArmAlgebra:
-    """An arm's kinematics and dynamics as sums and products of scalars (Featherstone 2008, chapters 5 and 6).
+    """Kinematics and dynamics of an arm as sums and products of scalars (Featherstone 2008, chapters 5 and 6).
 
     Args:
-        constants: The arm's bodies, tip and gravity.
-        sine_cosine: Makes the sine and the cosine of a scalar.
+        constants: Bodies, tip and gravity of the arm.
+        sine_cosine: Function that returns sine and cosine of a scalar.
     """
 
     def __init__(
@@ -51,7 +51,7 @@ class ArmAlgebra:
             dq: Joint velocities, shape (nq,), in rad/s.
 
         Returns:
-            Shapes (3,), (3, 3), (6, nq) and (6,), linear rows first.
+            Arrays of shapes (3,), (3, 3), (6, nq) and (6,), linear rows first.
         """
         constants, placements = self._constants, self._placements(q)
         rotations: list[Matrix] = []
@@ -82,7 +82,7 @@ class ArmAlgebra:
             q: Joint positions, shape (nq,), in rad.
             dq: Joint velocities, shape (nq,), in rad/s.
             ddq: Joint accelerations, shape (nq,), in rad/s^2.
-            gravity: In the base frame, shape (3,), in m/s^2; None is the arm's own.
+            gravity: Gravity vector in the base frame, shape (3,), in m/s^2; None for that of the arm.
         """
         bodies, placements = self._constants.bodies, self._placements(q)
         upwards = scale(-1.0, self._constants.gravity if gravity is None else gravity)
@@ -109,8 +109,9 @@ class ArmAlgebra:
     def momentum(self, q: Vector, dq: Vector, gravity: Vector) -> tuple[Vector, Vector]:
         """Return M dq and dT/dq - G, shapes (nq,); see Arm.momentum.
 
-        Both follow from the momentum h of what a joint carries (Featherstone 2008, chapter 2): of a joint S and its
-        body's velocity V, S^T h and h^T (V x S), as turning the joint changes the velocity of all it carries by V x S.
+        Both follow from the momentum h of the bodies that a joint moves (Featherstone 2008, chapter 2). For a joint S
+        whose body has the velocity V, they are S^T h and h^T (V x S), because a joint displacement changes the velocity
+        of these bodies by V x S.
         """
         bodies, placements = self._constants.bodies, self._placements(q)
         speeds: list[tuple[Vector, Vector, Vector]] = []  # spin, velocity of the origin, and gravity
@@ -165,7 +166,7 @@ class ArmAlgebra:
             masses[parent] = plus(masses[parent], masses[index])
         M: list[list[Scalar]] = [[0.0] * len(bodies) for _ in bodies]
         for index, body in enumerate(bodies):
-            # Force and moment, about the body's origin, that accelerate all it carries by one unit of its joint.
+            # Force and moment, about the body's origin, for unit acceleration of its joint.
             force = scale(masses[index], _Z) if body.prismatic else cross(_Z, moments[index])
             moment = cross(moments[index], _Z) if body.prismatic else [row[2] for row in inertias[index]]
             at, parent = index, body.parent
@@ -179,7 +180,7 @@ class ArmAlgebra:
         return M
 
     def _placements(self, q: Vector) -> list[tuple[Matrix, Vector]]:
-        """Return each body's rotation into its carrier's frame and its origin there."""
+        """Return each body's rotation and origin in its parent's frame."""
         if self._placed is None or self._placed[0] is not q:
             pairs = zip(self._constants.bodies, q, strict=True)
             self._placed = q, [self._placement(body, position) for body, position in pairs]
@@ -198,7 +199,7 @@ class ArmAlgebra:
     def _motions(
         self, placements: list[tuple[Matrix, Vector]], dq: Vector, ddq: Vector, acceleration: Vector
     ) -> list[Moved]:
-        """Return how each body moves, from the joints' speeds and accelerations and the base's acceleration."""
+        """Return the motion of each body from joint velocities and accelerations, and the base's acceleration."""
         motions: list[Moved] = []
         for body, (R, p), speed, change in zip(self._constants.bodies, placements, dq, ddq, strict=True):
             base = Moved(_ZERO, _ZERO, acceleration) if body.parent is None else motions[body.parent]
@@ -215,13 +216,13 @@ class ArmAlgebra:
 
 
 class Factors:
-    r"""A = L D L^T of a symmetric matrix, without pivoting.
+    """Factors A = L D L^T of a symmetric matrix, without pivoting.
 
     Args:
-        A: Shape (n, n); its upper triangle is read.
+        A: Matrix, shape (n, n); only its upper triangle is read.
 
     Attributes:
-        pivots: D, shape (n,): A is positive definite where all are above 0.
+        pivots: D, shape (n,); A is positive definite if all are above 0.
     """
 
     def __init__(self, A: Matrix) -> None:

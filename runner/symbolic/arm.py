@@ -17,7 +17,7 @@ _AXES = np.eye(3)
 
 @dataclass(frozen=True)
 class NoConstantFolding:
-    """Makes scalars as a plain function does, and is asked for 0, 1 and -1, too.
+    """Function from numbers to scalars that is also called for 0, 1 and -1.
 
     Attributes:
         make: The function.
@@ -26,24 +26,25 @@ class NoConstantFolding:
     make: Callable[[float], Scalar]
 
     def __call__(self, value: float) -> Scalar:
-        """Return the scalar that stands for a number."""
+        """Return the scalar for a number."""
         return self.make(value)
 
 
 @dataclass(frozen=True)
 class Body:
-    """A moving link, in the frame of the joint that moves it, whose axis is z.
+    """A moving link, in the frame of its joint, whose axis is z.
 
     Attributes:
-        parent: Index of the body that carries it; None is the base.
-        prismatic: True if its joint is prismatic, along z; else it is revolute, about z.
-        rotation: Turns its frame at joint position 0 into its parent's, shape (3, 3).
-        position: Origin of its frame in its parent's at joint position 0, shape (3,), in m.
-        mass: In kg.
-        moment: Mass times the way from the origin to the centre of mass, shape (3,), in kg m.
-        inertia: About the origin, shape (3, 3), in kg m^2.
-        armature: Reflected inertia of its joint's motor and gear, in kg m^2; kg where the joint slides.
-        turn: Turns its frame into that of its joint, in which its inertial parameters are known, shape (3, 3).
+        parent: Index of the parent body; None for the base.
+        prismatic: True if the joint is prismatic, along z; False if it is revolute, about z.
+        rotation: Rotation from the body's frame at joint position 0 to the parent's frame, shape (3, 3).
+        position: Origin of the body's frame in the parent's frame at joint position 0, shape (3,), in m.
+        mass: Mass, in kg.
+        moment: Mass times the vector from the origin to the centre of mass, shape (3,), in kg m.
+        inertia: Inertia about the origin, shape (3, 3), in kg m^2.
+        armature: Reflected inertia of the joint's motor and gear, in kg m^2; in kg for a prismatic joint.
+        turn: Rotation from the body's frame to the model's joint frame, in which its inertial parameters are given,
+            shape (3, 3).
     """
 
     parent: int | None
@@ -58,14 +59,14 @@ class Body:
 
 
 class ArmConstants(NamedTuple):
-    """What kinematics and dynamics of an arm follow from.
+    """Constants for the kinematics and dynamics of an arm.
 
     Attributes:
-        bodies: The moving links, base first; a carrier stands before what it carries.
-        tip_body: Index of the body that holds the tip.
-        tip_rotation: Turns the tip's frame into that body's, shape (3, 3).
-        tip_position: The tip in that body's frame, shape (3,), in m.
-        gravity: In the base frame, shape (3,), in m/s^2.
+        bodies: The moving links; a parent comes before its children.
+        tip_body: Index of the body with the tip.
+        tip_rotation: Rotation from the tip's frame to that body's frame, shape (3, 3).
+        tip_position: Position of the tip in that body's frame, shape (3,), in m.
+        gravity: Gravity vector in the base frame, shape (3,), in m/s^2.
     """
 
     bodies: tuple[Body, ...]
@@ -80,14 +81,14 @@ def constants_of(
 ) -> ArmConstants:
     """Return an arm's constants.
 
-    Links that fixed joints hold are parts of the body that carries them, as Pinocchio has merged them.
+    Links on fixed joints belong to their parent body, as merged by Pinocchio.
 
     Args:
-        model: The arm, which does not change any more.
-        number: Makes the scalar that stands for a constant; it is not asked for 0, 1 and -1, which stay floats,
+        model: Model of the arm, which must not change later.
+        number: Function that returns the scalar for a constant. It is not called for 0, 1 and -1, which stay floats,
             unless it is NoConstantFolding.
-        gravity: In the base frame, shape (3,), in m/s^2, as scalars; None is the model's.
-        tip: Name of the frame that is taken for the tip; None is the model's.
+        gravity: Gravity vector in the base frame, shape (3,), in m/s^2, as scalars; None for the model's.
+        tip: Name of the tip frame; None for the model's.
     """
     bodies, (tip_body, rotation, position) = _raw_bodies(model), _raw_tip(model, tip)
     return ArmConstants(
@@ -114,7 +115,7 @@ def constants_of(
 
 @lru_cache(maxsize=256)
 def _raw_bodies(model: RobotModel) -> tuple[Body, ...]:
-    """Return the bodies of an arm with their numbers, each joint's axis turned to z."""
+    """Return the bodies of an arm with float constants, each joint's axis rotated to z."""
     arm, turns = model.pin_model, _turns(model)
     bodies = []
     for index, (placement, inertia) in enumerate(
@@ -144,7 +145,7 @@ def _raw_bodies(model: RobotModel) -> tuple[Body, ...]:
 
 @lru_cache(maxsize=256)
 def _raw_tip(model: RobotModel, frame: str | None) -> tuple[int, Any, Any]:
-    """Return the body that holds a frame, the frame's rotation and its origin there."""
+    """Return the body with a frame, and the frame's rotation and origin in it."""
     arm = model.pin_model
     end = arm.frames[model.tip_frame if frame is None else arm.getFrameId(frame)]
     turn = _turns(model)[end.parentJoint - 1].T
@@ -152,12 +153,12 @@ def _raw_tip(model: RobotModel, frame: str | None) -> tuple[int, Any, Any]:
 
 
 def _turns(model: RobotModel) -> list[FloatArray]:
-    """Return how each joint's frame is turned to have the axis along z; the last one, of the base, is not."""
+    """Return the rotation of each joint's frame to an axis along z, and the identity for the base at the end."""
     return [*(_axis_to_z(joint) for joint in list(model.pin_model.joints)[1:]), _AXES]
 
 
 def _axis_to_z(joint: Any) -> FloatArray:
-    """Return a rotation that takes z to a joint's axis, shape (3, 3); along the axes where the axis is."""
+    """Return a rotation from z to a joint's axis, shape (3, 3); a permutation of axes if the axis is x, y or z."""
     data = joint.createData()
     joint.calc(data, np.zeros(1))
     motion = np.asarray(data.S, dtype=np.float64).reshape(6)
@@ -171,7 +172,7 @@ def _axis_to_z(joint: Any) -> FloatArray:
 
 
 def to_scalars(values: Any, number: Callable[[float], Scalar]) -> Any:
-    """Return numbers as scalars, nested as they are: 0, 1 and -1 as floats, others as `number` makes them."""
+    """Return numbers as nested scalars: 0, 1 and -1 as floats, others converted by `number`."""
     values = _rounded(values)
     if isinstance(values, list):
         return [to_scalars(value, number) for value in values]
@@ -183,7 +184,7 @@ def _scalar(value: float, number: Callable[[float], Scalar]) -> Scalar:
 
 
 def _rounded(values: Any) -> Any:
-    """Return numbers as nested lists; what is 0, 1 or -1 but for rounding is so."""
+    """Return numbers as nested lists; values within rounding of 0, 1 or -1 are replaced by these."""
     values = np.asarray(values, dtype=np.float64)
     nearest = np.clip(np.round(values), -1.0, 1.0)
     near = np.abs(values - nearest) < _ROUNDING

@@ -1,6 +1,6 @@
 """Disk cache of compiled code and small answers in the user's cache folder, with permission checks.
 
-Other users must not be able to write to the folder, because the machine code in it is loaded as it is.
+Other users must not be able to write to the folder, because its machine code is loaded and executed.
 """
 
 import functools
@@ -14,16 +14,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-_LARGEST = 64 * 2**20  # bytes of one file
+_LARGEST = 64 * 2**20  # bytes, limit of one file
 _MOST_ANSWERS = 1000
-_ANSWER = "answer-"  # begins the name of each
+_ANSWER = "answer-"  # prefix of file names
 
 
 def folder() -> Path | None:
-    """Return the folder of compiled code, made where it is missing; None where it cannot be trusted; that is told.
+    """Return the folder of compiled code, created if missing; None, after a message, if it is not safe.
 
-    It is `arm-control-runner/compiled` within XDG_CACHE_HOME or ~/.cache, open to the user alone. It is not used where
-    it, or a folder that leads to it, belongs to somebody else than the user or root, or can be written by others.
+    It is `arm-control-runner/compiled` in XDG_CACHE_HOME or ~/.cache, with access only for the user. It is not used if
+    it belongs to another user, a folder above it belongs to another user than root, or others can write to one of them.
     """
     base = os.environ.get("XDG_CACHE_HOME")
     try:
@@ -45,9 +45,9 @@ def _tell(text: str) -> None:
 
 
 def _is_safe(path: Path, owners: set[int], allowed: int) -> bool:
-    """Tell whether only these owners can change what a folder holds, or whether it has an allowed bit.
+    """Return True if a folder has one of these owners, and others cannot write to it or an allowed mode bit is set.
 
-    In a sticky folder, as /tmp is, nobody can rename what belongs to another.
+    In a sticky folder such as /tmp, users cannot rename files of other users.
     """
     status = path.stat()
     others = status.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
@@ -55,7 +55,7 @@ def _is_safe(path: Path, owners: set[int], allowed: int) -> bool:
 
 
 def read(key: str) -> tuple[bytes, dict[str, Any]] | None:
-    """Return the code of a key and what is kept with it; None where there is none, or it is damaged."""
+    """Return the code of a key and its metadata; None if it is missing or damaged."""
     place = folder()
     if place is None:
         return None
@@ -76,7 +76,7 @@ def read(key: str) -> tuple[bytes, dict[str, Any]] | None:
 
 
 def write(key: str, code: bytes, about: Mapping[str, Any]) -> None:
-    """Keep the code of a key, and plain data on it; where that fails it is compiled again the next time."""
+    """Store the code of a key, with metadata; if that fails, the code is compiled again the next time."""
     place = folder()
     if place is None:
         return
@@ -90,13 +90,13 @@ def write(key: str, code: bytes, about: Mapping[str, Any]) -> None:
 
 
 def read_answer(key: str) -> Any:
-    """Return the plain data kept under a key; None if there is none."""
+    """Return the plain data stored under a key; None if there is none."""
     found = read(f"{_ANSWER}{key}")
     return None if found is None else json.loads(found[0])
 
 
 def write_answer(key: str, answer: Any) -> None:
-    """Keep plain data under a key; if that fails it is computed again the next time."""
+    """Store plain data under a key; if that fails, it is computed again the next time."""
     place = folder()
     kept = [] if place is None else list(place.glob(f"{_ANSWER}*"))
     for path in kept if len(kept) >= _MOST_ANSWERS else ():

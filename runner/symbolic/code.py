@@ -16,10 +16,10 @@ _FUNCTIONS = ("sqrt", "fabs", "rint", "floor")
 
 @dataclass(frozen=True)
 class Block:
-    """Numbers that are computed and put into places; all places are read before any is written.
+    """Numbers that are computed and written to slots; all slots are read before any is written.
 
     Attributes:
-        outputs: Space, index and value of each.
+        outputs: Space, index and value of each number.
     """
 
     outputs: Sequence[tuple[str, int, Any]]
@@ -27,13 +27,13 @@ class Block:
 
 @dataclass(frozen=True)
 class Repeat:
-    """Parts that are done one or more times.
+    """Parts that are executed one or more times.
 
     Attributes:
-        parts: What is done.
-        times: How often: a number, or the name of an integer of the program.
-        until_zero: Index in scratch of a number that ends the loop where it is zero in all runs; None for none.
-        tabled: Whether each turn takes a row of the table, in order.
+        parts: The parts.
+        times: Number of repetitions, or the name of an integer of the program.
+        until_zero: Index in scratch of a number that ends the loop if it is zero in all runs; None for none.
+        tabled: True if each repetition uses the next row of the table.
     """
 
     parts: Sequence["Part"]
@@ -46,17 +46,16 @@ Part = Block | Repeat
 
 
 def write_program(ticks: Sequence[Part], between: Sequence[Part], widths: Mapping[str, int], lanes: int) -> str:
-    """Return a program as a module with the function `run`.
+    """Return a program as an LLVM module with the function `run`.
 
     Its argument is a frame: the addresses of the arrays given, rows, state, scratch, pars and table, and the integers
-    first, end, last, delay and steps. It goes through the ticks from first to end - 1; what stands between two ticks
-    is left out after the tick `last`. The numbers of a place, one for each of the runs that are computed together, lie
-    side by side. `given`, `rows` and `acting` have a row for each tick; acting is the row of `delay` ticks ago, of tick
-    0 before there is one.
+    first, end, last, delay and steps. It executes the ticks from first to end - 1. The code between two ticks is
+    skipped after the tick `last`. The numbers of a slot, one for each run of a batch, are contiguous. `given`, `rows`
+    and `acting` have a row for each tick. acting is the row of `delay` ticks ago, or of tick 0 in the first ticks.
 
     Args:
-        ticks: What each tick does.
-        between: What leads to the next tick.
+        ticks: Code of each tick.
+        between: Code from one tick to the next.
         widths: Numbers in a row of each space.
         lanes: Runs that are computed together.
     """
@@ -159,7 +158,7 @@ class _Writer:
         return head, counter
 
     def _close(self, head: str, counter: str, times: str, until_zero: int | None) -> None:
-        """End a loop after so many turns, or where a number is zero in all runs."""
+        """End a loop after a number of turns, or if a number is zero in all runs."""
         goes_on = None if until_zero is None else self._any(until_zero)
         self._lines.append(f"  br label %{head}.end")
         self._begin(f"{head}.end")
@@ -172,7 +171,7 @@ class _Writer:
         self._begin(after)
 
     def _any(self, index: int) -> str:
-        """Return the condition that a number of scratch is not zero in some run."""
+        """Return the condition that a number of scratch is not zero in at least one run."""
         value = self._line(f"load {self._number}, ptr {self._place(SCRATCH, index)}, align 8")
         found = self._line(f"fcmp une {self._number} {value}, {self._constant(0.0)}")
         if self._lanes == 1:
@@ -199,14 +198,14 @@ class Slots:
 
     def __init__(self) -> None:
         self.widths = {GIVEN: 0, ROWS: 0, STATE: 0, SCRATCH: 0, PARS: 0, TABLE: 3}
-        """How many of each space are taken."""
+        """Number of slots in use in each space."""
 
     def take(self, space: str, count: int) -> tuple[int, list[Expression]]:
-        """Return the first of some new places, and what stands there."""
+        """Return the index of the first of `count` new slots, and the slots as expressions."""
         first = self.widths[space]
         self.widths[space] += count
         return first, [place(space, first + index) for index in range(count)]
 
     def number(self, value: float) -> Expression:
-        """Return what stands for a number that may change from run to run: the next parameter; see Values."""
+        """Return the next parameter, for a number that may differ between runs; see Values."""
         return self.take(PARS, 1)[1][0]

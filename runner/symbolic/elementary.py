@@ -2,7 +2,7 @@
 
 The polynomials are from fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, s_atan.c). The total error is below two units
 in the last place. Reduction to |r| <= pi/4 uses pi/2 in three parts (Cody and Waite, Software Manual for the Elementary
-Functions, 1980). It is valid for |x| up to about 10^6 rad. A joint beyond this value has diverged.
+Functions, 1980). It is valid for |x| up to about 10^6 rad. A run with a joint beyond this value has diverged.
 """
 
 import math
@@ -53,7 +53,7 @@ def sine_cosine(x: Value) -> tuple[Value, Value]:
     sine = r + r * z * _polynomial(z, _SINE)
     half = 0.5 * z
     whole = 1.0 - half
-    # What is lost of 1 - z/2 by rounding is added again.
+    # Add the rounding error of 1 - z/2.
     cosine = whole + ((1.0 - whole - half) + z * z * _polynomial(z, _COSINE))
     quadrant = n - 4.0 * floor(0.25 * n)
     odd = equal(n - 2.0 * floor(0.5 * n), 1.0)

@@ -11,12 +11,13 @@ from runner.symbolic.vectors import Matrix, Vector, add, product
 
 
 class PointScalars(NamedTuple):
-    """What an end point follows from.
+    """Constants of an end point.
 
     Attributes:
-        arm: The arm that ends there.
-        first: Its first joint.
-        rotation: Where its base stands on the end point before without turning: that base's rotation, shape (3, 3).
+        arm: The arm that ends at the point.
+        first: Index of the arm's first joint.
+        rotation: Rotation of the arm's base, shape (3, 3), if the base is at the previous end point and does not
+            rotate; else None.
     """
 
     arm: ArmConstants
@@ -25,7 +26,7 @@ class PointScalars(NamedTuple):
 
 
 def point_scalars(robot: Robot, ignore_base_rotation: bool, number: Callable[[float], Any]) -> tuple[PointScalars, ...]:
-    """Return what the end points of all stages follow from, as scalars."""
+    """Return the constants of all stages' end points as scalars."""
     riding, still = robot.stages[1:], [0.0] * 3
     if not (riding and ignore_base_rotation):
         frames = [*(str(stage.base_frame) for stage in riding), None]
@@ -39,7 +40,7 @@ def point_scalars(robot: Robot, ignore_base_rotation: bool, number: Callable[[fl
 
 
 def expressed_points(points: tuple[PointScalars, ...], q: Vector) -> list[Value]:
-    """Return the end points in the robot's base frame, three numbers for each stage, from the joint positions."""
+    """Return the end points in the robot's base frame from the joint positions, three numbers for each stage."""
     found: list[Vector] = []
     for point in points:
         own = q[point.first : point.first + len(point.arm.bodies)]

@@ -10,14 +10,14 @@ from typing import Any
 
 NAME = "llvmlite"
 MOST_JOINTS = 12
-"""Above this the code of an arm grows as the cube of the joints, and Pinocchio is as quick."""
+"""Largest number of joints of a compiled arm; the code grows as their cube, and beyond it Pinocchio is as fast."""
 
 Function = Callable[[ctypes.c_void_p], None]
 
 
 @cache
 def evaluator() -> dict[str, str]:
-    """Return the library that evaluates compiled laws, with its version; nothing where it is missing."""
+    """Return the library that evaluates compiled laws, with its version; empty if it is missing."""
     if importlib.util.find_spec(NAME) is None:
         return {}
     try:
@@ -28,7 +28,7 @@ def evaluator() -> dict[str, str]:
 
 @cache
 def processor() -> str:
-    """Return what machine code depends on of the machine; its results do not."""
+    """Return the properties of the machine that machine code depends on; its results do not."""
     import llvmlite.binding as llvm
 
     return f"{platform.system()} {_target()[0].triple} {llvm.get_host_cpu_name()} {_features()}"
@@ -45,10 +45,10 @@ def machine_code(text: str) -> bytes:
 
 
 def load(code: bytes) -> Function:
-    """Return the function `run` of an object file; it takes the address of a frame.
+    """Return the function `run` of an object file; its argument is the address of a frame.
 
     Raises:
-        RuntimeError: where the file has none.
+        RuntimeError: if the file has no such function.
     """
     import llvmlite.binding as llvm
 

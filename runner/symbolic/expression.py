@@ -9,16 +9,16 @@ Value = Union["Expression", float]
 
 
 def _by_scalar(method: Callable[..., Any]) -> Callable[..., Any]:
-    """Leave arrays to NumPy, which asks for each of their entries."""
+    """Leave arrays to NumPy, which calls the operator for each entry."""
     return lambda self, other: NotImplemented if isinstance(other, np.ndarray) else method(self, other)
 
 
 class Expression:
-    """What is computed by one operation from others; goes through NumPy's operators on arrays of objects.
+    """The result of one operation on others; it works with NumPy's operators on arrays of objects.
 
     Attributes:
-        operation: Its name; see runner/symbolic/code.py.
-        operands: What it is computed from: expressions, and for a constant or a place its number.
+        operation: Name of the operation; see runner/symbolic/code.py.
+        operands: Operands: expressions, the number of a constant, or the space and index of a slot.
     """
 
     __slots__ = ("operands", "operation")
@@ -78,7 +78,7 @@ class Expression:
 
 
 def expression(value: Value) -> Expression:
-    """Return a number as a constant; an expression as it is."""
+    """Return a number as a constant, or an expression unchanged."""
     return value if isinstance(value, Expression) else Expression("constant", float(value))
 
 
@@ -87,22 +87,22 @@ def _is(value: Value, number: float) -> bool:
 
 
 def place(space: str, index: int) -> Expression:
-    """Return the number at a place of one of the spaces of a program; see Program."""
+    """Return the number in a slot of a space of a program; see Program."""
     return Expression("place", space, index)
 
 
 def places(space: str, first: int, count: int) -> list[Expression]:
-    """Return some numbers that lie side by side."""
+    """Return the numbers in consecutive slots."""
     return [place(space, index) for index in range(first, first + count)]
 
 
 def less(a: Value, b: Value) -> Expression:
-    """Return the condition a < b; false where one is NaN."""
+    """Return the condition a < b; false if one is NaN."""
     return Expression("less", expression(a), expression(b))
 
 
 def equal(a: Value, b: Value) -> Expression:
-    """Return the condition a = b; false where one is NaN."""
+    """Return the condition a = b; false if one is NaN."""
     return Expression("equal", expression(a), expression(b))
 
 
@@ -132,17 +132,17 @@ def absolute(a: Value) -> Value:
 
 
 def round_to_even(a: Value) -> Value:
-    """Return the nearest whole number, of two equally near ones the even."""
+    """Return the nearest integer; the even one if two are equally near."""
     return Expression("rint", expression(a))
 
 
 def floor(a: Value) -> Value:
-    """Return the largest whole number that is not above."""
+    """Return the largest integer that is not greater."""
     return Expression("floor", expression(a))
 
 
 def in_order(outputs: Iterable[Expression]) -> Iterator[Expression]:
-    """Yield what some expressions are computed from, and they themselves, each after its operands."""
+    """Yield the expressions that these outputs depend on, and the outputs, each after its operands."""
     seen: set[int] = set()
     for output in outputs:
         waiting: list[tuple[Expression, bool]] = [(output, False)]
@@ -159,7 +159,7 @@ def in_order(outputs: Iterable[Expression]) -> Iterator[Expression]:
 
 
 def all_of(conditions: Sequence[Expression]) -> Expression:
-    """Return the condition that some conditions, one at least, hold."""
+    """Return the condition that all conditions hold, at least one."""
     found = conditions[0]
     for condition in conditions[1:]:
         found = both(found, condition)

@@ -10,22 +10,22 @@ from numpy.typing import NDArray
 from runner.base.lazy_modules import lapack, pin
 
 Array = NDArray[Any]
-"""Of floats, or of objects that stand for numbers."""
+"""An array of floats, or of objects that represent numbers."""
 Scalar = Any
-"""A float, or what stands for one; also a condition."""
+"""A float or an object that represents one; also a condition."""
 Chosen = TypeVar("Chosen", bound=Array | tuple[Array, ...])
 
 
 class Backend(Protocol):
     """Functions over one kind of scalar.
 
-    A law that uses these, and the operators and `dot` of NumPy's arrays, can be evaluated on floats and written as
-    expressions. It branches by `choose` alone. A text `singular` is the error where a system has no solution; without
-    one the result is then of no use.
+    A law that uses these functions, and the operators and `dot` of NumPy's arrays, can be evaluated on floats and
+    written as expressions. It branches only by `choose`. `singular` is the error message for a system without solution;
+    if it is None, the result is meaningless then.
     """
 
     def choose(self, condition: Scalar, yes: Callable[[], Chosen], no: Callable[[], Chosen]) -> Chosen:
-        """Return what one of two functions gives, an array or a tuple of arrays; on floats the other is not asked."""
+        """Return the result of one of two functions, arrays or tuples of arrays; on floats, the other is not called."""
         ...
 
     def less(self, a: Scalar, b: Scalar) -> Scalar:
@@ -33,7 +33,7 @@ class Backend(Protocol):
         ...
 
     def any_of(self, *conditions: Scalar) -> Scalar:
-        """Return the condition that one or more of some conditions hold."""
+        """Return the condition that at least one condition holds."""
         ...
 
     def maximum(self, a: Scalar, b: Scalar) -> Scalar:
@@ -41,7 +41,7 @@ class Backend(Protocol):
         ...
 
     def floor(self, a: Scalar) -> Scalar:
-        """Return the largest whole number that is not above a scalar."""
+        """Return the largest integer that is not greater than a scalar."""
         ...
 
     def absolute(self, a: Scalar) -> Scalar:
@@ -53,11 +53,11 @@ class Backend(Protocol):
         ...
 
     def solve_three(self, A: Array, b: Array, singular: str | None) -> tuple[Array, Scalar]:
-        """Return A^-1 b and det A, shapes (3, 3) and (3,)."""
+        """Return A^-1 b and det A, with A of shape (3, 3) and b of shape (3,)."""
         ...
 
     def solve_symmetric(self, A: Array, b: Array, singular: str | None) -> Array:
-        """Return A^-1 b of a positive definite A, of which the upper triangle is read; b of shape (n,) or (n, k)."""
+        """Return A^-1 b of a positive definite A, with only its upper triangle read; b of shape (n,) or (n, k)."""
         ...
 
     def positive_definite(self, A: Array) -> Scalar:

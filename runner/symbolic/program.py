@@ -16,8 +16,8 @@ from runner.symbolic.code import GIVEN, PARS, ROWS, SCRATCH, STATE, TABLE, Part,
 from runner.symbolic.engine import Function, evaluator, load, machine_code, processor
 
 LANES = 8
-"""Runs that are computed together in a batch; each has the bits that it has alone."""
-# The classical Runge-Kutta scheme: the next stage's part of the step, and the weights of two sums.
+"""Runs that are computed together in a batch; each result is bit-identical to a separate run."""
+# The classical Runge-Kutta scheme: fraction of the step for the next stage, and the weights of two sums.
 STAGES = np.array([[0.5, 1.0, 1.0], [0.5, 1.0, 2.0], [1.0, 1.0, 2.0], [0.0, 0.0, 1.0]])
 
 
@@ -26,10 +26,10 @@ class Expressed:
     """A program as expressions; see runner/symbolic/code.py.
 
     Attributes:
-        ticks: What each tick does.
-        between: What leads to the next tick.
+        ticks: Code of each tick.
+        between: Code from one tick to the next.
         widths: Numbers in a row of each space.
-        errors: Texts of what may go wrong, in the order of their numbers.
+        errors: Messages of the possible failures, in the order of their numbers.
     """
 
     ticks: Sequence[Part]
@@ -43,9 +43,9 @@ class Program:
     """A compiled program.
 
     Attributes:
-        function: Its code.
+        function: The code.
         widths: Numbers in a row of each space.
-        errors: Texts of what may go wrong, in the order of their numbers.
+        errors: Messages of the possible failures, in the order of their numbers.
         lanes: Runs that are computed together.
     """
 
@@ -55,27 +55,27 @@ class Program:
     lanes: int
 
     def frame(self, ticks: int, delay: int = 0, steps: int = 1, last: int | None = None) -> "Frame":
-        """Return arrays for so many ticks; see Frame."""
+        """Return arrays for a number of ticks; see Frame."""
         return Frame(self, ticks, delay, steps, ticks - 1 if last is None else last)
 
 
 class Frame:
-    """A program with the arrays that it reads and writes.
+    """A program with its input and output arrays.
 
     Args:
         program: The program.
         ticks: Number of ticks.
         delay: Ticks from a command until it acts.
-        steps: Steps of the plant in a tick.
-        last: The tick after which nothing moves.
+        steps: Integration steps in a tick.
+        last: The tick after which the motion is not integrated.
 
     Attributes:
-        given: Known before, shape (ticks, entries, lanes).
-        rows: What is kept of each tick, shape (ticks, entries, lanes).
-        state: What goes on from tick to tick, shape (entries, lanes).
-        pars: Numbers of each run, shape (entries, lanes).
-        span: The integers first and end of `written`, shape (2,).
-        steps: Steps of the plant in a tick, shape (1,).
+        given: Inputs known in advance, shape (ticks, entries, lanes).
+        rows: Stored values of each tick, shape (ticks, entries, lanes).
+        state: State that continues from tick to tick, shape (entries, lanes).
+        pars: Parameters of each run, shape (entries, lanes).
+        span: The integers first and end of `write_program`, shape (2,).
+        steps: Integration steps in a tick, shape (1,).
     """
 
     def __init__(self, program: Program, ticks: int, delay: int, steps: int, last: int) -> None:
@@ -85,13 +85,13 @@ class Frame:
         self.state = np.zeros((widths[STATE], lanes))
         self.pars = np.zeros((widths[PARS], lanes))
         arrays = self.given, self.rows, self.state, np.zeros((widths[SCRATCH], lanes)), self.pars, _table(lanes)
-        self._arrays = arrays  # the code holds their addresses alone
+        self._arrays = arrays  # the code holds only their addresses
         frame = np.array([*(array.ctypes.data for array in arrays), 0, ticks, last, delay, steps], dtype=np.int64)
         self.span, self.steps = frame[6:8], frame[10:]
         self._function, self._frame, self._place = program.function, frame, ctypes.c_void_p(frame.ctypes.data)
 
     def call(self) -> None:
-        """Go through the ticks of `span`."""
+        """Execute the ticks of `span`."""
         self._function(self._place)
 
 
@@ -101,21 +101,21 @@ def _table(lanes: int) -> FloatArray:
 
 
 def program(pattern: str, what: str, express: Callable[[], Expressed], lanes: int, ours: bool = True) -> Program:
-    """Return a program, compiled now where that was not done before.
+    """Return a program, compiled if it is not cached.
 
     Args:
-        pattern: The same for two programs whose code is the same.
-        what: What is compiled, as the user is told.
-        express: Makes its expressions.
+        pattern: String that is the same for two programs with the same code.
+        what: Description of the compiled code for the user.
+        express: Function that returns the expressions.
         lanes: Runs that are computed together.
-        ours: Whether they follow from our source alone; else nobody knows when kept code is out of date.
+        ours: True if only built-in code determines the expressions; else the code is not cached on disk.
     """
     content = "\0".join([pattern, _source_digest(), str(evaluator()), processor(), str(lanes)])
     return _program(hashlib.sha256(content.encode()).hexdigest(), what, ours, lanes, _Maker(express))
 
 
 class _Maker:
-    """What makes expressions; any two are equal, as the key beside it says which ones."""
+    """Function that returns expressions; all instances are equal, because the cache key identifies the expressions."""
 
     def __init__(self, make: Callable[[], Expressed]) -> None:
         self.make: Callable[[], Expressed] | None = make
@@ -133,12 +133,12 @@ def _program(key: str, what: str, ours: bool, lanes: int, maker: _Maker) -> Prog
     if found is not None:
         try:
             return _loaded(found[0], found[1]["widths"], found[1]["errors"], lanes)
-        except Exception:  # noqa: S110 - whatever a damaged file makes the library raise
+        except Exception:  # noqa: S110 - a damaged file may raise any error
             pass
-    if sys.stderr.isatty():  # somebody waits
+    if sys.stderr.isatty():  # a user is waiting
         print(f"runner: compiling {what}; later runs find it compiled", file=sys.stderr)
-    make, maker.make = maker.make, None  # nothing of the first caller is kept
-    assert make is not None  # noqa: S101 - asked once for each key
+    make, maker.make = maker.make, None  # no reference to the first caller remains
+    assert make is not None  # noqa: S101 - called once for each key
     expressed = make()
     code = machine_code(write_program(expressed.ticks, expressed.between, expressed.widths, lanes))
     if ours:
@@ -155,7 +155,7 @@ def _loaded(code: bytes, widths: Mapping[str, int], errors: Sequence[str], lanes
 
 @cache
 def _source_digest() -> str:
-    """Return a digest of the source that makes expressions."""
+    """Return a digest of the source that builds expressions."""
     digest = hashlib.sha256()
     for room in ("compiled", "controllers"):
         for path in sorted((package_dir() / room).glob("*.py")):

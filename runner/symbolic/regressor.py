@@ -20,20 +20,20 @@ from runner.symbolic.vectors import (
 )
 
 COUNT = 10
-"""Inertial parameters of a body."""
+"""Number of inertial parameters of a body."""
 
 _ZERO: Vector = [0.0, 0.0, 0.0]
 _Z: Vector = [0.0, 0.0, 1.0]
-_PAIRS = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))  # of the inertia's entries, in Pinocchio's order
+_PAIRS = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))  # entries of the inertia, in Pinocchio's order
 
 
 class Moved(NamedTuple):
-    """How a body moves, along the axes of its own frame.
+    """Motion of a body, along the axes of its frame.
 
     Attributes:
         spin: Angular velocity, shape (3,), in rad/s.
         turning: Angular acceleration, shape (3,), in rad/s^2.
-        acceleration: Of the origin, shape (3,), in m/s^2.
+        acceleration: Linear acceleration of the origin, shape (3,), in m/s^2.
     """
 
     spin: Vector
@@ -47,18 +47,18 @@ def regressor(
     motions: Sequence[Moved],
     others: Sequence[Moved],
 ) -> Matrix:
-    """Return the joint torques of some motions less those of others, by parameter, shape (nq, 10 nq).
+    """Return the difference of the joint torques of two sets of motions, by parameter, shape (nq, 10 nq).
 
     Args:
         bodies: The moving links, base first.
-        placements: Each one's rotation into its carrier's frame, and its origin there.
-        motions: How each moves.
-        others: How each moves in what is taken off.
+        placements: Rotation and origin of each body in its parent's frame.
+        motions: Motion of each body.
+        others: Motion of each body whose torques are subtracted.
     """
     Y: list[list[Scalar]] = [[0.0] * (COUNT * len(bodies)) for _ in bodies]
     driven: list[dict[int, tuple[Vector, Vector]]] = []
     for index, (body, (R, p)) in enumerate(zip(bodies, placements, strict=True)):
-        # How the origin moves when a joint that carries the body does, at one unit: angular and linear velocity.
+        # Angular and linear velocity of the origin at unit velocity of each joint between base and body.
         back, carried = transpose(R), {} if body.parent is None else driven[body.parent]
         own = {i: (product(back, w), product(back, add(v, cross(w, p)))) for i, (w, v) in carried.items()}
         own[index] = (_ZERO, _Z) if body.prismatic else (_Z, _ZERO)
@@ -71,13 +71,13 @@ def regressor(
 
 
 def _columns(one: Moved, other: Moved, w: Vector, v: Vector) -> Vector:
-    """Return the power at a velocity, w and v, of what moves a body so, less that of another motion, by parameter."""
+    """Return the power at w and v of a motion's wrench minus that of another motion, by parameter."""
     a = subtract(one.acceleration, other.acceleration)
     turning = subtract(one.turning, other.turning)
-    # A first moment h needs the force (dw/dt x + w x w x) h, and the moment h x a.
+    # A first moment h requires the force (dw/dt x + w x w x) h and the moment h x a.
     pull = [subtract(x, y) for x, y in zip(_whirl(one.spin), _whirl(other.spin), strict=True)]
     by_moment = add(cross(v, turning), product(transpose(pull), v), cross(a, w))
-    # An inertia needs the moment I dw/dt + w x I w.
+    # An inertia requires the moment I dw/dt + w x I w.
     across = cross(w, one.spin), cross(w, other.spin)
     inertias = [
         minus(plus(_entry(w, turning, pair), _entry(across[0], one.spin, pair)), _entry(across[1], other.spin, pair))
@@ -92,7 +92,7 @@ def _whirl(w: Vector) -> Matrix:
 
 
 def _entry(left: Vector, right: Vector, pair: tuple[int, int]) -> Scalar:
-    """Return by how much a symmetric matrix's entry, which stands twice off the diagonal, changes left^T I right."""
+    """Return the derivative of left^T I right by an entry of a symmetric I, which occurs twice off the diagonal."""
     i, j = pair
     if i == j:
         return times(left[i], right[i])

@@ -12,23 +12,23 @@ from runner.symbolic.vectors import Scalar, as_array
 
 
 class CannotCompileError(RunnerError):
-    """A law has no compiled form; its text says why."""
+    """A law has no compiled form; the message contains the reason."""
 
 
 class Values:
-    """The values of the parameters of a program, in the order in which they are asked for."""
+    """Values of a program's parameters, in the order of the calls of `number`."""
 
     def __init__(self) -> None:
         self.values: list[float] = []
 
     def number(self, value: float) -> float:
-        """Take the next one."""
+        """Append a value, and return it."""
         self.values.append(value)
         return value
 
 
 def scalars(numbers: Any, number: Callable[[float], Scalar]) -> Any:
-    """Return a law's numbers as scalars, nested as they are: 0, 1 and -1 as floats, others as `number` makes them."""
+    """Return a law's numbers as nested scalars: 0, 1 and -1 as floats, others converted by `number`."""
     if isinstance(numbers, tuple):
         inner = [scalars(value, number) for value in numbers]
         return type(numbers)(*inner) if hasattr(numbers, "_fields") else tuple(inner)
@@ -39,24 +39,24 @@ def scalars(numbers: Any, number: Callable[[float], Scalar]) -> Any:
 
 
 def arm_pattern(model: RobotModel) -> str:
-    """Return a text that is the same for two arms with the same zeros and ones among their constants."""
+    """Return a string that is the same for two arms with the same structure and the same constants 0, 1 and -1."""
     return repr(constants_of(model, any_number))
 
 
 def any_number(_: float) -> str:
-    """Return what stands for any number that is not known."""
+    """Return the symbol for a number with unknown value."""
     return "x"
 
 
 def plain_structure(name: str, value: Any) -> Any:
-    """Return a value that is fixed in code, as plain data; its attribute `numbers` is left out.
+    """Return a fixed value of the code as plain data, without its attribute `numbers`.
 
     Args:
         name: Name of the value, for the message.
         value: The value.
 
     Raises:
-        CannotCompileError: if it cannot be compared.
+        CannotCompileError: if the value cannot be compared.
     """
     if value is None or isinstance(value, (bool, int, float, str)):
         return value

@@ -17,11 +17,11 @@ _STEPS = ("less", "equal", "and", "not", "rint", "floor", "constant")
 
 
 def with_tangents(program: Expressed, varies: Callable[[str, int], bool]) -> Expressed:
-    """Return a program in whose spaces, the table excepted, the tangents of all numbers follow these.
+    """Return a program with tangents: in each space except the table, the tangents follow the numbers.
 
     Args:
         program: The program.
-        varies: Whether the number at a place of a space may have another tangent than 0.
+        varies: Function of space and index that returns True if the tangent of that number may differ from 0.
     """
     widths = {space: width if space == TABLE else 2 * width for space, width in program.widths.items()}
     tangents = _Tangents(program.widths, varies)
@@ -35,7 +35,7 @@ class _Tangents:
         self._known: dict[int, Value] = {}
 
     def of_parts(self, parts: Sequence[Part]) -> list[Part]:
-        """Return parts that compute the tangents, too."""
+        """Return parts that also compute the tangents."""
         found: list[Part] = []
         for part in parts:
             if isinstance(part, Repeat):
@@ -46,7 +46,7 @@ class _Tangents:
         return found
 
     def of(self, value: Value) -> Value:
-        """Return the tangent of a value; the float 0 where it is known to be zero."""
+        """Return the tangent of a value; the float 0 if it is always zero."""
         if not isinstance(value, Expression):
             return 0.0
         for node in in_order([value]):
@@ -79,7 +79,7 @@ def _chosen(condition: Expression, yes: Value, no: Value) -> Value:
 
 
 def _root(node: Value, a: Value, da: Value) -> Value:
-    # At 0 the slope is infinite: what is left of it there is 0, so that no NaN spreads.
+    # At 0 the slope is infinite; it is replaced by 0, so that no NaN propagates.
     return select(less(0.0, a), da / (2.0 * node), 0.0)
 
 

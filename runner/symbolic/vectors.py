@@ -17,7 +17,7 @@ _AXES = range(3)
 
 
 def is_number(value: Scalar, number: float) -> bool:
-    """Tell whether a scalar is this very number, known as such."""
+    """Return True if a scalar is a float with this value."""
     return isinstance(value, float) and value == number
 
 
@@ -100,7 +100,7 @@ def matrix_product(A: Matrix, B: Matrix) -> Matrix:
 
 
 def symmetric_product(A: Matrix, B: Matrix) -> Matrix:
-    """Return A B, known to be symmetric: its upper triangle is computed, and stands below, too."""
+    """Return A B, if it is symmetric: only its upper triangle is computed."""
     columns = transpose(B)
     upper = {(i, j): dot(A[i], columns[j]) for i in range(len(A)) for j in range(i, len(A))}
     return [[upper[min(i, j), max(i, j)] for j in range(len(A))] for i in range(len(A))]
@@ -112,15 +112,15 @@ def rotate_tensor(R: Matrix, A: Matrix) -> Matrix:
 
 
 def shift_inertia(inertia: Matrix, moment: Vector, mass: Scalar, r: Vector) -> Matrix:
-    r"""Return the inertia of a body about a point from which the first one is r away, shape (3, 3).
+    """Return the inertia of a body about another point, shape (3, 3).
 
     .. math:: I' = I + (2 r^T h + m r^T r) 1 - (h r^T + r h^T + m r r^T)
 
     Args:
         inertia: I about the first point.
-        moment: h, mass times the way from there to its centre, shape (3,).
+        moment: h, mass times the vector from the first point to the centre of mass, shape (3,).
         mass: m.
-        r: The way from the new point to the first one, shape (3,).
+        r: Vector from the new point to the first point, shape (3,).
     """
     lever = add(moment, scale(mass, r))  # h + m r
     spread = plus(dot(r, moment), dot(r, lever))
