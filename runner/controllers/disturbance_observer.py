@@ -23,20 +23,20 @@ class DisturbanceObserverConfig(StrictModel):
     """Config of the disturbance observer.
 
     Attributes:
-        bandwidth: L of the observer that every control loop carries, in rad/s, or by loop, which is by stage where each
-            has its own; None is no observer.
-        torque: Whether it takes the torque that its law commands, within the limits, or what sensors in the joints
-            read, which is less by the friction.
+        bandwidth: Observer bandwidth L of all control loops, in rad/s, or a mapping with one for each loop (for each
+            stage if each has a loop); None for no observer.
+        torque: Torque in the observer: commanded, within the limits, or measured by joint torque sensors, which is
+            smaller by the friction.
     """
 
     bandwidth: RadiansPerSecond[PositiveFloat | dict[str, PositiveFloat] | None]
     torque: Literal["commanded", "measured"]
 
     def by_loop(self, loops: Sequence[Loop]) -> list[float] | None:
-        """Return the bandwidth of each loop, in rad/s; None where there is no observer.
+        """Return the bandwidth of each loop, in rad/s; None without an observer.
 
         Raises:
-            ConfigError: for a mapping that names other loops.
+            ConfigError: if a mapping names other loops.
         """
         if self.bandwidth is None:
             return None
@@ -55,9 +55,9 @@ class ObserverNumbers(NamedTuple):
     """The numbers of an observer.
 
     Attributes:
-        gain: 1 - exp(-L h), of each tick.
-        period: Time between two ticks, h, in s.
-        limits: Torque limits of the joints that its law commands, shape (n,), in N m; infinite where there is none.
+        gain: Filter gain per tick, 1 - exp(-L h).
+        period: Time h between two ticks, in s.
+        limits: Torque limits of the commanded joints, shape (n,), in N m; infinite if there is none.
         gravity: Nominal gravity in the base frame, shape (3,), in m/s^2.
     """
 
@@ -68,30 +68,30 @@ class ObserverNumbers(NamedTuple):
 
 
 class MomentumObserver(TorqueFilter):
-    r"""What acts on some joints beside the torque that their law asks for.
+    r"""Observer of the disturbance torques d on the joints of a control law.
 
     After De Luca, Albu-Schaeffer, Haddadin and Hirzinger (IEEE/RSJ International Conference on Intelligent Robots and
-    Systems, 2006). The generalised momenta p = M dq change by
+    Systems, 2006). The generalised momenta p = M dq and the estimate r obey
 
     .. math:: \dot p = \tau + C^T \dot q - G + d, \qquad \dot r = L (\dot p - \tau - C^T \dot q + G - r) = L (d - r)
 
-    whatever the acceleration, which nobody measures. From tick to tick, over which tau is held,
+    without a measured acceleration. With tau constant between ticks,
 
     .. math::
 
         \bar d_k = \frac{p_k - p_{k-1}}{h} - \tau_{k-1} - \frac{b_{k-1} + b_k}{2}, \quad b = C^T \dot q - G, \qquad
         r_k = r_{k-1} + (1 - e^{-L h}) (\bar d_k - r_{k-1})
 
-    is that filter, exact but for the mean of b. tau is what acts: the torque within its limits, as late as commands
-    are. So r does not wind up while a torque is at its limit.
+    is that filter, exact except for the mean of b. tau is the acting torque: within the limits and delayed as the
+    commands are. So r does not wind up at a torque limit.
 
     Args:
         robot: The nominal robot.
-        joints: The joints that the law commands.
+        joints: Joints that the law commands.
         bandwidth: L, in rad/s.
         period: Time between two ticks of the law, in s.
-        limits: Torque limits of these joints, shape (n,), in N m; infinite where there is none.
-        late: Ticks of the law from a command until it acts.
+        limits: Torque limits of these joints, shape (n,), in N m; infinite if there is none.
+        late: Delay of commands, in ticks of the law.
     """
 
     def __init__(
@@ -108,12 +108,12 @@ class MomentumObserver(TorqueFilter):
         return (3 + self._late) * len(self.numbers.limits)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return the memory before the first tick: the arm rests at q, and nothing disturbs it."""
+        """Return the memory before the first tick: the arm at rest at q, without a disturbance."""
         b = PinocchioArm(self.models[0]).momentum(q, np.zeros(len(q)), self.numbers.gravity)[1][self._first : self._end]
         return np.concatenate([np.zeros(len(b)), 0.5 * self.numbers.period * b, *[-b] * (1 + self._late)])
 
     def measured(self, memory: FloatArray, reading: FloatArray) -> FloatArray:
-        """Return what it keeps, with a reading of what acted since its last tick, of every joint, shape (nq,)."""
+        """Return the memory with the torques measured since the last tick, of every joint, shape (nq,)."""
         n = len(self.numbers.limits)
         return np.concatenate([memory[: 2 * n], reading[self._first : self._end], memory[3 * n :]])
 
@@ -135,7 +135,7 @@ class MomentumObserver(TorqueFilter):
 
 
 class MeasuringController(FilteredController):
-    """A controller whose observer takes the torques that sensors in the joints read.
+    """A controller whose observer uses the joint torque sensors.
 
     Args:
         controller: The controller.
@@ -150,17 +150,17 @@ class MeasuringController(FilteredController):
         self._observer = observer
 
     def read_joint_torques(self, reading: FloatArray) -> None:
-        """Take the mean torques on the links since the last tick."""
+        """Store the mean torques on the links since the last tick; see ControlLaw."""
         if self._memory is not None:
             self._memory = self._observer.measured(self._memory, reading)
 
 
 class Ticks(Protocol):
-    """The times of a run that observers need to know.
+    """Tick and delays of a run.
 
     Attributes:
         tick: Time between two ticks of the fastest loop, in s.
-        late: Such ticks from a command until it acts, of each loop.
+        late: Delay of commands of each loop, in these ticks.
     """
 
     @property
@@ -177,14 +177,14 @@ class Ticks(Protocol):
 def add_observers(
     config: DisturbanceObserverConfig, robot: Robot, loops: tuple[Loop, ...], limits: FloatArray, ticks: Ticks
 ) -> tuple[Loop, ...]:
-    """Return control loops with the observers that a config gives their laws, if any.
+    """Return the control loops with the disturbance observers of a config, if any.
 
     Args:
         config: The config.
         robot: The nominal robot.
         loops: Loops that command torques.
-        limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
-        ticks: Tick and delay of the run.
+        limits: Torque limit of each joint, shape (nq,), in N m; infinite if there is none.
+        ticks: Tick and delays of the run.
     """
     bandwidths = config.by_loop(loops)
     if bandwidths is None:
@@ -193,12 +193,12 @@ def add_observers(
     for loop, bandwidth, delay in zip(loops, bandwidths, ticks.late, strict=True):
         late = 0 if measures else delay // round(loop.period / ticks.tick)
         observer = MomentumObserver(robot, loop.joints, bandwidth, loop.period, limits[loop.joints], late)
-        wrap = MeasuringController if measures else with_filter  # no law that measures is compiled
+        wrap = MeasuringController if measures else with_filter  # a law with torque sensors is not compiled
         carried.append(replace(loop, controller=wrap(cast(Controller, loop.controller), observer, robot.model)))
     return tuple(carried)
 
 
 def _within(arm: Arm, torque: Scalar, limit: Scalar) -> Scalar:
-    """Return a torque within its limit."""
+    """Return a torque clipped to its limit."""
     most = arm.backend.maximum
     return -most(-most(torque, -limit), -limit)

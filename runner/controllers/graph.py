@@ -8,15 +8,15 @@ Side = Literal["left", "right", "top", "bottom"]
 
 @dataclass(frozen=True)
 class Node:
-    """A block, a summing point, or a signal that comes from outside the loop.
+    """A block, a summing point, or a signal from outside the loop.
 
     Attributes:
-        name: Its name in the graph.
-        kind: What it is.
-        label: Its text, with mathematics between dollar signs (matplotlib's mathtext).
-        column: Place along the signal's way, left to right.
-        row: Place across it, top to bottom; the main path has row 0.
-        rows: How many rows it spans, centred on its own.
+        name: Name of the node in the graph.
+        kind: Type of the node.
+        label: Label, with mathematics between dollar signs (matplotlib's mathtext).
+        column: Position along the signal path, left to right.
+        row: Position across the signal path, top to bottom; the main path has row 0.
+        rows: Number of rows that the node spans, centred on `row`.
     """
 
     name: str
@@ -32,13 +32,13 @@ class Edge:
     """A signal from one node to another.
 
     Attributes:
-        source: Name of the node it leaves.
-        target: Name of the node it enters.
-        label: Its symbol, or "" where another edge of the same signal bears it.
-        sign: How it enters a summing point.
-        leave: The side on which it leaves.
-        enter: The side on which it enters.
-        lane: Row along which it runs, where it leaves and enters by top or bottom; None for a direct way.
+        source: Name of the node that the edge leaves.
+        target: Name of the node that the edge enters.
+        label: Symbol of the signal, or "" if another edge of the same signal shows it.
+        sign: Sign at a summing point.
+        leave: Side on which the edge leaves.
+        enter: Side on which the edge enters.
+        lane: Row along which the edge runs if it leaves and enters by top or bottom; None for a direct path.
     """
 
     source: str
@@ -55,8 +55,8 @@ class ControlGraph:
     """A control structure.
 
     Attributes:
-        nodes: Its blocks, summing points and sources.
-        edges: The signals between them.
+        nodes: Blocks, summing points and sources.
+        edges: Signals between the nodes.
     """
 
     nodes: tuple[Node, ...]

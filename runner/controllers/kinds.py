@@ -19,7 +19,7 @@ class ControllerConfig(KindConfig, Protocol):
 
     @property
     def period(self) -> float | Mapping[str, float]:
-        """Time between two ticks of its loop, in s; of each stage's loop by stage."""
+        """Time between two ticks, in s; a mapping has one for the loop of each stage."""
         ...
 
 
@@ -32,14 +32,13 @@ class ControllerFeatures(Features):
     """Optional members of the module of a controller.
 
     Attributes:
-        FOLLOWS_PATHS: True if its laws bring a perfect arm along any path that the arm can follow. A path that they
-            would leave is rejected before the run, with the reason.
-        FOLLOWS_JOINTS: True if its laws follow a motion of the joints, if the desired motion is one. Their reference
-            then has shape (3, nq): joint positions, velocities and accelerations. `build` then takes `joints`, and
-            makes the loops of such a law if that is True.
+        FOLLOWS_PATHS: True if an ideal arm under its laws follows every path that the arm can follow. A path that
+            it would leave is rejected before the run, with the reason.
+        FOLLOWS_JOINTS: True if its laws can follow a desired joint motion. `build` then has an argument `joints`. If
+            that is True, the loops take a reference of shape (3, nq): joint positions, velocities and accelerations.
         start_posture: Function of the config, the robot and the start of the tip, shape (3,), in m, that returns the
             joint positions at the start, shape (nq,), in rad, or None for no preference. It raises a LinAlgError if
-            there is no posture.
+            there is no such configuration.
     """
 
     FOLLOWS_PATHS: bool = False
@@ -49,16 +48,16 @@ class ControllerFeatures(Features):
 
 @runtime_checkable
 class FollowsWithinReach(Protocol):
-    """A config of controllers whose rider follows its target up to a distance; a metric tells how often it is out."""
+    """A config of controllers whose mounted stage follows its target up to a distance, which a metric reports."""
 
     reach: float
 
 
 @runtime_checkable
 class ChecksStability(Protocol):
-    """A config of controllers that give way by a law, and may refuse a wall on which they would bounce.
+    """A config of compliant controllers that can reject a wall on which the arm would bounce.
 
-    It is refused where joints go where they are told; behind servos the law does not decide alone.
+    The wall is rejected only if the joints follow commands exactly. With joint servos, stability also depends on them.
     """
 
     check_stability: bool
@@ -66,13 +65,13 @@ class ChecksStability(Protocol):
 
     @property
     def law(self) -> Admittance:
-        """The law: mass, damping and stiffness."""
+        """The admittance: mass, damping and stiffness."""
         ...
 
 
 @runtime_checkable
 class CommandsForce(ChecksStability, Protocol):
-    """A config of such controllers with the point of the wrench, and the compensation of the reading."""
+    """A config of such controllers with the reference point of the wrench and the compensation of the reading."""
 
     wrench_frame: str
     compensation: str
@@ -102,7 +101,7 @@ def guard_loops(loops: Any, _: object, robot: Robot) -> tuple[Loop, ...]:
     """Return the loops of a user-supplied module with guarded laws.
 
     Raises:
-        ConfigError: if they are no loops, or do not command every joint once.
+        ConfigError: if they are not a sequence of Loop, or do not command every joint once.
     """
     if not (isinstance(loops, Sequence) and loops and all(isinstance(loop, Loop) for loop in loops)):
         raise ConfigError(f"controller.kind: build gave {loops!r:.200}; it must give a tuple of Loop")
@@ -117,7 +116,7 @@ def guard_loops(loops: Any, _: object, robot: Robot) -> tuple[Loop, ...]:
 
 
 def tell_limits(loops: Sequence[Loop], limits: FloatArray) -> tuple[Loop, ...]:
-    """Return loops with controllers that know their torque limits; see ControlLaw.
+    """Return the loops with the torque limits set in their controllers; see ControlLaw.
 
     Args:
         loops: The loops.
@@ -137,7 +136,7 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
         return read_features(ControllerFeatures, self.module(kind))
 
     def build_for(self, config: ControllerConfig, robot: Robot, joints: bool) -> tuple[Loop, ...]:
-        """Make the loops of a config, of a law of ours that follows joints where the desired motion is one of joints.
+        """Build the loops of a config; a built-in controller follows the joints if it can and `joints` is True.
 
         Raises:
             ConfigError: see `build`.
@@ -151,8 +150,8 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
         """Return the joint positions at the start of a trajectory, or None for no preference; see ControllerFeatures.
 
         Raises:
-            ConfigError: where a module of the user's gives no posture of the robot.
-            numpy.linalg.LinAlgError: where there is none.
+            ConfigError: if a user-supplied module does not return a configuration of the robot.
+            numpy.linalg.LinAlgError: if there is no such configuration.
         """
         features = self.features(config.kind)
         if self.is_ours(config.kind):

@@ -23,19 +23,19 @@ class NotchConfig(StrictModel):
     """Config of a second-order notch in the torques; see runner.controllers.notch.
 
     Attributes:
-        frequency: Frequency of which nothing passes, in Hz. One for all joints or a list with one for each, by stage
-            where the robot has several; None for joints without a notch.
-        width: Distance of the frequencies at which 0.71 passes, in Hz.
+        frequency: Blocked frequency, in Hz. One for all joints or a list with one for each joint, by stage if the robot
+            has several; None for joints without a notch.
+        width: Width between the frequencies of gain 0.71 (-3 dB), in Hz.
     """
 
     frequency: Hertz[NotchPerStage]
     width: Hertz[PositiveFloat]
 
     def by_joint(self, arm: Robot) -> FloatArray:
-        """Return the frequency of each joint, shape (nq,), in Hz; infinite where there is no notch.
+        """Return the frequency of each joint, shape (nq,), in Hz; infinite without a notch.
 
         Raises:
-            ConfigError: for values that do not fit the robot's stages and joints, or no notch at all.
+            ConfigError: if the values do not fit the robot's stages and joints, or no joint has a notch.
         """
         frequency = by_joint("notch.frequency", self.frequency, arm.stage_joints)
         if not np.isfinite(frequency).any():
@@ -50,8 +50,8 @@ class NotchNumbers(NamedTuple):
 
     Attributes:
         period: Time between two ticks, in s.
-        b: Coefficients of the torques asked for now, a tick and two ticks ago, shape (3, n).
-        a: Of the torques that passed a tick and two ticks ago, shape (2, n).
+        b: Coefficients of the unfiltered torques now, one and two ticks ago, shape (3, n).
+        a: Coefficients of the filtered torques one and two ticks ago, shape (2, n).
     """
 
     period: Scalar
@@ -60,15 +60,15 @@ class NotchNumbers(NamedTuple):
 
 
 class Notch(TorqueFilter):
-    r"""A second-order notch for each of some torques, by the bilinear transform, exact at its own frequency.
+    r"""A second-order notch filter for each torque, by the bilinear transform, exact at the notch frequency.
 
     .. math:: H(s) = \frac{s^2 + \omega^2}{s^2 + \Delta s + \omega^2}, \qquad
         y_k = b_0 u_k + b_1 u_{k-1} + b_2 u_{k-2} - a_1 y_{k-1} - a_2 y_{k-2}
 
-    Before the first tick its torques were those of the first, so that what holds the arm's weight passes at once.
+    The memory starts as if the first torques had always acted, so that gravity compensation passes at once.
 
     Args:
-        frequency: omega / (2 pi) of each, shape (n,), in Hz, below half the rate; infinite for none.
+        frequency: omega / (2 pi) of each torque, shape (n,), in Hz, below half the sampling rate; infinite for none.
         width: Delta / (2 pi), in Hz.
         period: Time between two ticks of the law, in s.
     """
@@ -85,7 +85,7 @@ class Notch(TorqueFilter):
     def filter(
         self, arm: Arm, numbers: NotchNumbers, time: Scalar, q: Array, dq: Array, torque: Array, memory: Array
     ) -> tuple[Array, Array]:
-        """Return the torques that pass, and the memory; see TorqueFilter."""
+        """Return the filtered torques and the memory; see TorqueFilter."""
         (b0, b1, b2), (a1, a2), n, backend = numbers.b, numbers.a, len(torque), arm.backend
         late = (b2 - a2) * torque
         rest = np.concatenate([(b1 - a1) * torque + late, late])
@@ -95,27 +95,27 @@ class Notch(TorqueFilter):
 
 
 def _coefficients(frequency: float, width: float, period: float) -> tuple[float, float, float, float, float]:
-    """Return b0, b1, b2, a1 and a2 of the notch at one frequency, in Hz; those that change nothing if it is infinite.
+    """Return b0, b1, b2, a1 and a2 of the notch at a frequency, in Hz; those of the identity if it is infinite.
 
     Orfanidis, Introduction to Signal Processing, 1996, equations 11.3.6, 11.3.7 and 11.3.21 with a gain of -3 dB at the
     edges of the width; rounded as by `scipy.signal.iirnotch`.
     """
     if math.isinf(frequency):
         return 1.0, 0.0, 0.0, 0.0, 0.0
-    turn = 2.0 * frequency / (1.0 / period)  # pi times it is the angle in one tick
+    turn = 2.0 * frequency / (1.0 / period)  # angle per tick / pi
     gain = 1.0 / (1.0 + math.tan(turn / (frequency / width) * math.pi / 2.0))
     cosine = math.cos(turn * math.pi)
     return gain, gain * (-2.0 * cosine), gain, -2.0 * gain * cosine, 2.0 * gain - 1.0
 
 
 def add_notch(robot: Robot, loops: tuple[Loop, ...], frequency: FloatArray, width: float) -> tuple[Loop, ...]:
-    """Return control loops whose torques pass a notch.
+    """Return the control loops with notch-filtered torques.
 
     Args:
         robot: The nominal robot.
         loops: Loops that command torques.
         frequency: Frequency of each joint of the robot, shape (nq,), in Hz; infinite for none.
-        width: In Hz.
+        width: Width of the notch, in Hz.
     """
     notches = [Notch(frequency[loop.joints], width, loop.period) for loop in loops]
     return tuple(

@@ -11,15 +11,15 @@ from runner.robots.robot import Robot
 from runner.trajectories import Trajectory
 
 _POSTURES = 9
-_MEMORY = Memory(64)  # runs of a sweep share arm and path
+_MEMORY = Memory(64)  # runs of a sweep have the same arm and path
 
 
 class VelocityLoop(NamedTuple):
-    """How near a velocity loop is to what its period bears.
+    """A sampled velocity loop relative to its stability limit.
 
     Attributes:
         share: h lambda_max(M^-1 K_v) / 2; above 1 the loop is unstable.
-        coupling: lambda_max(M^-1 diag M), where a part of K_v is of diag M; else 1.
+        coupling: lambda_max(M^-1 diag M) if K_v has a part proportional to diag M; else 1.
     """
 
     share: float
@@ -27,15 +27,16 @@ class VelocityLoop(NamedTuple):
 
 
 def velocity_loop(loops: Sequence[Loop], arm: Robot, path: Trajectory) -> VelocityLoop | None:
-    r"""Return the loop of an arm that is nearest to its limit; None where no law says its gain.
+    r"""Return the loop of an arm that is nearest to its stability limit; None if no law has a known K_v.
 
-    The arm is looked at at home, and in nine postures of a desired motion of the joints, if there is one.
+    The mass matrix is taken at home and, for a desired joint motion, at nine configurations along it.
 
-    A velocity under tau = - K_v dq, held for a period h, goes on by 1 - h M^-1 K_v, which is stable for
+    Under tau = - K_v dq, constant over a period h, each period multiplies the velocity by 1 - h M^-1 K_v. This is
+    stable for
 
     .. math:: h \lambda_\max(M^{-1} K_v) < 2
 
-    The positions' gains, at a damping ratio near 1, move this bound by less than 5 % on the arms of robots/.
+    Position gains with a damping ratio near 1 shift this bound by less than 5 % for the arms of robots/.
 
     Args:
         loops: The control loops.
@@ -52,7 +53,7 @@ def velocity_loop(loops: Sequence[Loop], arm: Robot, path: Trajectory) -> Veloci
 
 
 def _coupling(arm: Robot, path: Trajectory, at_home: bool) -> float:
-    """Return the largest lambda_max(M^-1 D), D = diag M at home or at the posture."""
+    """Return the largest lambda_max(M^-1 D), with D = diag M at home or at each configuration."""
     moved = path.sample_joints(np.linspace(0.0, path.duration, _POSTURES))
     D, largest = arm.model.mass_matrix(arm.home).diagonal(), 0.0
     for q in (arm.home, *(() if moved is None else moved[:, 0])):

@@ -19,7 +19,7 @@ class TorqueFilter(ABC):
 
     Attributes:
         models: The arms of the filter, in addition to those of the law.
-        numbers: Its numbers; see TorqueLaw.
+        numbers: Numbers of the filter; see TorqueLaw.
     """
 
     models: tuple[RobotModel, ...] = ()
@@ -32,7 +32,7 @@ class TorqueFilter(ABC):
     @property
     @abstractmethod
     def remembers(self) -> int:
-        """Size of its memory."""
+        """Size of the memory."""
 
     def start(self, q: FloatArray) -> FloatArray:
         """Return the memory before the first tick, from the measured joint positions, shape (nq,), in rad."""
@@ -45,7 +45,7 @@ class TorqueFilter(ABC):
         """Return the filtered torques, shape (n,), in N m, and the memory for the next tick.
 
         Args:
-            arm: The arm of the filter; of a filter without arms, any arm.
+            arm: The arm of the filter; any arm for a filter without arms.
             numbers: The numbers of the filter.
             time: Time since the start, in s.
             q: Measured joint positions, shape (nq,), in rad.
@@ -59,8 +59,8 @@ class FilteredNumbers(NamedTuple):
     """The numbers of a law with a filter.
 
     Attributes:
-        law: Those of the law.
-        filter: Those of the filter.
+        law: Numbers of the law.
+        filter: Numbers of the filter.
     """
 
     law: Any
@@ -94,7 +94,7 @@ class FilteredLaw(TorqueLaw[FilteredNumbers]):
         reference: Array,
         memory: Array,
     ) -> tuple[Array, Array]:
-        """Return the filtered torques of the law, and the memories of both; see TorqueLaw."""
+        """Return the filtered torques, and the memories of law and filter; see TorqueLaw."""
         own, of_law = len(memory) - self._filter.remembers, arms[: len(self._law.models)]
         torque, kept = self._law.evaluate(of_law, numbers.law, time, q, dq, reference, memory[:own])
         passed, seen = self._filter.filter(arms[-1], numbers.filter, time, q, dq, torque, memory[own:])
@@ -116,7 +116,7 @@ class FilteredController(Controller):
         self._memory: FloatArray | None = None
 
     def reset(self) -> None:
-        """Forget everything of an earlier run."""
+        """Clear the state of an earlier run."""
         self._controller.reset()
         self._memory = None
 

@@ -16,7 +16,7 @@ from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
 
 
 class Tip(NamedTuple):
-    """The tip of an arm in one state, in the base frame; valid until the arm is asked for the next one.
+    """State of the tip of an arm, in the base frame; valid until the arm computes the next one.
 
     Attributes:
         x: Position, shape (3,), in m.
@@ -32,42 +32,41 @@ class Tip(NamedTuple):
 
 
 class Arm(Protocol):
-    """What a law may ask of its arm, over floats or whatever scalar its arguments hold."""
+    """Kinematics and dynamics of an arm for control laws, over floats or the scalars of the arguments."""
 
     @property
     def backend(self) -> Backend:
-        """The functions over these scalars."""
+        """Functions over these scalars."""
         ...
 
     def tip(self, q: Array, dq: Array) -> Tip:
-        """Return the tip's motion, its Jacobian included, at joint positions and velocities, shapes (nq,)."""
+        """Return the state of the tip at joint positions and velocities, shapes (nq,)."""
         ...
 
     def tip_pose(self, q: Array) -> tuple[Array, Array]:
-        """Return where the tip is, x and R of Tip, at joint positions, shape (nq,); valid as long as a Tip."""
+        """Return x and R of Tip at joint positions, shape (nq,); valid as long as a Tip."""
         ...
 
     def tip_pose_and_twist(self, q: Array, dq: Array) -> tuple[Array, Array, Array]:
-        """Return where the tip is and its velocity, shape (6,), linear before angular, in m/s and rad/s."""
+        """Return x and R of Tip, and the twist, shape (6,): linear in m/s, then angular in rad/s."""
         ...
 
     def mass_matrix(self, q: Array) -> Array:
-        """Return M(q), shape (nq, nq), in kg m^2; the lower triangle is not to be read."""
+        """Return M(q), shape (nq, nq), in kg m^2; only the upper triangle is valid."""
         ...
 
     def inverse_dynamics(self, q: Array, dq: Array, ddq: Array, gravity: Array | None = None) -> Array:
-        """Return the torques M ddq + V + G, shape (nq,), in N m; valid until it is asked again.
+        """Return the torques M ddq + V + G, shape (nq,), in N m; valid until the next call.
 
-        Gravity is given in the base frame, shape (3,), in m/s^2; None is the arm's own. An arm that is believed to have
-        no weight has none, whatever is given.
+        Gravity is in the base frame, shape (3,), in m/s^2; None is the arm's own. Without gravity compensation G is 0.
         """
         ...
 
     def momentum(self, q: Array, dq: Array, gravity: Array) -> tuple[Array, Array]:
-        """Return the generalised momenta M dq, and what they change by without torques: dT/dq - G, which is C^T dq - G.
+        """Return the generalised momenta M dq and their rate without torques, dT/dq - G = C^T dq - G.
 
-        Shapes (nq,), in kg m^2/s and N m. Gravity is given in the base frame, shape (3,), in m/s^2, and acts on an arm
-        that is believed to have no weight, too.
+        Shapes (nq,), in kg m^2/s and N m. Gravity is in the base frame, shape (3,), in m/s^2, and also acts without
+        gravity compensation.
         """
         ...
 
@@ -75,18 +74,18 @@ class Arm(Protocol):
         """Return Y, shape (nq, 10 nq): Y theta + A ddq_r = M ddq_r + C dq_r + G, with the C of Christoffel's symbols.
 
         A is the armature. theta are the inertial parameters of the moving bodies, base first, in each joint's frame of
-        the URDF: mass in kg, mass times the way to its centre in kg m, and I_xx, I_xy, I_yy, I_xz, I_yz, I_zz about the
+        the URDF: mass in kg, mass times centre of mass in kg m, and I_xx, I_xy, I_yy, I_xz, I_yz, I_zz about the
         frame's origin in kg m^2; see RobotModel.inertial_parameters.
         """
         ...
 
 
 class PinocchioArm:
-    """An arm of any number of joints, on floats; see Arm.
+    """An arm with any number of joints, over floats; see Arm.
 
     Args:
         model: The arm.
-        gravity_compensation: True if gravity acts on it.
+        gravity_compensation: True if gravity acts on the arm.
     """
 
     backend = NUMPY
@@ -97,15 +96,15 @@ class PinocchioArm:
         self._tip = model.tip_frame
         self._zero = np.zeros(model.nq)
         self._gravity_compensation, self._own_gravity, self._turned = gravity_compensation, model.gravity, False
-        self._gravity: FloatArray = self._model.gravity.linear  # a view: what is written there acts
+        self._gravity: FloatArray = self._model.gravity.linear  # a view into the model
         if not gravity_compensation:
             self._gravity[:] = 0.0
-        # Views into Pinocchio's data: each update of the frame refreshes them, without a new object per tick.
+        # Views into Pinocchio's data, which each frame update refreshes without a new object per tick.
         self._x: FloatArray = self._data.oMf[self._tip].translation
         self._R: FloatArray = self._data.oMf[self._tip].rotation
 
     def tip(self, q: FloatArray, dq: FloatArray) -> Tip:
-        """Return the tip's motion; see Arm."""
+        """Return the state of the tip; see Arm."""
         model, data, tip = self._model, self._data, self._tip
         pin.forwardKinematics(model, data, q, dq, self._zero)
         pin.computeJointJacobians(model, data)
@@ -115,13 +114,13 @@ class PinocchioArm:
         return Tip(self._x, self._R, J, motion.vector)
 
     def tip_pose(self, q: FloatArray) -> tuple[Array, Array]:
-        """Return where the tip is; see Arm."""
+        """Return position and rotation of the tip; see Arm."""
         pin.forwardKinematics(self._model, self._data, q)
         pin.updateFramePlacement(self._model, self._data, self._tip)
         return self._x, self._R
 
     def tip_pose_and_twist(self, q: FloatArray, dq: FloatArray) -> tuple[Array, Array, Array]:
-        """Return where the tip is and its velocity; see Arm."""
+        """Return position, rotation and twist of the tip; see Arm."""
         model, data, tip = self._model, self._data, self._tip
         pin.forwardKinematics(model, data, q, dq)
         pin.updateFramePlacement(model, data, tip)
@@ -141,7 +140,7 @@ class PinocchioArm:
         return torque
 
     def momentum(self, q: FloatArray, dq: FloatArray, gravity: FloatArray) -> tuple[Array, Array]:
-        """Return the generalised momenta and how they change; see Arm."""
+        """Return the generalised momenta and their rate without torques; see Arm."""
         model, data = self._model, self._data
         M, C = pin.crba(model, data, q), pin.computeCoriolisMatrix(model, data, q, dq)
         p = (M + np.triu(M, 1).T - np.tril(M, -1)).dot(dq)
@@ -153,7 +152,7 @@ class PinocchioArm:
         return p, rate
 
     def regressor(self, q: FloatArray, dq: FloatArray, dq_r: FloatArray, ddq_r: FloatArray) -> FloatArray:
-        """Return how the torques depend on the inertial parameters; see Arm.
+        """Return Y, shape (nq, 10 nq); see Arm.
 
         V is quadratic in the velocities: C(dq) dq_r = V((dq + dq_r) / 2) - V((dq - dq_r) / 2).
         """
@@ -164,7 +163,7 @@ class PinocchioArm:
         return np.asarray(more - less)
 
     def _turn(self, gravity: FloatArray | None) -> None:
-        """Let a gravity act on what has weight; None is the arm's own."""
+        """Set gravity if the arm has gravity compensation; None is the arm's own."""
         if self._gravity_compensation and (self._turned or gravity is not None):
             self._gravity[:] = self._own_gravity if gravity is None else gravity
             self._turned = gravity is not None
@@ -174,23 +173,22 @@ N = TypeVar("N", bound=tuple[Any, ...])
 
 
 class TorqueLaw(Controller, ABC, Generic[N]):
-    """A torque law; a Controller by Pinocchio.
+    """Base class of torque laws; a Controller that Pinocchio evaluates.
 
-    A derived class writes `evaluate` with the arms' functions, `arm.backend` and NumPy's operators. What decides by an
-    `if` of Python is fixed when the law is made; a number that may change from run to run stands in `numbers`.
+    A derived class writes `evaluate` with the functions of the arms, `arm.backend` and NumPy operators. A Python `if`
+    uses only attributes set in the constructor. Numbers that can differ between runs are in `numbers`.
 
     Args:
-        models: The arms that the law reckons with; only their URDF-derived constants are read. The first one's joints
-            are commanded.
-        gravity_compensation: True if the law's nominal arms have weight.
-        numbers: The law's numbers: floats, arrays, or tuples of them.
-        measured: How many joints are measured; None where they are the first arm's.
+        models: Arms of the law, which reads only their URDF-derived constants. It commands the joints of the first.
+        gravity_compensation: True if gravity acts on the nominal arms.
+        numbers: Numbers of the law: floats, arrays, or tuples of them.
+        measured: Number of measured joints; None for those of the first arm.
 
     Attributes:
         models: The arms.
         gravity_compensation: As above.
         numbers: As above.
-        measured: As above, a number.
+        measured: Number of measured joints.
     """
 
     def __init__(
@@ -200,43 +198,43 @@ class TorqueLaw(Controller, ABC, Generic[N]):
         self.gravity_compensation = gravity_compensation
         self.measured = self.models[0].nq if measured is None else measured
         self.memory: FloatArray | None = None
-        """What `evaluate` keeps from tick to tick; None before the first one."""
+        """Memory of `evaluate`; None before the first tick."""
 
     @abstractmethod
     def evaluate(
         self, arms: Sequence[Arm], numbers: N, time: Scalar, q: Array, dq: Array, reference: Array, memory: Array
     ) -> tuple[Array, Array]:
-        """Return the torques of the joints commanded, in N m, and the memory for the next tick.
+        """Return the torques of the commanded joints, in N m, and the memory for the next tick.
 
-        It keeps nothing, reads no number but these, and changes none of its arguments.
+        The function is pure: it stores nothing, reads only these numbers, and does not change its arguments.
 
         Args:
-            arms: One for each of the models, over the scalars of the arguments that follow.
-            numbers: The law's numbers.
+            arms: One arm for each model, over the scalars of the other arguments.
+            numbers: Numbers of the law.
             time: Time since the start, in s.
             q: Measured joint positions, shape (measured,), in rad.
             dq: Measured joint velocities, shape (measured,), in rad/s.
             reference: Desired motion of the tip, shape (3, 3), or of the joints, (3, nq); see Controller.torque.
-            memory: What the last tick left, or `start`.
+            memory: Memory of the last tick, or `start`.
         """
 
     def with_numbers(self, **changed: Any) -> Self:
-        """Return the law with some of its numbers changed, that has not run yet."""
+        """Return a copy of the law with some numbers changed and no memory."""
         other = copy(self)
         numbers: Any = self.numbers
         other.numbers, other.memory = numbers._replace(**changed), None
         return other
 
     def structure(self) -> dict[str, Any]:
-        """Return what decides how `evaluate` goes, beside its numbers: what a derived class has kept."""
+        """Return the attributes of the derived class, which select the equations of `evaluate`, without the numbers."""
         return structure_of(self)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return the memory of the first tick, shape (k,), from the positions of the joints measured there."""
+        """Return the memory of the first tick, shape (k,), from the measured joint positions."""
         return _NOTHING
 
     def reset(self) -> None:
-        """Forget what an earlier run left."""
+        """Clear the memory of an earlier run."""
         self.memory = None
 
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
@@ -251,7 +249,7 @@ class TorqueLaw(Controller, ABC, Generic[N]):
 
 
 def structure_of(part: Any) -> dict[str, Any]:
-    """Return what a law, or a part of one, has kept beside its numbers; another law in it as kind and structure."""
+    """Return the attributes of a law or its part without the numbers; a nested part as class name and structure."""
     kept = {name: value for name, value in vars(part).items() if name not in _COMMON}
     return {name: _described(value) if hasattr(value, "structure") else value for name, value in kept.items()}
 

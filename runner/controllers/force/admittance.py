@@ -25,7 +25,7 @@ class AdmittanceConfig(StrictModel):
     """Config of admittance control; lists hold translation along x, y, z and rotation about them, of the base.
 
     Attributes:
-        kind: Its name in the registry.
+        kind: Registry name of the controller.
         period: Time between two commands, in s.
         mass: M, in kg and kg m^2.
         damping: B, in N s/m and N m s/rad.
@@ -119,7 +119,7 @@ CONFIG = AdmittanceConfig
 
 
 def build(config: AdmittanceConfig, robot: Robot) -> tuple[Loop, ...]:
-    """Make the one loop that a config describes; it commands every joint.
+    """Build the single loop of a config; it commands every joint.
 
     Raises:
         ConfigError: for an arm of fewer than six joints, or a law that no mass on a damper and a spring has.

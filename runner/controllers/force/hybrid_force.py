@@ -19,7 +19,7 @@ class HybridForceConfig(TipForceConfig):
     """Config of hybrid force and motion control; the motion is that along the wall.
 
     Attributes:
-        kind: Its name in the registry.
+        kind: Registry name of the controller.
         normal: Out of the wall, as it is believed, a unit vector along the base's axes.
         wall_stiffness: Of the wall, as it is believed, in N/m; it sets the damping.
         force: f_d, how hard the tip is to push, in N.

@@ -20,7 +20,7 @@ class ImpedanceConfig(TipForceConfig):
     The natural frequency and damping ratio are those of the stages that carry the one that acts; see actuated_stages.
 
     Attributes:
-        kind: Its name in the registry.
+        kind: Registry name of the controller.
         tip_stiffness: K_d, in N/m; 0 lets an axis go.
         tip_damping: D_d, in N s/m.
     """

@@ -30,8 +30,8 @@ class TipForceConfig(StrictModel):
             last stage's, and so for the next two.
         damping_ratio: xi of it.
         period: Time between two ticks, in s.
-        gravity_compensation: Whether the law holds the gravity term.
-        feedforward: Whether the law follows the desired velocity and acceleration.
+        gravity_compensation: True if the law includes the gravity term.
+        feedforward: True if the law uses the desired velocity and acceleration.
         singularity_damping: As in operational-space control.
         null_space_frequency: omega_n of the posture task, home, of an arm with joints to spare, in rad/s.
     """

@@ -15,21 +15,21 @@ from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
 
 _SPEED, _ACCELERATION = 1.0, 2.0  # rad/s and rad/s^2, or m/s and m/s^2: of the motions that scale the gains
-_NOTHING = 1e-200  # kg m^2/s^4, by which gains stay as they are where s is zero
-_SMOOTH = 0.01  # rad/s or m/s, below which the believed dry friction fades
+_NOTHING = 1e-200  # kg m^2/s^4, avoids 0 / 0 if s is zero
+_SMOOTH = 0.01  # rad/s or m/s, below which the modelled dry friction fades
 
 
 class AdaptiveConfig(JointLawConfig):
-    """Config of adaptive control of the joints.
+    """Config of adaptive joint control.
 
     Attributes:
-        kind: Its name in the registry.
-        natural_frequency: lambda, and K_D / diag M, and omega_n of the motion that leads the tip, in rad/s.
-        damping_ratio: xi of the motion that leads the tip; the joints have two equal poles.
-        adaptation_gain: How fast the law adapts. With scale parameter, the square of what its fastest mode may reach,
-            as a share of omega_n^2; with scale uniform, the gain of every parameter.
-        scale: Whether each parameter has a gain that suits it, or all have one.
-        friction: Whether it adapts to viscous and dry friction of each joint, too.
+        kind: Registry name of the controller.
+        natural_frequency: lambda, K_D / diag M, and omega_n of the tip motion, in rad/s.
+        damping_ratio: xi of the tip motion; the joints have two equal poles.
+        adaptation_gain: Speed of the adaptation. With scale parameter, the square of the bound on its fastest mode,
+            relative to omega_n^2; with scale uniform, the gain of every parameter.
+        scale: Gains of the parameters: one scaled to each parameter, or the same for all.
+        friction: True if the law also adapts to viscous and dry friction of each joint.
     """
 
     kind: Literal["adaptive"]
@@ -42,14 +42,14 @@ class AdaptiveNumbers(NamedTuple):
     """The numbers of adaptive control.
 
     Attributes:
-        motion: Of the joint motion that is followed.
+        motion: Numbers of the JointMotion.
         rate: lambda, in 1/s.
         damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
         armature: Diagonal of A, shape (nq,), in kg m^2.
         adaptation_gain: Diagonal of Gamma, shape (P,).
         initial_parameters: theta^ at the first tick, shape (P,).
-        swings: a omega_n^2 / 4, above which a direction of s swings, in 1/s^2.
-        limits: Torque limits, shape (nq,), in N m; infinite where there is none.
+        swings: a omega_n^2 / 4, above which a direction of s oscillates, in 1/s^2.
+        limits: Torque limits, shape (nq,), in N m; infinite if there is none.
     """
 
     motion: JointMotionNumbers
@@ -70,21 +70,23 @@ class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
         \tau = Y(q, \dot q, \dot q_r, \ddot q_r) \hat\theta + A \ddot q_r + K_D s, \qquad
         \dot{\hat\theta} = \Gamma Y^T s, \qquad \dot q_r = \dot q_d + \lambda (q_d - q), \qquad s = \dot q_r - \dot q
 
-    with lambda = omega_n and K_D = omega_n D, D = diag M(home). Y is Arm.regressor, and theta starts at what is
-    believed; A is the armature, which is known. V = (s^T M s + (theta - theta^)^T Gamma^-1 (theta - theta^)) / 2 falls
-    as -s^T K_D s, whatever theta is, so that s fades; theta^ goes to theta only as far as the motion excites it.
+    with lambda = omega_n and K_D = omega_n D, D = diag M(home). Y is Arm.regressor, theta^ starts at the nominal
+    parameters, and A is the known armature. V = (s^T M s + (theta - theta^)^T Gamma^-1 (theta - theta^)) / 2 changes at
+    the rate -s^T K_D s for any theta, so s decays. theta^ converges to theta only as far as the motion excites it.
 
-    With friction, Y has a column for each joint's viscous friction, dq_r, and one for its dry friction,
-    dq_d / sqrt(dq_d^2 + (0.01 rad/s)^2): the sign of the motion that is wanted, which no noise and no standstill makes
-    chatter. Both start at 0, and without feedforward the latter stays so.
+    With friction, Y has two more columns for each joint: viscous friction, dq_r, and dry friction,
+    dq_d / sqrt(dq_d^2 + (0.01 rad/s)^2). The latter has the sign of the desired motion, so it does not chatter with
+    noise or at standstill. Both parameters start at 0. For a joint motion without feedforward dq_d is 0, and dry
+    friction does not adapt.
 
-    Linear at a posture, s obeys M d2s/dt2 + K_D ds/dt + Y Gamma Y^T s = 0. Its frequencies are those of
-    D^-1/2 Y Gamma Y^T D^-1/2, whose largest eigenvalue is at most the sum of Gamma_p |D^-1/2 Y_p|^2. So a scale by
-    parameter, Gamma_p = a omega_n^2 / (P max |D^-1/2 Y_p|^2), keeps them below sqrt(a) omega_n whatever the units and
-    sizes of the P parameters; the largest is that of gravity at home with each joint alone, and all together, moving at
-    1 rad/s and 2 rad/s^2 there. What none of these excites does not adapt. In a tick in which s itself would swing,
-    s^T Y Gamma Y^T s > a omega_n^2 s^T D s / 4, as in motions much faster than these, all gains are as much smaller; in
-    one in which a torque is beyond its limit, the s of its joint teaches nothing. V may rise in both.
+    Linearised at a configuration, s obeys M d2s/dt2 + K_D ds/dt + Y Gamma Y^T s = 0. Its frequencies are those of
+    D^-1/2 Y Gamma Y^T D^-1/2, whose largest eigenvalue is at most the sum of Gamma_p |D^-1/2 Y_p|^2. So scaled gains,
+    Gamma_p = a omega_n^2 / (N max |D^-1/2 Y_p|^2) for N excited parameters, keep them below sqrt(a) omega_n for any
+    units and sizes of the parameters. The maximum is over motions at home, with gravity, of each joint and of all
+    together at 1 rad/s and 2 rad/s^2. Parameters that none of these excites do not adapt.
+
+    Scaled gains are reduced in a tick in which s would oscillate, s^T Y Gamma Y^T s > a omega_n^2 s^T D s / 4, as in
+    much faster motions. The s of a joint is ignored while its torque is beyond its limit. V can increase in both cases.
     """
 
     def choose_numbers(
@@ -116,17 +118,17 @@ class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
         return VelocityGain(self.numbers.rate, self.numbers.rate)
 
     def with_limits(self, limits: FloatArray) -> "Adaptive":
-        """Return the law that is told its torque limits; see ControlLaw."""
+        """Return the law with its torque limits set; see ControlLaw."""
         return self.with_numbers(limits=limits)
 
     def own_start(self) -> FloatArray:
-        """Return the parameters that are believed at first, shape (P,)."""
+        """Return the nominal parameters, shape (P,)."""
         return self.numbers.initial_parameters
 
     def command(
         self, arm: Arm, numbers: AdaptiveNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
     ) -> tuple[Array, Array]:
-        """Return the torques of the law above, and the parameters believed at the next tick; see JointLaw."""
+        """Return the torques of the law above, and the parameter estimates at the next tick; see JointLaw."""
         dq_r = desired.dq + numbers.rate * (desired.q - q)
         ddq_r = desired.ddq + numbers.rate * (desired.dq - dq)
         s = dq_r - dq
@@ -144,7 +146,7 @@ class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
         return torque, memory + change
 
     def _scales(self, model: RobotModel, gravity_compensation: bool, home: FloatArray, D: FloatArray) -> FloatArray:
-        """Return 1 / (P max |D^-1/2 Y_p|^2) of each parameter, shape (P,); 0 of one that nothing excites."""
+        """Return 1 / (N max |D^-1/2 Y_p|^2) of each parameter, shape (P,); 0 for one that is not excited."""
         arm, largest = PinocchioArm(model, gravity_compensation), np.zeros(1)
         for way in (*np.eye(model.nq), np.ones(model.nq)):
             speed = _SPEED * way
@@ -159,7 +161,7 @@ class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
 
 
 def _taught(arm: Arm, torque: Scalar, limit: Scalar, s: Scalar) -> Scalar:
-    """Return what a joint's s teaches: nothing in a tick in which its torque is beyond its limit."""
+    """Return the s of a joint, or 0 if its torque is beyond its limit."""
     within = arm.backend.less(arm.backend.absolute(torque), limit)
     return arm.backend.choose(within, lambda: np.array([s]), lambda: np.zeros(1))[0]
 

@@ -18,8 +18,8 @@ class ComputedTorqueConfig(JointLawConfig):
     """Config of computed-torque control.
 
     Attributes:
-        kind: Its name in the registry.
-        integral_gain: How fast the integral of each joint's error acts, k_i in 1/s^3; 0 is the law without it.
+        kind: Registry name of the controller.
+        integral_gain: Gain k_i of the integral of each joint's error, in 1/s^3; 0 for no integral.
     """
 
     kind: Literal["computed_torque"]
@@ -30,10 +30,10 @@ class ComputedTorqueNumbers(NamedTuple):
     """The numbers of computed-torque control.
 
     Attributes:
-        motion: Of the joint motion that is followed.
+        motion: Numbers of the JointMotion.
         k_p: omega_n^2, in 1/s^2.
         k_v: 2 xi omega_n, in 1/s.
-        k_i: Of the integral, in 1/s^3.
+        k_i: Integral gain, in 1/s^3.
     """
 
     motion: JointMotionNumbers
@@ -47,10 +47,10 @@ class ComputedTorque(JointLaw[ComputedTorqueNumbers, ComputedTorqueConfig]):
 
     .. math:: \tau = M (\ddot q_d + 2 \xi \omega_n (\dot q_d - \dot q) + \omega_n^2 (q_d - q) + k_i z) + V + G
 
-    Under an exact model each joint's error obeys eq. (3.36) of the thesis, whatever the posture and speed. The integral
-    z of q_d - q, tick by tick, takes away what a wrong model or a constant load leaves at rest; the closed loop is
-    stable for k_i < 2 xi omega_n^3, and winds up while a torque is at its limit. Without it k_i is 0. JointMotion says
-    what q_d is.
+    With an exact model each joint's error obeys eq. (3.36) of the thesis at any configuration and speed. The integral z
+    of q_d - q, summed at each tick, removes the error that a wrong model or a constant load causes at rest. The closed
+    loop is stable for k_i < 2 xi omega_n^3. The integral winds up while a torque is at its limit. JointMotion defines
+    q_d.
     """
 
     def choose_numbers(

@@ -18,17 +18,17 @@ from runner.robots.model import RobotModel
 from runner.schema.units import Seconds
 
 _NOTHING = np.zeros(0)
-_MOST_TICKS = 1_000_000  # of a period: its torques are kept
+_MOST_TICKS = 1_000_000  # per cycle, because the law stores the torques of each
 
 
 class IterativeLearningConfig(JointLawConfig):
     """Config of iterative learning around computed torque.
 
     Attributes:
-        kind: Its name in the registry.
-        repeats_every: T, after which the desired motion is the same again, in s; a multiple of the period.
-        learning_gain: gamma, the share of the feedback torque that the next period takes over; below 2.
-        cutoff: Of the low-pass Q, in units of omega_n; None learns at every frequency.
+        kind: Registry name of the controller.
+        repeats_every: Cycle time of the desired motion, in s; a multiple of the period.
+        learning_gain: gamma, the fraction of the feedback torque that is added to the next cycle; below 2.
+        cutoff: Cutoff frequency of the low-pass Q, in units of omega_n; None learns at every frequency.
     """
 
     kind: Literal["iterative_learning"]
@@ -45,32 +45,32 @@ class IterativeLearning(Controller):
         \tau = M \ddot q_d + V + G + f_j + u_j, \qquad f_j = M (2 \xi \omega_n \dot e + \omega_n^2 e), \qquad
         u_{j+1}(t) = Q [u_j(t) + \gamma (f_j(t) + \tau_\mathrm{applied} - \tau)]
 
-    in period j, with e = q_d - q and u_0 = u_1 = 0: the first period, in which the arm still recovers from its start,
-    teaches nothing. Under a constant M the feedback torque shrinks from period to period by
+    in cycle j, with e = q_d - q and u_0 = u_1 = 0. Nothing is learned in the first cycle, because the arm still
+    recovers from its start. Under a constant M, each cycle multiplies the feedback torque by
 
     .. math:: 1 - \gamma T(j w), \qquad
         T(s) = (2 \xi \omega_n s + \omega_n^2) / (s^2 + 2 \xi \omega_n s + \omega_n^2)
 
-    at each frequency w (Bristow, Tharayil and Alleyne, IEEE Control Systems Magazine 26(3), 2006), whose size is below
-    1 everywhere for gamma < 2 - 1 / (2 xi^2). Sampling takes phase from T near the Nyquist frequency, so that Q ends
-    the learning there: Q(j w) = 1 / (1 + (w / w_c)^4), without phase, over the period as a circle. It is the square of
-    a Butterworth filter of second order, and w_c is `cutoff` omega_n.
+    at each frequency w (Bristow, Tharayil and Alleyne, IEEE Control Systems Magazine 26(3), 2006). Its modulus is below
+    1 everywhere for gamma < 2 - 1 / (2 xi^2). Sampling adds phase lag to T near the Nyquist frequency, so Q stops the
+    learning there: Q(j w) = 1 / (1 + (w / w_c)^4), zero-phase, over the cycle as a periodic signal. Q is the squared
+    modulus of a second-order Butterworth filter, and w_c is `cutoff` omega_n.
 
-    What a limit took from the torque is taken from what is learned: at a limit u goes, by 1 - gamma a period without Q,
-    to what the limit leaves beside the feedforward.
+    Torque beyond a limit is subtracted from the learned torque. At a limit, u converges to the torque that the limit
+    leaves after the feedforward, by a factor 1 - gamma in each cycle without Q.
 
     Args:
         model: The arm.
-        config: The law's numbers.
-        rest: Posture of the null space, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints; see JointMotion.
+        config: Config of the law.
+        rest: Configuration of the posture task, shape (nq,), in rad.
+        joints: True if the desired motion is a joint motion; see JointMotion.
 
     Attributes:
-        learned: u of this period, shape (N, nq), in N m: a row for each of its ticks.
+        learned: u of this cycle, shape (N, nq), in N m, with a row for each tick.
 
     Raises:
-        ConfigError: if no period of the motion is given, or it is no multiple of the law's or too many, or the arm has
-            fewer joints than the task has dimensions.
+        ConfigError: if the cycle time is missing, not a multiple of the period, or has too many ticks, or if the arm
+            has fewer joints than the task has dimensions.
     """
 
     def __init__(self, model: RobotModel, config: IterativeLearningConfig, rest: FloatArray, joints: bool) -> None:
@@ -94,14 +94,14 @@ class IterativeLearning(Controller):
         return self._law.velocity_gain
 
     def with_limits(self, limits: FloatArray) -> "IterativeLearning":
-        """Return the law that is told its torque limits; see ControlLaw."""
+        """Return the law with its torque limits set; see ControlLaw."""
         told = copy(self)
         told._limits = limits
         told.reset()
         return told
 
     def reset(self) -> None:
-        """Forget what was learned, and where the motion stands."""
+        """Clear the learned torques and the joint motion."""
         self.learned: FloatArray = np.zeros(self._shape)
         self._feedback: FloatArray = np.zeros(self._shape)
         self._memory: FloatArray | None = None
@@ -110,7 +110,7 @@ class IterativeLearning(Controller):
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the torques of the law above; see Controller.torque."""
         k = round(time / self._period)
-        if k >= 2 * self._ticks and k % self._ticks == 0:  # the first period holds the start from rest
+        if k >= 2 * self._ticks and k % self._ticks == 0:  # the first cycle includes the start from rest
             self._learn()
         self._tick = k % self._ticks
         memory = self._motion.start(q) if self._memory is None else self._memory
@@ -124,7 +124,7 @@ class IterativeLearning(Controller):
         return asked
 
     def _learn(self) -> None:
-        """Begin the next period with what this one gave."""
+        """Update the learned torques from the cycle that ends."""
         learned = self.learned + self._gain * self._feedback
         self.learned = np.fft.irfft(self._Q * np.fft.rfft(learned, axis=0), self._ticks, axis=0)
 

@@ -20,20 +20,18 @@ from runner.symbolic.maths import Array, Scalar
 
 
 class JointLawConfig(StrictModel):
-    """What the config of every law in joint space says.
+    """Config of every joint-space law.
 
     Attributes:
-        task: Whether the tip's position is led, or its pose, with home's orientation held.
-        natural_frequency: omega_n of the joints, from which every gain of the law follows, and of the motion that leads
-            the tip, in rad/s.
-        damping_ratio: xi of both.
+        task: Controlled tip motion: the position, or the pose with the orientation of home.
+        natural_frequency: omega_n of the joints, which sets every gain of the law, and of the tip motion, in rad/s.
+        damping_ratio: xi of the joints and of the tip motion.
         period: Time between two ticks, in s.
-        gravity_compensation: Whether the law holds the gravity term.
-        feedforward: Whether the law follows the desired velocity and acceleration, or sees a moving goal.
-        singularity_damping: Share of the tip's error by which the inverse of J is damped near a singular posture;
-            0 is the law without damping.
-        null_space_frequency: omega_n of the posture task, home, of an arm with more joints than the task needs, in
-            rad/s.
+        gravity_compensation: True if the law includes the gravity term.
+        feedforward: True if the law uses the desired velocity and acceleration; False if the reference is a moving goal.
+        singularity_damping: Damping of the inverse of J near a singular configuration, as a fraction of the tip error;
+            0 for no damping.
+        null_space_frequency: omega_n of the posture task to home if the arm has redundant joints, in rad/s.
     """
 
     task: TaskName
@@ -55,12 +53,12 @@ class JointLaw(TorqueLaw[N], Generic[N, C]):
 
     Args:
         model: The arm.
-        config: The law's numbers.
-        rest: Home: posture of the null space, and of inertias that are taken once, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints; see JointMotion.
+        config: Config of the law.
+        rest: Home, for the posture task and for inertias that are computed once, shape (nq,), in rad.
+        joints: True if the desired motion is a joint motion; see JointMotion.
 
     Raises:
-        ConfigError: if the arm has fewer joints than the task has dimensions, or a list of the config another length.
+        ConfigError: if the arm has fewer joints than the task has dimensions, or a list has the wrong length.
     """
 
     def __init__(self, model: RobotModel, config: C, rest: FloatArray, joints: bool = False) -> None:
@@ -70,18 +68,17 @@ class JointLaw(TorqueLaw[N], Generic[N, C]):
 
     @abstractmethod
     def choose_numbers(self, model: RobotModel, config: C, rest: FloatArray, motion: JointMotionNumbers) -> N:
-        """Return the law's numbers, of which one is `motion`.
+        """Return the numbers of the law, including `motion`.
 
-        It sets the attributes that decide how the law goes, beside its numbers; `_remembers` is how many numbers the
-        law itself keeps from tick to tick, zeros at the first one.
+        This also sets the attributes that select the equations, and `_remembers`, the size of the law's own memory.
         """
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return the joint motion where it starts, and what the law itself keeps; see TorqueLaw."""
+        """Return the memories of the joint motion and of the law at the first tick; see TorqueLaw."""
         return np.concatenate([self._motion.start(q), self.own_start()])
 
     def own_start(self) -> FloatArray:
-        """Return what the law itself keeps, at the first tick, shape (remembers,)."""
+        """Return the law's own memory at the first tick, shape (remembers,); zero by default."""
         return np.zeros(self._remembers)
 
     def evaluate(
@@ -94,7 +91,7 @@ class JointLaw(TorqueLaw[N], Generic[N, C]):
         reference: Array,
         memory: Array,
     ) -> tuple[Array, Array]:
-        """Return the torques, and the joint motion and the law's own memory at the next tick; see TorqueLaw."""
+        """Return the torques, and the memories of the joint motion and of the law; see TorqueLaw."""
         (arm,) = arms
         own = len(memory) - self._remembers
         desired, goes_on = self._motion.follow(arm, numbers.motion, reference, memory[:own])
@@ -105,25 +102,25 @@ class JointLaw(TorqueLaw[N], Generic[N, C]):
     def command(
         self, arm: Arm, numbers: N, q: Array, dq: Array, desired: DesiredJoints, memory: Array
     ) -> tuple[Array, Array]:
-        """Return the torques, shape (nq,), in N m, and what the law itself keeps for the next tick.
+        """Return the torques, shape (nq,), in N m, and the law's own memory for the next tick.
 
         Args:
-            arm: The law's nominal arm.
-            numbers: The law's numbers.
+            arm: Nominal arm.
+            numbers: Numbers of the law.
             q: Measured joint positions, shape (nq,), in rad.
             dq: Measured joint velocities, shape (nq,), in rad/s.
-            desired: What is followed.
-            memory: What the law itself kept, shape (remembers,).
+            desired: Desired joint motion.
+            memory: The law's own memory, shape (remembers,).
         """
 
 
 def joint_law_builder(
     law: Callable[[RobotModel, C, FloatArray, bool], Controller],
 ) -> Callable[..., tuple[Loop, ...]]:
-    """Return the `build` of a module, from its law of (arm, config, home, whether joints lead)."""
+    """Return the `build` of a module from its law, a function of (arm, config, home, joints)."""
 
     def build(config: C, robot: Robot, joints: bool = False) -> tuple[Loop, ...]:
-        """Make the one loop that a config describes; it commands every joint.
+        """Build the single loop of a config; it commands every joint.
 
         Raises:
             ConfigError: see the law.
@@ -135,5 +132,5 @@ def joint_law_builder(
 
 
 def start_posture(config: JointLawConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
-    """Return where the arm stands at a trajectory's start: for a pose, with home's orientation."""
+    """Return the joint positions at the start; see task_start."""
     return task_start(config.task, robot, start)

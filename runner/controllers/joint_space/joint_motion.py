@@ -13,7 +13,7 @@ from runner.symbolic.maths import Array, Scalar
 
 
 class JointMotionConfig(TipTaskConfig, Protocol):
-    """What the config of a law in joint space says of the motion that it follows; see JointLawConfig."""
+    """Config of the motion of a joint-space law; see JointLawConfig."""
 
     task: TaskName
     period: float
@@ -24,8 +24,8 @@ class JointMotionNumbers(NamedTuple):
     """The numbers of a joint motion.
 
     Attributes:
-        tip: Of the task that leads the imagined arm's tip.
-        posture: Of its null space.
+        tip: Numbers of the tip task of the virtual arm.
+        posture: Numbers of its posture task.
         period: Time between two ticks, in s.
     """
 
@@ -49,27 +49,26 @@ class DesiredJoints(NamedTuple):
 
 
 class JointMotion:
-    r"""Joint positions, velocities and accelerations to follow, tick by tick.
+    r"""Desired joint positions, velocities and accelerations at each tick.
 
-    Where the desired motion is one of the joints it is that motion, without feedforward its posture at rest. Where it
-    is the tip's, it is the motion of an imagined arm, whose tip obeys F* of TipTask (resolved acceleration; Luh, Walker
-    and Paul, IEEE Transactions on Automatic Control 25(3), 1980):
+    A desired joint motion is used directly, without feedforward only its positions. A desired tip motion is the motion
+    of a virtual arm whose tip obeys F* of TipTask (resolved acceleration; Luh, Walker and Paul, IEEE Transactions on
+    Automatic Control 25(3), 1980):
 
     .. math::
 
         \ddot q_d = \ddot q_0 + J^+ (F^* - \dot J \dot q_d - J \ddot q_0), \qquad
         \ddot q_0 = -2 \omega_{n0} \dot q_d - \omega_{n0}^2 (q_d - q_\mathrm{rest})
 
-    J, dJ/dt and F* are taken at q_d. It stands where the encoders find the arm at the first tick, and each tick goes on
-    by an acceleration that is constant for a period. The imagined arm has no inertia, no limits and no noise: what
-    disturbs the arm moves its tip against q_d, and never q_d. Near a singular posture the inverse is damped as in the
-    tip laws: J^T (J J^T + lambda^2)^-1.
+    J, dJ/dt and F* are taken at q_d, which starts at the measured positions of the first tick. The acceleration is
+    constant over each period. The virtual arm has no inertia, limits or noise, so disturbances of the real arm do not
+    change q_d. Near a singular configuration the inverse is damped as in the tip laws: J^T (J J^T + lambda^2)^-1.
 
     Args:
         model: The arm.
-        config: The law's numbers.
-        rest: Posture of the null space, shape (nq,), in rad.
-        joints: Whether the desired motion is one of the joints.
+        config: Config of the law.
+        rest: Configuration of the posture task, shape (nq,), in rad.
+        joints: True if the desired motion is a joint motion.
 
     Raises:
         ConfigError: if the arm has fewer joints than the task has dimensions.
@@ -82,11 +81,11 @@ class JointMotion:
         self.numbers = JointMotionNumbers(self._task.numbers, posture, config.period)
 
     def structure(self) -> dict[str, Any]:
-        """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""
+        """Return the attributes without the numbers; see TorqueLaw.structure."""
         return structure_of(self)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return its memory at the first tick: q_d and dq_d/dt, shape (2 nq,); of a motion of the joints, none."""
+        """Return the memory at the first tick: q_d and dq_d, shape (2 nq,); empty for a joint motion."""
         return np.zeros(0) if self._joints else np.concatenate([q, np.zeros(len(q))])
 
     def follow(

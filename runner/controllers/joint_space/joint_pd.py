@@ -15,12 +15,12 @@ from runner.symbolic.maths import Array, Scalar
 
 
 class JointPdConfig(JointLawConfig):
-    """Config of PD control of each joint, with gravity.
+    """Config of joint PD control with gravity compensation.
 
     Attributes:
-        kind: Its name in the registry.
-        natural_frequency: omega_n of every joint that no other moves, and of the motion that leads the tip, in rad/s.
-        inertia: Whether gains are scaled by the joints' inertias at home, once, or at every measured posture.
+        kind: Registry name of the controller.
+        natural_frequency: omega_n of each joint without coupling, and of the tip motion, in rad/s.
+        inertia: Configuration of the joint inertias that scale the gains: home, or the measured one at each tick.
     """
 
     kind: Literal["joint_pd"]
@@ -28,10 +28,10 @@ class JointPdConfig(JointLawConfig):
 
 
 class JointPdNumbers(NamedTuple):
-    """The numbers of PD control of each joint.
+    """The numbers of joint PD control.
 
     Attributes:
-        motion: Of the joint motion that is followed.
+        motion: Numbers of the JointMotion.
         k_p: omega_n^2, in 1/s^2.
         k_v: 2 xi omega_n, in 1/s.
         inertia: Diagonal of M at home, shape (nq,), in kg m^2.
@@ -48,13 +48,13 @@ class JointPd(JointLaw[JointPdNumbers, JointPdConfig]):
 
     .. math:: \tau = D (\omega_n^2 (q_d - q) + 2 \xi \omega_n (\dot q_d - \dot q)) + G(q), \qquad D = \mathrm{diag} M
 
-    It needs no more of the model than G and one inertia for each joint. At rest a wrong gravity term leaves the sag
-    (G - G_believed) / (D omega_n^2); on the way M and V that it leaves out are an error, too. Held for a period h, and
-    with D the inertias at the posture, it is stable at rest about that posture for
+    The law uses only G and one inertia for each joint. At rest, a wrong gravity term G_n causes the error
+    (G - G_n) / (D omega_n^2). In motion, the missing M and V cause a further error. With a period h and D at the
+    current configuration, the law is stable at rest approximately for
 
     .. math:: \omega_n h \lambda_\max(M^{-1} D) < 1 \quad (\xi = 1)
 
-    nearly, because the fastest mode is then its velocity loop: d(v)/dt = -2 omega_n lambda v, sampled.
+    because the fastest mode is then the sampled velocity loop, d(v)/dt = -2 omega_n lambda v.
     """
 
     def choose_numbers(
@@ -80,7 +80,7 @@ class JointPd(JointLaw[JointPdNumbers, JointPdConfig]):
         """Return the torques of the law above; see JointLaw."""
         ddq = numbers.k_p * (desired.q - q) + numbers.k_v * (desired.dq - dq)
         inertia = numbers.inertia if self._at_home else arm.mass_matrix(q).diagonal()
-        torque = inertia * ddq  # before the arm is asked again
+        torque = inertia * ddq  # before the next call overwrites it
         rest = np.zeros(len(q))
         return torque + arm.inverse_dynamics(q, rest, rest), memory
 

@@ -16,14 +16,14 @@ from runner.symbolic.maths import Array, Scalar
 
 
 class JointPidConfig(JointLawConfig):
-    """Config of PID control of each joint, with gravity.
+    """Config of joint PID control with gravity compensation.
 
     Attributes:
-        kind: Its name in the registry.
-        natural_frequency: omega_n of every joint that no other moves, and of the motion that leads the tip, in rad/s.
-        integral_share: k_i as a share of omega_n^3; stable below 2 xi.
-        anti_windup: Whether a joint's integral stands still while its torque is beyond its limit and the error would
-            take it farther.
+        kind: Registry name of the controller.
+        natural_frequency: omega_n of each joint without coupling, and of the tip motion, in rad/s.
+        integral_share: k_i / omega_n^3; stable below 2 xi.
+        anti_windup: True if the integral of a joint stops while its torque is beyond the limit and the error would
+            increase the torque.
     """
 
     kind: Literal["joint_pid"]
@@ -32,15 +32,15 @@ class JointPidConfig(JointLawConfig):
 
 
 class JointPidNumbers(NamedTuple):
-    """The numbers of PID control of each joint.
+    """The numbers of joint PID control.
 
     Attributes:
-        motion: Of the joint motion that is followed.
+        motion: Numbers of the JointMotion.
         k_p: omega_n^2, in 1/s^2.
         k_v: 2 xi omega_n, in 1/s.
-        k_i: share omega_n^3, in 1/s^3.
+        k_i: integral_share omega_n^3, in 1/s^3.
         inertia: Diagonal of M at home, shape (nq,), in kg m^2.
-        limits: Torque limits, shape (nq,), in N m; infinite where there is none.
+        limits: Torque limits, shape (nq,), in N m; infinite if there is none.
     """
 
     motion: JointMotionNumbers
@@ -59,10 +59,10 @@ class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
         \tau = D (\omega_n^2 e + 2 \xi \omega_n \dot e + \kappa \omega_n^3 z) + G(q), \qquad e = q_d - q, \qquad
         z_{k+1} = z_k + h e_k, \qquad D = \mathrm{diag} M
 
-    The characteristic polynomial of a joint that no other moves is s^3 + 2 xi omega_n s^2 + omega_n^2 s + kappa
-    omega_n^3, stable for kappa < 2 xi (Hurwitz). At rest z takes away what a wrong gravity term, a constant load or dry
-    friction leaves under PD control. By conditional integration (Astrom and Rundqwist, American Control Conference,
-    1989) z_k stands still in a tick in which the joint's torque is beyond its limit and e has the torque's sign.
+    The characteristic polynomial of a joint without coupling is s^3 + 2 xi omega_n s^2 + omega_n^2 s + kappa omega_n^3,
+    stable for kappa < 2 xi (Hurwitz). At rest, z removes the error that a wrong gravity term, a constant load or dry
+    friction causes under PD control. With conditional integration (Astrom and Rundqwist, American Control Conference,
+    1989), z_k stays constant while the joint's torque is beyond its limit and e has the sign of the torque.
     """
 
     def choose_numbers(
@@ -86,7 +86,7 @@ class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
         return VelocityGain(self.numbers.k_v, 0.0)
 
     def with_limits(self, limits: FloatArray) -> "JointPid":
-        """Return the law that is told its torque limits; see ControlLaw."""
+        """Return the law with its torque limits set; see ControlLaw."""
         return self.with_numbers(limits=limits)
 
     def command(
@@ -103,7 +103,7 @@ class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
 
 
 def _useful(arm: Arm, torque: Scalar, limit: Scalar, step: Scalar) -> Array:
-    """Return by how much a joint's integral grows, shape (1,): not beyond what its torque may be."""
+    """Return the increment of a joint's integral, shape (1,): 0 if it would raise a torque beyond the limit."""
     within = arm.backend.less(arm.backend.absolute(torque), limit)
     back = arm.backend.less(torque * step, 0.0)
     return arm.backend.choose(arm.backend.any_of(within, back), lambda: np.array([step]), lambda: np.zeros(1))

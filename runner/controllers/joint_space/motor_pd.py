@@ -17,13 +17,13 @@ from runner.symbolic.maths import Array, Scalar
 
 
 class MotorPdConfig(JointLawConfig):
-    """Config of PD control of motors behind springs.
+    """Config of PD control of flexible-joint motors.
 
     Attributes:
-        kind: Its name in the registry.
-        natural_frequency: omega_n of every joint that no other moves and no spring bends, and of the motion that leads
-            the tip, in rad/s.
-        joint_stiffness: K of the springs as it is believed, in N m/rad; one for all joints or a list with one for each.
+        kind: Registry name of the controller.
+        natural_frequency: omega_n of each rigid joint without coupling, and of the tip motion, in rad/s.
+        joint_stiffness: Nominal stiffness K of the joint springs, in N m/rad; one for all joints or a list with one for
+            each.
     """
 
     kind: Literal["motor_pd"]
@@ -34,7 +34,7 @@ class MotorPdNumbers(NamedTuple):
     """The numbers of PD control of motors.
 
     Attributes:
-        motion: Of the joint motion that is followed.
+        motion: Numbers of the JointMotion.
         k_p: omega_n^2, in 1/s^2.
         k_v: 2 xi omega_n, in 1/s.
         inertia: Diagonal of M + B at home, shape (nq,), in kg m^2.
@@ -54,9 +54,9 @@ class MotorPd(JointLaw[MotorPdNumbers, MotorPdConfig]):
     .. math:: \tau = D (\omega_n^2 (\theta_d - \theta) + 2 \xi \omega_n (\dot q_d - \dot\theta)) + G(q_d), \qquad
         \theta_d = q_d + K^{-1} G(q_d)
 
-    with D = diag(M + B) at home. At rest the links are where they are to be, exactly, if K and G are as believed, and
-    stay there wherever the arm comes from if K is above what G changes by per angle. It reads theta, no more: the
-    encoders turn with the motors, and their readings are not corrected.
+    with D = diag(M + B) at home. At rest the links are exactly at q_d if the nominal K and G are exact. The arm reaches
+    this rest from any start if K is larger than the gradient of G. The law uses only theta: the encoders are on the
+    motors, and their readings are not corrected.
     """
 
     def choose_numbers(

@@ -15,12 +15,12 @@ from runner.symbolic.maths import Array, Scalar
 
 
 class PassivityConfig(JointLawConfig):
-    """Config of passivity-based control of the joints.
+    """Config of passivity-based joint control.
 
     Attributes:
-        kind: Its name in the registry.
-        natural_frequency: lambda, and K_D / diag M, and omega_n of the motion that leads the tip, in rad/s.
-        damping_ratio: xi of the motion that leads the tip; the joints have two equal poles.
+        kind: Registry name of the controller.
+        natural_frequency: lambda, K_D / diag M, and omega_n of the tip motion, in rad/s.
+        damping_ratio: xi of the tip motion; the joints have two equal poles.
     """
 
     kind: Literal["passivity"]
@@ -30,7 +30,7 @@ class PassivityNumbers(NamedTuple):
     """The numbers of passivity-based control.
 
     Attributes:
-        motion: Of the joint motion that is followed.
+        motion: Numbers of the JointMotion.
         rate: lambda, in 1/s.
         damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
     """
@@ -48,9 +48,9 @@ class Passivity(JointLaw[PassivityNumbers, PassivityConfig]):
         \tau = M \ddot q_r + C \dot q_r + G + K_D s, \qquad \dot q_r = \dot q_d + \lambda (q_d - q), \qquad
         s = \dot q_r - \dot q
 
-    with lambda = omega_n and K_D = omega_n diag M(home). Under an exact model M ds/dt + (C + K_D) s = 0, so that
-    s^T M s / 2 falls as -s^T K_D s: it cancels no dynamics of the arm, and is stable for any K_D > 0 in continuous
-    time. At rest a wrong gravity term leaves the sag (G - G_believed) / (lambda K_D), which is that of PD control.
+    with lambda = omega_n and K_D = omega_n diag M(home). With an exact model M ds/dt + (C + K_D) s = 0, so s^T M s / 2
+    changes at the rate -s^T K_D s. The law does not cancel the arm's dynamics. It is stable in continuous time for any
+    K_D > 0. At rest, a wrong gravity term G_n causes the error (G - G_n) / (lambda K_D), as under PD control.
     """
 
     def choose_numbers(
@@ -80,10 +80,10 @@ class Passivity(JointLaw[PassivityNumbers, PassivityConfig]):
 def passive_dynamics(arm: Arm, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:
     r"""Return M ddq_r + C dq_r + G, shape (nq,), in N m, with the C of Christoffel's symbols.
 
-    V is quadratic in the velocities, V(dq) = C(dq) dq, so that C(dq) dq_r = V((dq + dq_r) / 2) - V((dq - dq_r) / 2).
+    V(dq) = C(dq) dq is quadratic in the velocities, so C(dq) dq_r = V((dq + dq_r) / 2) - V((dq - dq_r) / 2).
     """
     weightless = arm.inverse_dynamics(q, 0.5 * (dq - dq_r), np.zeros(len(q)), np.zeros(3))
-    less = -1.0 * weightless  # before the arm is asked again
+    less = -1.0 * weightless  # before the next call overwrites it
     return less + arm.inverse_dynamics(q, 0.5 * (dq + dq_r), ddq_r)
 
 

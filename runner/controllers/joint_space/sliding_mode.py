@@ -18,14 +18,14 @@ from runner.symbolic.maths import Array, Scalar
 
 
 class SlidingModeConfig(JointLawConfig):
-    """Config of sliding-mode control of the joints.
+    """Config of sliding-mode joint control.
 
     Attributes:
-        kind: Its name in the registry.
-        natural_frequency: lambda, and K_D / diag M, and omega_n of the motion that leads the tip, in rad/s.
-        damping_ratio: xi of the motion that leads the tip; the joints have two real poles.
-        boundary_layer: Half-width of the boundary layer of s, phi, in rad/s.
-        switching_gain: kappa, the torque beyond the layer, K, as a share of phi omega_n diag M.
+        kind: Registry name of the controller.
+        natural_frequency: lambda, K_D / diag M, and omega_n of the tip motion, in rad/s.
+        damping_ratio: xi of the tip motion; the joints have two real poles.
+        boundary_layer: Half-width phi of the boundary layer of s, in rad/s.
+        switching_gain: kappa, the torque K beyond the layer relative to phi omega_n diag M.
     """
 
     kind: Literal["sliding_mode"]
@@ -37,7 +37,7 @@ class SlidingModeNumbers(NamedTuple):
     """The numbers of sliding-mode control.
 
     Attributes:
-        motion: Of the joint motion that is followed.
+        motion: Numbers of the JointMotion.
         rate: lambda, in 1/s.
         boundary_layer: phi, in rad/s.
         damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
@@ -54,7 +54,7 @@ class SlidingModeNumbers(NamedTuple):
 class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
     r"""Sliding-mode control with a boundary layer (Slotine, International Journal of Control 40(2), 1984).
 
-    In the form that keeps the arm's passivity (Slotine and Li, Applied Nonlinear Control, 1991, section 9.1):
+    This form preserves the arm's passivity (Slotine and Li, Applied Nonlinear Control, 1991, section 9.1):
 
     .. math::
 
@@ -62,10 +62,10 @@ class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
         s = \dot q_r - \dot q = \dot e + \lambda e, \qquad \dot q_r = \dot q_d + \lambda (q_d - q)
 
     with lambda = omega_n, K_D = omega_n D and K = kappa phi omega_n D, D = diag M(home). At kappa = 1, the balance
-    condition of the layer, s falls within it twice as fast as e. Torques d that the model does not have leave
-    s = d / (K_D + K / phi), at rest and joint by joint, as long as |d| < K + phi K_D; then |s| < phi, and as
-    de/dt = s - lambda e, |e| < phi / lambda. Outside of the layer d s < K |s| brings s back. A thin layer has the
-    velocity gain K / phi, which noise and the control period limit.
+    condition of the layer, s decays in the layer twice as fast as e. At rest, an unmodelled torque d of a joint causes
+    s = d / (K_D + K / phi) if |d| < K + phi K_D. Then |s| < phi and, because de/dt = s - lambda e, |e| < phi / lambda.
+    Outside the layer, s returns if d s < K |s|. Noise and the control period limit the velocity gain K / phi of the
+    layer, so phi cannot be arbitrarily small.
     """
 
     def choose_numbers(
@@ -101,7 +101,7 @@ class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
 
 
 def _saturated(arm: Arm, share: Scalar) -> Scalar:
-    """Return a scalar between -1 and 1, or the nearer of these."""
+    """Return a scalar clipped to -1 and 1."""
     most = arm.backend.maximum
     return -most(-most(share, -1.0), -1.0)
 

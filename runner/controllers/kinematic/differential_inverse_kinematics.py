@@ -34,7 +34,7 @@ class DifferentialInverseKinematicsConfig(StrictModel):
     """Config of differential inverse kinematics.
 
     Attributes:
-        kind: Its name in the registry.
+        kind: Registry name of the controller.
         period: Time between two commands, in s.
         task: Whether the tip's position is led, or its pose, with home's orientation kept.
         gain: K, how fast a tip error is to vanish, in 1/s; at most 1 / period.
@@ -163,7 +163,7 @@ CONFIG = DifferentialInverseKinematicsConfig
 
 
 def build(config: DifferentialInverseKinematicsConfig, robot: Robot) -> tuple[Loop, ...]:
-    """Make the one loop that a config describes; it commands every joint.
+    """Build the single loop of a config; it commands every joint.
 
     Raises:
         ConfigError: see DifferentialInverseKinematics.

@@ -23,7 +23,7 @@ class MacroMiniConfig(StrictModel):
     """Config of stage-wise control; mappings have a value for each stage.
 
     Attributes:
-        kind: Its name in the registry.
+        kind: Registry name of the controller.
         natural_frequency: omega_n of each stage's closed loop, in rad/s.
         damping_ratio: xi of each.
         period: Time between two ticks of each, in s; every other one a multiple of the shortest.

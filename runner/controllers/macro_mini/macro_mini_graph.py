@@ -89,8 +89,8 @@ def macro_mini_graph(
         wrist_rotation: real or parallel.
         gravity_compensation: Whether the laws hold the gravity term.
         feedforward: Whether the Macro follows the desired velocity and acceleration.
-        torque_limited: Whether torques are clipped.
-        goal: Whether the reference is a goal at rest, which has no derivatives.
+        torque_limited: True if torques are clipped.
+        goal: True if the reference is a goal at rest, which has no derivatives.
         schedule: both or turns.
         beyond_reach: hold or stretch.
     """

@@ -53,7 +53,7 @@ class StageLaw:
         self.numbers = StageNumbers(self._tip.numbers, k_p, k_v)
 
     def structure(self) -> dict[str, Any]:
-        """Return what decides how it goes, beside its numbers; see TorqueLaw.structure."""
+        """Return the attributes without the numbers; see TorqueLaw.structure."""
         return structure_of(self)
 
     def move(

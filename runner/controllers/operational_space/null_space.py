@@ -38,7 +38,7 @@ class NullSpaceTask:
     Args:
         config: The task's numbers.
         rest: Posture sought, shape (nq,), in rad.
-        position_limits: Lower and upper joint positions, shape (2, nq), in rad; infinite where there are none.
+        position_limits: Lower and upper joint positions, shape (2, nq), in rad; infinite if there are none.
     """
 
     def __init__(self, config: NullSpaceConfig, rest: FloatArray, position_limits: FloatArray) -> None:

@@ -25,7 +25,7 @@ class OperationalSpaceConfig(StrictModel):
     """Config of operational-space control.
 
     Attributes:
-        kind: Its name in the registry.
+        kind: Registry name of the controller.
         task: Whether the tip's position is led, or its pose, with home's orientation held.
         natural_frequency: omega_n of the closed loop in every direction of the tip, in rad/s.
         damping_ratio: xi of the closed loop.
@@ -188,7 +188,7 @@ CONFIG = OperationalSpaceConfig
 
 
 def build(config: OperationalSpaceConfig, robot: Robot) -> tuple[Loop, ...]:
-    """Make the one loop that a config describes; it commands every joint.
+    """Build the single loop of a config; it commands every joint.
 
     Raises:
         ConfigError: if the robot has several stages, or its arm fewer joints than the task has dimensions.

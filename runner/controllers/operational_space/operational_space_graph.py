@@ -19,9 +19,9 @@ def operational_space_graph(
 
     Args:
         gravity_compensation: Whether the law holds p(x).
-        feedforward: Whether the law takes the desired velocity and acceleration.
-        torque_limited: Whether torques are clipped.
-        goal: Whether the reference is a goal at rest, which has no derivatives.
+        feedforward: True if the law uses the desired velocity and acceleration.
+        torque_limited: True if torques are clipped.
+        goal: True if the reference is a goal at rest, which has no derivatives.
     """
     derivatives = feedforward and not goal
     arm, desired = (7.85, "x_g" if goal else "x_d") if torque_limited else (6.55, "x_g" if goal else "x_d")

@@ -23,8 +23,8 @@ class WholeBodyLaw(StrictModel):
     Attributes:
         natural_frequency: omega_n of the closed loop in every direction of the tip, in rad/s.
         damping_ratio: xi of the closed loop.
-        gravity_compensation: Whether the law holds the gravity term.
-        feedforward: Whether the law follows the desired velocity and acceleration.
+        gravity_compensation: True if the law includes the gravity term.
+        feedforward: True if the law uses the desired velocity and acceleration.
         null_space_frequency: omega_n of the posture task in the null space, in rad/s; it holds joints at home, and
             damps all joints.
         max_tip_speed: Tip speed at which the approach to the goal saturates, in m/s; None is no limit.
@@ -45,7 +45,7 @@ class WholeBodyConfig(WholeBodyLaw):
     """Config of whole-body control.
 
     Attributes:
-        kind: Its name in the registry.
+        kind: Registry name of the controller.
         period: Time between two ticks, in s.
     """
 
@@ -153,7 +153,7 @@ CONFIG = WholeBodyConfig
 
 
 def build(config: WholeBodyConfig, robot: Robot) -> tuple[Loop, ...]:
-    """Make the one loop that a config describes; it commands every joint.
+    """Build the single loop of a config; it commands every joint.
 
     The posture of riding arms is held; of an arm on which nothing rides all joints are drawn home.
     """

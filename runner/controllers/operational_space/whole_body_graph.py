@@ -28,9 +28,9 @@ def whole_body_graph(
 
     Args:
         gravity_compensation: Whether the law holds G(q).
-        feedforward: Whether the law takes the desired velocity and acceleration.
-        torque_limited: Whether torques are clipped.
-        goal: Whether the reference is a goal at rest, which has no derivatives.
+        feedforward: True if the law uses the desired velocity and acceleration.
+        torque_limited: True if torques are clipped.
+        goal: True if the reference is a goal at rest, which has no derivatives.
         speed_limited: Whether the approach to the goal saturates at a largest tip speed V.
         posture_task: Whether the null space holds a posture: null_space_frequency is not 0.
         all_joints: Whether that posture is of all joints alike (PostureTask), or of some (JointStiffness).
