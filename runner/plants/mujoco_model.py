@@ -82,7 +82,7 @@ def _is_flat(body: Any) -> bool:
 
 
 def _tensor(body: Any) -> Any:
-    xx, yy, zz, xy, xz, yz = np.nan_to_num(body.fullinertia)  # NaN where all are zero
+    xx, yy, zz, xy, xz, yz = np.nan_to_num(body.fullinertia)  # NaN if all are zero
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 

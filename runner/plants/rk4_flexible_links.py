@@ -119,7 +119,7 @@ class Rk4FlexibleLinksConfig(StrictModel):
         .. math:: D = M \Phi \, \mathrm{diag}(2 \zeta \omega) \, \Phi^T M, \qquad
             K \Phi = M \Phi \omega^2, \quad \Phi^T M \Phi = 1
         """
-        from scipy.linalg import eigh  # for few configs
+        from scipy.linalg import eigh  # needed by few configs
 
         chain = self.chain(robot)
         M = chain.mass_matrix(robot.home)[np.ix_(chain.springs, chain.springs)]

@@ -184,7 +184,7 @@ def _arm(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
     Returns:
         Shapes (2 nq, 2 nq) and (2 nq, nq).
     """
-    from scipy.linalg import expm  # for few configs
+    from scipy.linalg import expm  # needed by few configs
 
     model, q = contact.arm.model, contact.q
     n, h = model.nq, contact.step

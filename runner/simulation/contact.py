@@ -97,7 +97,7 @@ class Contact:
         for controller in self._controllers:
             controller.update_wrench(reading)
         if self._controllers:
-            signals.felt[k] = self._controllers[0].external_wrench  # of its last tick
+            signals.felt[k] = self._controllers[0].external_wrench  # at its last tick
         return torques
 
     def signals(self, kept: slice) -> ContactSignals:

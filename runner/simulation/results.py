@@ -159,9 +159,9 @@ class Collector:
         """Return the result of the complete run.
 
         Args:
-            error: Its integration error.
+            error: Integration error of the run.
             notices: Warnings during its simulation.
-            clock: Its measured wall-clock and CPU time, in s; None for the time of its repetitions.
+            clock: Measured wall-clock and CPU time, in s; None for the time of its repetitions.
         """
         config = self.config
         assert self.trace is not None  # noqa: S101 - it is complete

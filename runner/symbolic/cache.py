@@ -20,7 +20,7 @@ _ANSWER = "answer-"  # prefix of file names
 
 
 def folder() -> Path | None:
-    """Return the folder of compiled code, created if missing; None, after a message, if it is not safe.
+    """Return the folder of compiled code, created if missing; None if that fails or, after a message, if unsafe.
 
     It is `arm-control-runner/compiled` in XDG_CACHE_HOME or ~/.cache, with access only for the user. It is not used if
     it belongs to another user, a folder above it belongs to another user than root, or others can write to one of them.
