@@ -11,11 +11,12 @@ _STEADY_WINDOW = 0.5  # s, at the end of the run
 
 
 def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
-    """Return the forces between tip and world of a single run; none where there was nothing to feel.
+    """Return the contact forces of a single run; empty for a run without an external wrench.
 
-    - peak_force: largest magnitude of the world's force on the tip.
-    - steady_force: its mean over the last 0.5 s; None for a shorter run.
-    - force_error: distance of what the controller felt from it, likewise averaged.
+    - peak_force: largest magnitude of the environment's force on the tip.
+    - steady_force: magnitude of the mean force of the environment over the last 0.5 s; None for a shorter run.
+    - force_error: magnitude of the difference between the mean force that the controller used and the mean force of
+      the environment, over the last 0.5 s; None for a shorter run.
     """
     if traces.contact is None:
         return {}

@@ -26,18 +26,20 @@ UNITS = {
 
 
 def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
-    """Return torques, speeds, saturation, energy and effort, over the torques that were held (all rows but the last).
+    """Return torques, speeds, saturation, energy and effort, from the applied torques (all rows except the last).
 
-    - peak_torque: largest magnitude of a joint's torque; over all that turn, and per joint, as peak_torque_q1.
-    - rms_torque: root mean square of the torques, likewise.
-    - torque_chatter: root mean square of a torque's change from one tick to the next, likewise.
-    - peak_joint_speed: largest joint speed, likewise.
-    - peak_joint_force, rms_joint_force, force_chatter, peak_sliding_speed: the same of the joints that slide, where
-      there are any.
-    - saturation_fraction: share of ticks with any joint at its limit; per joint, of those with this one.
-    - energy: integral of sum |tau dq|, exact while no joint reverses within a tick, as the torque is held.
-    - control_effort: integral of sum tau^2; over the joints that turn.
-    - force_effort: the same over those that slide, where there are any.
+    - peak_torque: largest absolute torque of the revolute joints; also for each joint, as in peak_torque_q1.
+    - rms_torque: RMS torque of the revolute joints; also for each joint.
+    - torque_chatter: RMS change of the torque of the revolute joints from one tick to the next; also for each joint.
+    - peak_joint_speed: largest absolute speed of the revolute joints; also for each joint.
+    - peak_joint_force: largest absolute force of the prismatic joints; also for each joint.
+    - rms_joint_force: RMS force of the prismatic joints; also for each joint.
+    - force_chatter: RMS change of the force of the prismatic joints from one tick to the next; also for each joint.
+    - peak_sliding_speed: largest absolute speed of the prismatic joints; also for each joint.
+    - saturation_fraction: fraction of ticks with at least one joint at its limit; also for each joint.
+    - energy: integral of sum |tau dq|; exact if no joint reverses within a tick, because the torque is constant there.
+    - control_effort: integral of sum tau^2; over the revolute joints.
+    - force_effort: integral of the sum of squared forces; over the prismatic joints.
     """
     held, ticks = by_rows(traces.tau[:, :-1]), traces.tau.shape[1] - 1
     squares, size = (held * held).sum(axis=2), np.abs(held)
@@ -67,12 +69,12 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
 
 
 def _saturation(size: FloatArray, peaks: FloatArray, limits: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the share of ticks with any joint at its limit, shape (runs,), and of those with each, (runs, nq).
+    """Return the fraction of ticks with any joint at its limit, shape (runs,), and with each joint, shape (runs, nq).
 
     Args:
-        size: Magnitudes of the torques, shape (runs, nq, ticks), in N m.
-        peaks: The largest of each joint, shape (runs, nq).
-        limits: From where on a torque is at its limit, shape (runs, nq).
+        size: Absolute torques, shape (runs, nq, ticks), in N m.
+        peaks: Largest absolute torque of each joint, shape (runs, nq), in N m.
+        limits: Smallest absolute torque that counts as at the limit, shape (runs, nq), in N m.
     """
     share, shares = np.zeros(len(peaks)), np.zeros_like(peaks)
     some = np.flatnonzero((peaks >= limits).any(axis=1))
@@ -84,14 +86,14 @@ def _saturation(size: FloatArray, peaks: FloatArray, limits: FloatArray) -> tupl
 
 
 def _squared_steps(held: FloatArray) -> FloatArray:
-    """Return the sum over time of each torque's squared changes, shape (runs, nq)."""
+    """Return the sum over time of the squared torque changes of each joint, shape (runs, nq)."""
     steps = np.diff(held, axis=2)
     total: FloatArray = (steps * steps).sum(axis=2)
     return total
 
 
 def _over(values: FloatArray, joints: NDArray[np.intp]) -> FloatArray:
-    """Return the sum over some joints, one after another, shapes (runs, nq) to (runs,)."""
+    """Return the sum over the given joints, in their order, shapes (runs, nq) to (runs,)."""
     total = values[:, joints[0]].copy()
     for joint in joints[1:]:
         total += values[:, joint]
@@ -99,5 +101,5 @@ def _over(values: FloatArray, joints: NDArray[np.intp]) -> FloatArray:
 
 
 def _over_joints(name: str, overall: FloatArray, values: FloatArray, joints: NDArray[np.intp]) -> dict[str, FloatArray]:
-    """Return a metric over the chosen joints, and of each, by name."""
+    """Return a metric over the given joints, and of each joint, by name."""
     return {name: overall, **{f"{name}_q{joint + 1}": values[:, joint] for joint in joints}}

@@ -15,13 +15,13 @@ from runner.trajectories.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class MetricContext:
-    """The setting of a run.
+    """Context of the metrics of a run.
 
     Attributes:
         trajectory: The desired motion.
         settling_band: Largest error on each axis of an arm that has settled, in m.
         period: Time between two rows of the trace, in s.
-        reach: Distance of the target from a riding stage's base up to which it follows it, in m; None where no
+        reach: Largest distance from a mounted stage's base at which the stage follows the target, in m; None if no
             controller has such a limit.
     """
 
@@ -32,7 +32,7 @@ class MetricContext:
 
 
 class OwnFamily(Protocol):
-    """Metrics of ours that belong together, of several runs at once."""
+    """Built-in family of metrics, evaluated for several runs together."""
 
     @property
     def UNITS(self) -> Mapping[str, str]:  # noqa: N802 - a constant of the module
@@ -40,13 +40,13 @@ class OwnFamily(Protocol):
         ...
 
     def evaluate(self, traces: Traces, context: MetricContext) -> Mapping[str, FloatArray]:
-        """Return the metrics by name, each of shape (runs,); NaN for a run that has no value."""
+        """Return the metrics by name, each of shape (runs,); NaN for a run without a value."""
         ...
 
 
 @runtime_checkable
 class MetricFamily(Protocol):
-    """Metrics of a plug-in that belong together."""
+    """Family of metrics from a plug-in."""
 
     __name__: str
 
@@ -56,7 +56,7 @@ class MetricFamily(Protocol):
         ...
 
     def evaluate(self, trace: Trace, context: MetricContext) -> Mapping[str, float | None]:
-        """Return the metrics of one run by name; None for one without a value."""
+        """Return the metrics of one run by name; None for a metric without a value."""
         ...
 
 
@@ -65,11 +65,11 @@ def evaluate_added(trace: Trace, context: MetricContext, notices: list[str]) -> 
 
     Args:
         trace: The trace of the run.
-        context: Its setting.
-        notices: Takes a message for each fault.
+        context: The context of the metrics.
+        notices: List that receives a message for each fault.
 
     Raises:
-        SimulationError: if a family tries to change the trace or its setting; names the place.
+        SimulationError: if a family tries to change the trace or the context; the message contains the line.
     """
     values: dict[str, float | None] = {}
     for family in metric_units.added_families():

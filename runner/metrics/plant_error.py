@@ -14,11 +14,11 @@ import numpy as np
 from runner.base.trace import Trace
 
 PLANT = "rk4"
-"""The plant that others are held against."""
+"""The plant with which others are compared."""
 COMPARED = ("bullet", "mujoco")
 PARTED = 4.0
-"""Settling bands between the tips beyond which two motions have parted. In runs of studies the tips come up to 3 bands
-apart where no torque is at its limit, and 4.9 or more, mostly 10 to 55, where the motion takes another way."""
+"""Distance of the tips, in settling bands, beyond which two motions have parted. In runs of studies, the distance is at
+most 3 bands if no torque is at its limit, and 4.9 or more, mostly 10 to 55, if the motions take different paths."""
 _WALL = "it is of fourth order in smooth motion alone, and here the tip may meet a wall"
 _NOT_OF_RK4 = ("integrator", "min_inertia", "in_place_of")
 
@@ -27,13 +27,13 @@ Metrics = Mapping[str, float | None]
 
 @dataclass(frozen=True)
 class ErrorEstimate:
-    """What the step is worth in one metric.
+    """Integration error of one metric.
 
     Attributes:
-        value: The metric on Runge-Kutta; None where it has none.
-        difference: How far the run's value is from that, in the metric's unit; None where the two are not comparable:
-            the motions part, or one of them has no value.
-        share: The difference over the run's value; None as above, and where the run's value alone is 0.
+        value: Value on the Runge-Kutta plant; None if it has none.
+        difference: Absolute difference between the value of the run and that value, in the unit of the metric; None if
+            the motions part or one of the two values is missing.
+        share: Ratio of the difference to the value of the run; also None if only the value of the run is 0.
     """
 
     value: float | None
@@ -43,20 +43,19 @@ class ErrorEstimate:
 
 @dataclass(frozen=True)
 class PlantError:
-    """What the plant's step is worth in repetition 0 of a run.
+    """Integration error of the plant in repetition 0 of a run.
 
     Attributes:
-        step: Step of the Runge-Kutta plant, in s; None where it cannot make the run.
-        reason: Why it cannot, in words; empty where it can.
-        largest: Largest distance between the tips at equal times, in m, where both are finite; None as above, and so
-            are the others.
-        at: When, in s.
-        end: Distance between the tips at the end, likewise.
-        parted: When the motions part, in s: the tips are farther apart than PARTED settling bands, or one of the runs
-            fails where the other does not; None where they never do. From then on each goes a way of its own, and the
-            difference of a metric is no longer an error of integration.
-        failure: Why the run on Runge-Kutta failed; empty where it did not.
-        metrics: What the step is worth in each metric.
+        step: Step of the Runge-Kutta plant, in s; None if it cannot simulate the run.
+        reason: Reason why it cannot simulate the run; otherwise empty.
+        largest: Largest distance between the finite tip positions at equal times, in m; None if step is None.
+        at: Time of the largest distance, in s; None if step is None.
+        end: Distance between the tips at the last time with finite positions, in m; None if step is None.
+        parted: Time at which the motions part, in s: the distance of the tips exceeds PARTED settling bands, or only
+            one of the runs fails. None if they do not part. After this time the motions are unrelated, and the
+            difference of a metric is not an integration error.
+        failure: Reason why the Runge-Kutta run failed; empty if it did not fail.
+        metrics: Integration error of each metric.
     """
 
     step: float | None
@@ -69,7 +68,7 @@ class PlantError:
     metrics: Mapping[str, ErrorEstimate] = field(default_factory=dict)
 
     def record(self) -> dict[str, Any]:
-        """Return what metrics.json holds of it."""
+        """Return the content for metrics.json."""
         if self.step is None:
             return {"plant": PLANT, "reason": self.reason}
         kept = {key: value for key, value in asdict(self).items() if key != "reason" and (key != "failure" or value)}
@@ -77,32 +76,32 @@ class PlantError:
 
 
 def reason_not_comparable(environment: str) -> str:
-    """Return why Runge-Kutta is no measure of a run in an environment, given by its kind; empty where it is."""
+    """Return the reason why Runge-Kutta is not comparable in a kind of environment; empty if it is comparable."""
     return _WALL if environment == "wall" else ""
 
 
 def on_runge_kutta(resolved: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the config of the same run on the Runge-Kutta plant, in its default step: repetition 0 alone."""
+    """Return the config of repetition 0 of the same run on the Runge-Kutta plant with its default step."""
     plant = {key: value for key, value in resolved["plant"].items() if key not in _NOT_OF_RK4}
     plant |= {"kind": PLANT, "step": None}
     return {**resolved, "plant": plant, "repetitions": 1, "plant_error": False}
 
 
 def compare(trace: Trace, metrics: Metrics, other: Trace, others: Metrics, band: float, step: float) -> PlantError:
-    """Hold a run against the same run on Runge-Kutta.
+    """Compare a run with the same run on the Runge-Kutta plant.
 
     Args:
-        trace: The run's trace.
-        metrics: Its metrics; none where it failed.
-        other: The trace on Runge-Kutta.
-        others: The metrics there, likewise.
+        trace: Trace of the run.
+        metrics: Metrics of the run; empty if it failed.
+        other: Trace on the Runge-Kutta plant.
+        others: Metrics on the Runge-Kutta plant; empty if that run failed.
         band: Settling band of the robot, in m.
         step: Step of the Runge-Kutta plant, in s.
     """
     rows = min(len(trace.t), len(other.t))
     distance = np.linalg.norm(trace.tip[:rows] - other.tip[:rows], axis=1)
     parted = _parting(trace, other, distance, band)
-    finite = np.flatnonzero(np.isfinite(distance))  # a run that diverges may end in none
+    finite = np.flatnonzero(np.isfinite(distance))  # the last positions of a diverging run may not be finite
     farthest = finite[distance[finite].argmax()]
     return PlantError(
         step=step,
@@ -131,23 +130,23 @@ def _estimate_error(value: float | None, other: float | None, comparable: bool) 
 
 
 def sufficient_step(step: float, share: float, wanted: float, period: float) -> float | None:
-    """Return a step with which the plant's share of a metric would fall to a wanted one.
+    """Return an integration step at which the relative error of a metric falls to an accepted one.
 
-    The error is of first order in the step, and is taken to be what the metric has too much: of a metric of 1 the rest,
-    1 - share, stays.
+    The error is of first order in the step and is assumed to increase the metric: for a metric of 1, the value without
+    error is 1 - share.
 
     Args:
-        step: The step that made the share, in s.
-        share: That share, above 0.
-        wanted: The share that would do, below 1.
-        period: The fastest control period, in s, of which the step is a whole part.
+        step: Current integration step, in s.
+        share: Relative error at this step, above 0.
+        wanted: Accepted relative error, below 1.
+        period: The fastest control period, in s; an integer multiple of the step.
 
     Returns:
-        The step, in s; None where none is known, or so small a one would be slower than Runge-Kutta in any case.
+        The step, in s; None if no such step is known, or if it is so small that Runge-Kutta is faster.
     """
     enough = step * wanted * (1.0 - share) / (share * (1.0 - wanted))
     parts = period / enough if enough > 0.0 else math.inf
     return period / math.ceil(parts - 1e-9) if parts <= _MOST_PARTS else None
 
 
-_MOST_PARTS = 1000  # of a period; Runge-Kutta asks for the dynamics four times
+_MOST_PARTS = 1000  # steps in a period; Runge-Kutta evaluates the dynamics four times in a step

@@ -14,12 +14,12 @@ STEADY_WINDOW = 0.5  # s, at the end of the run
 def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     """Return settling time, steady-state error and overshoot.
 
-    - settling_time: first tick after the last one with any axis error beyond the band; 0 if never beyond, None if
-      still beyond at the end.
-    - steady_state_error: largest axis error over the last 0.5 s; None when less than 0.5 s lies after t_f, or
-      the motion is periodic.
-    - overshoot: largest distance past the goal along the direction from start to goal, less how far the desired motion
-      itself goes there; None without a goal.
+    - settling_time: first tick after the last one with any axis error beyond the band; 0 if the error never exceeds the
+      band, None if it still does at the end.
+    - steady_state_error: largest error on any axis over the last 0.5 s; None if the run ends less than 0.5 s after t_f
+      or the motion is periodic.
+    - overshoot: largest distance past the goal in the direction from start to goal, minus that of the desired motion;
+      None without a goal.
     """
     worst = np.abs(traces.error).max(axis=1)
     goal, none = context.trajectory.goal, np.full(traces.runs, np.nan)

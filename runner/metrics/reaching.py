@@ -10,9 +10,9 @@ UNITS = {"reach_loss_fraction": "1"}
 
 
 def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
-    """Return what a riding arm could not follow; absent for a robot of one stage.
+    """Return the reach loss of the last stage; empty for a robot with one stage.
 
-    - reach_loss_fraction: share of ticks at which x_d is out of the last stage's reach.
+    - reach_loss_fraction: fraction of ticks at which x_d is out of reach of the last stage.
     """
     if context.reach is None or len(traces.stage_names) < 2:
         return {}

@@ -16,10 +16,10 @@ from runner.trajectories.shaped import Shifted
 
 _FAMILIES: list[OwnFamily] = [import_module(name) for name in metric_units.FAMILIES]
 MOST_LISTED = 2000
-"""Repetitions up to which a record lists a metric's values; above it has their quantiles, and they stand beside it."""
+"""Largest number of repetitions whose values a record lists; above it, the record has their quantiles."""
 
 _PERCENT = {"0.01": 1, "0.05": 5, "0.25": 25, "0.75": 75, "0.95": 95, "0.99": 99}  # levels of quantiles
-_BLOCK = 80_000  # values of a signal, of as many runs as give so many at a time: what caches hold
+_BLOCK = 80_000  # values of a signal in a block of runs, which fits in the CPU cache
 
 
 @dataclass(frozen=True)
@@ -27,13 +27,13 @@ class Summary:
     """One metric over the repetitions of a job.
 
     Attributes:
-        unit: Its unit.
-        values: Its value in each repetition, shape (repetitions,); NaN where it has none (never settled, or the
+        unit: Unit of the metric.
+        values: Value in each repetition, shape (repetitions,); NaN for a missing value (never settled, or the
             repetition failed).
-        median: Median, a missing value counting as beyond every number; None when that is missing.
-        min: Smallest value, None when there is none.
-        max: Largest value, None as soon as one is missing.
-        quantiles: Of more than MOST_LISTED repetitions: quantiles by level, a missing value counting likewise.
+        median: Median, with missing values counted as infinite; None if it is infinite.
+        min: Smallest value; None if all values are missing.
+        max: Largest value; None if any value is missing.
+        quantiles: Quantiles by level, with missing values counted as infinite; empty up to MOST_LISTED repetitions.
     """
 
     unit: str
@@ -45,11 +45,11 @@ class Summary:
 
     @property
     def listed(self) -> bool:
-        """Whether its record lists the values."""
+        """True if the record lists the values."""
         return len(self.values) <= MOST_LISTED
 
     def record(self) -> dict[str, object]:
-        """Return what is stored of it in a run's record."""
+        """Return the summary in the form that is stored in a run's record."""
         ends = {"median": self.median, "min": self.min, "max": self.max}
         if self.listed:
             return {"unit": self.unit, "values": [_present(value) for value in self.values.tolist()], **ends}
@@ -57,12 +57,12 @@ class Summary:
 
 
 def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = None) -> dict[str, float | None]:
-    """Return all metrics of one run; a run that failed has none. See `measure` for ours.
+    """Return all metrics of one run; a failed run has none. See `measure` for the built-in ones.
 
     Args:
-        trace: The run's trace.
-        context: Its setting.
-        notices: Takes a message for each fault in user-supplied metrics.
+        trace: Trace of the run.
+        context: Context of the metrics.
+        notices: List that receives a message for each fault in user-supplied metrics.
 
     Raises:
         SimulationError: if user-supplied metrics try to change the trace, or a user-supplied trajectory fails.
@@ -74,15 +74,16 @@ def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = N
 
 
 def measure(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
-    """Return our metrics of several runs, each of shape (runs,), NaN where a run has no value.
+    """Return the built-in metrics of several runs, each of shape (runs,); NaN for a run without a value.
 
-    Where stages ride on each other, the positioning and tracking of a carrier's end point against x_d less the home
-    offset of what rides on it stand beside the tip's, with the stage's name in front: `macro_settling_time`.
+    For a robot with mounted stages, there are also positioning and tracking metrics of each base stage, with its name
+    as prefix: `macro_settling_time`. They compare its end point with x_d minus the home offset of the stages mounted on
+    it.
 
-    A run's values are the same to the last bit in whatever company.
+    The values of a run do not depend on the other runs, not even by rounding.
 
     Raises:
-        SimulationError: where a trajectory of the user's goes wrong; which run that was tells `evaluate`.
+        SimulationError: if a user-supplied trajectory fails; `evaluate` of single runs shows which run it is.
     """
     rows, joints = traces.q.shape[1:]
     block = max(1, _BLOCK // (rows * joints))
@@ -106,19 +107,19 @@ def _measure_block(traces: Traces, context: MetricContext) -> dict[str, FloatArr
 
 
 def of_run(measured: Mapping[str, FloatArray], run: int) -> dict[str, float | None]:
-    """Return the metrics of one of the runs that `measure` has measured, by its number; None for no value."""
+    """Return the metrics of one run from the result of `measure`, by the index of the run; None for a missing value."""
     values = {name: float(value[run]) for name, value in measured.items()}
     return {name: _present(value) for name, value in values.items()}
 
 
 def summarize_arrays(names: tuple[str, ...], values: FloatArray) -> dict[str, Summary]:
-    """Summarize the metrics of a job's repetitions, given as an array of shape (repetitions, names), NaN for none."""
+    """Return the summaries of metrics, given as an array of shape (repetitions, names) with NaN for missing values."""
     pairs = zip(names, metric_units.units_of(names), values.T, strict=True)
     return {name: _summarize(unit, own) for name, unit, own in pairs}
 
 
 def _summarize(unit: str, values: FloatArray) -> Summary:
-    """Summarize one metric, shape (repetitions,)."""
+    """Return the summary of one metric, shape (repetitions,)."""
     ordered = _ordered(values)
     quantiles = _quantiles(ordered) if len(values) > MOST_LISTED else {}
     return Summary(unit, values, *_present_ends(ordered), quantiles)
@@ -129,15 +130,15 @@ def _present(value: float) -> float | None:
 
 
 def over_repetitions(values: FloatArray) -> FloatArray:
-    """Return median, smallest and largest over the repetitions, shapes (..., repetitions) to (..., 3).
+    """Return median, smallest and largest value over the repetitions, shapes (..., repetitions) to (..., 3).
 
-    A missing value is NaN, and counts as beyond every number; what is beyond every number is NaN.
+    A missing value is NaN and counts as infinite; an infinite result is returned as NaN.
     """
     return _ends(_ordered(values))
 
 
 def _ordered(values: FloatArray) -> FloatArray:
-    """Return values over the repetitions in ascending order, a missing one infinite, shape (..., repetitions)."""
+    """Return values over the repetitions in ascending order, with infinity for NaN, shape (..., repetitions)."""
     ordered: FloatArray = np.sort(np.where(np.isnan(values), np.inf, values), axis=-1)
     return ordered
 
@@ -155,9 +156,9 @@ def _present_ends(ordered: FloatArray) -> tuple[float | None, float | None, floa
 
 
 def _quantiles(ordered: FloatArray) -> dict[str, float | None]:
-    """Return quantiles by level of values in ascending order, infinite where missing, shape (repetitions,).
+    """Return the quantiles by level of ascending values, shape (repetitions,), with infinity for missing values.
 
-    Between two values they are interpolated linearly; None for what is beyond every number.
+    Quantiles between two values are interpolated linearly. An infinite quantile is None.
     """
     found: dict[str, float | None] = {}
     for level, percent in _PERCENT.items():

@@ -20,16 +20,18 @@ UNITS = {
 
 
 def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
-    """Return the tracking errors; those over 0..t_f are absent for a goal.
+    """Return the tracking errors; for a goal, only cross_track_error.
 
     - max_tracking_error: largest norm of the error over 0..t_f; with _x, _y or _z, largest error on that axis.
     - max_axis_error: largest error on any axis over 0..t_f.
-    - rms_tracking_error: root mean square of the error's norm over 0..t_f.
-    - rms_tracking_error_last_period: likewise over the last period of a periodic motion.
-    - rms_tracking_error_period: likewise over a period of it, with _1, _2, _4, _8 and so on, as far as the run goes.
-    - cross_track_error: largest distance to the path taken as a curve, over the whole run.
-    - max_joint_error, rms_joint_error: largest error of a joint, and root mean square of their norm, over 0..t_f, where
-      the desired motion is one of the joints; of those that turn.
+    - rms_tracking_error: RMS of the norm of the error over 0..t_f.
+    - rms_tracking_error_last_period: RMS of the norm of the error over the last period of a periodic motion.
+    - rms_tracking_error_period: RMS of the norm of the error over one period of a periodic motion; the suffix _1, _2,
+      _4, _8 and so on is the number of the period.
+    - cross_track_error: largest distance to the geometric path over the whole run.
+    - max_joint_error: largest error of a revolute joint over 0..t_f; only if the desired motion is a joint motion.
+    - rms_joint_error: RMS of the norm of the errors of the revolute joints over 0..t_f; only if the desired motion is a
+      joint motion.
     """
     distance = context.trajectory.distance_to_path(traces.tip.swapaxes(-1, -2))
     cross_track: dict[str, FloatArray] = {"cross_track_error": distance.max(axis=-1)}
@@ -51,12 +53,12 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
 
 
 def _squared(error: FloatArray) -> FloatArray:
-    """Return the square of the error's norm, shapes (runs, 3, T) to (runs, T), in m^2."""
+    """Return the squared norm of the error, shapes (runs, 3, T) to (runs, T), in m^2."""
     return np.asarray(error[:, 0] ** 2 + error[:, 1] ** 2 + error[:, 2] ** 2)
 
 
 def _of_periods(traces: Traces, path: Trajectory, squared: FloatArray) -> dict[str, FloatArray]:
-    """Return what a periodic motion leaves in its last period, and in those whose numbers are powers of two."""
+    """Return the RMS errors of a periodic motion in its last period and in periods 1, 2, 4, 8 and so on."""
     end, period = float(traces.t[-1]), path.duration
     whole = int(end / period + 1e-9)
     if path.goal is not None or not whole:

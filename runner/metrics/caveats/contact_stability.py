@@ -21,7 +21,7 @@ from runner.robots.task_space import mass_along, tip_mobility
 
 
 def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:
-    """Return the contact of an arm behind joint servos with a wall; None where a run has none that can be followed.
+    """Return the contact of a servo-driven arm with a wall; None if the run has none or the model does not cover it.
 
     Args:
         config: The checked config.
@@ -57,7 +57,7 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
 
 
 def force_contact(config: RunConfig, q_start: FloatArray) -> float | None:
-    """Return how a small motion on a wall grows in a period of a law that pushes on it, at the start; None without one.
+    """Return the growth factor of a small motion on a wall in one period of a hybrid force law, or None without one.
 
     Args:
         config: The checked config.

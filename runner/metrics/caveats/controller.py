@@ -7,11 +7,11 @@ import numpy as np
 from runner.metrics.caveats.rule import SettingRule
 from runner.metrics.caveats.setting import Setting
 
-_LIGHT = 2.0  # times what the joints alone would have, above which the coupling is named
+_LIGHT = 2.0  # ratio to uncoupled joints above which the message contains the coupling
 
 
 def _gain_share(setting: Setting) -> float | None:
-    """Return the share of what a period bears that the largest velocity gain takes."""
+    """Return the ratio of the largest velocity gain to the stability limit of its period."""
     return None if setting.velocity_loop is None else setting.velocity_loop.share
 
 
@@ -32,12 +32,12 @@ def _tell_gains(value: float, setting: Setting) -> str:
 UNSTABLE_GAINS = SettingRule("unstable_gains", _gain_share, _tell_gains)
 
 
-_ENOUGH = 3.0  # time constants, in which an exponential does 95 % of its way
-_DIGITS = 6  # of the share; two equal poles are found to half of the digits
+_ENOUGH = 3.0  # time constants, after which an exponential has decayed by 95 %
+_DIGITS = 6  # of the fraction; numerical double poles are accurate to half of the digits only
 
 
 def _time_share(setting: Setting) -> float | None:
-    """Return the share of the run that the law's slowest part takes; None where no law says its time constants."""
+    """Return the ratio of three times the slowest time constant to the run; None if no time constant is known."""
     return None if setting.slowest is None else round(_ENOUGH * setting.slowest.seconds / setting.duration, _DIGITS)
 
 
@@ -51,7 +51,7 @@ def _tell_horizon(value: float, setting: Setting) -> str:
 
 
 def _rounded_up(value: float) -> float:
-    """Return a number that is not below another, of two digits."""
+    """Return a number rounded up to two digits."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return math.ceil(value / unit) * unit
 
@@ -59,22 +59,22 @@ def _rounded_up(value: float) -> float:
 SHORT_HORIZON = SettingRule("short_horizon", _time_share, _tell_horizon)
 
 
-_DIGITS_OF_RADIUS = 6  # of the radius; an axis without a spring has an eigenvalue of 1 but for rounding
+_DIGITS_OF_RADIUS = 6  # of the radius; an axis without a spring has an eigenvalue of 1 up to rounding
 
 
 def _radius(setting: Setting) -> float | None:
-    """Return the spectral radius of contact behind servos or under a law that pushes; None where there is none."""
+    """Return the spectral radius of contact with servos or under a hybrid force law; None without such a contact."""
     if setting.touch is not None:
         return round(setting.touch, _DIGITS_OF_RADIUS)
     if setting.contact is None:
         return None
     from runner.plants.servo_contact_stability import (
-        contact_radius,  # the store knows rules, and is imported without rigid bodies
+        contact_radius,  # imported here, because the store imports the rules without rigid-body models
     )
 
     try:
         return round(contact_radius(setting.contact), _DIGITS_OF_RADIUS)
-    except np.linalg.LinAlgError:  # at a singular posture
+    except np.linalg.LinAlgError:  # in a singular configuration
         return None
 
 

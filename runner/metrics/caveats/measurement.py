@@ -7,9 +7,9 @@ _FACTORS = ("mass", "centre_of_mass", "length", "gravity")
 
 
 def _noise_beside_exact(setting: Setting) -> float | None:
-    """Return the largest noise or step of a joint's measured position, in rad, where velocities are exact."""
+    """Return the largest noise or resolution of a measured joint position, in rad, if velocities are exact."""
     noise = setting.noise
-    if noise.velocity != "exact" or not setting.torques:  # laws that command positions take no velocities
+    if noise.velocity != "exact" or not setting.torques:  # laws that command positions do not use velocities
         return None
     drawn = 0.0 if noise.distribution == "none" else max(noise.position.tolist())
     return float(max(drawn, *noise.resolution.tolist()))
@@ -23,7 +23,7 @@ def _tell_noise(value: float, setting: Setting) -> str:
 
 
 def _fixed_error(setting: Setting) -> float | None:
-    """Return the largest relative error of what is believed, where it is the same in several repetitions."""
+    """Return the largest relative error of the nominal model, if it is the same in several repetitions."""
     if setting.mismatch.spread > 0.0 or setting.repetitions == 1:
         return None
     factors = [abs(float(getattr(setting.mismatch, name)) - 1.0) for name in _FACTORS]

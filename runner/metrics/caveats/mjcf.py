@@ -11,14 +11,14 @@ from runner.metrics.caveats.setting import Setting
 if TYPE_CHECKING:
     from runner.config.run import RunConfig
 
-_IDEAL = "kinematic"  # the plant that no force moves
+_IDEAL = "kinematic"  # the plant on which forces have no effect
 
 
 def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
-    """Return what the robot's files hold that would change the motion and is not in a run, in words by file.
+    """Return messages, by robot file, about contents that would change the motion and are missing in the run.
 
-    Damping, friction and armature that the file gives a joint count where the joint has none of it in the run; nothing
-    counts where no force moves the arm.
+    Damping, friction and armature of a joint in the file count if the value of the joint in the run is zero. The
+    mapping is empty for the kinematic plant.
     """
     from runner.config.flexibility import find_flexibility
     from runner.plants.decoupled import TorquePlantConfig, friction_by_joint
@@ -49,7 +49,7 @@ def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
 
 
 def _left_out(setting: Setting) -> float | None:
-    """Return how many things in the robot's files would change the motion and are not in the run."""
+    """Return the number of messages of `left_out_of`; None if there are none."""
     return float(sum(map(len, setting.left_out.values()))) if setting.left_out else None
 
 

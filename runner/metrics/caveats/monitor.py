@@ -22,12 +22,12 @@ _KEYS = {rule: key for rule, (key, *_) in THRESHOLDS.items()}
 _values = attrgetter(*(f"{rule}.{key}" for rule, key in _KEYS.items()))
 
 _MEMORY = Memory(64)  # runs of a sweep share their setting
-_BLOCK = 64  # runs at a time: what caches hold
+_BLOCK = 64  # runs in one block, which fits in the CPU cache
 
 
 @dataclass
 class _Worst:
-    """The worst that a rule measured so far: value, joint, and how many repetitions sprung it."""
+    """Largest value of a rule so far, with its joint and the number of repetitions that triggered the rule."""
 
     value: float = -np.inf
     joint: int = 0
@@ -35,11 +35,11 @@ class _Worst:
 
 
 class Watch:
-    """Looks at the repetitions of a run, one after another or several at once.
+    """Evaluation of the caveat rules over the repetitions of a run.
 
     Args:
-        setting: The run's setting.
-        thresholds: What it must exceed.
+        setting: Setting of the run.
+        thresholds: Thresholds of the rules.
     """
 
     def __init__(self, setting: Setting, thresholds: CaveatsConfig) -> None:
@@ -49,11 +49,11 @@ class Watch:
         self._seen = 0
 
     def look(self, signals: Signals) -> None:
-        """Look at the signals of one repetition, or of several that have an axis in front."""
+        """Evaluate the rules on one repetition, or on several on a leading axis."""
         look_together([self], signals)
 
     def join(self, later: "Watch") -> None:
-        """Take what the watch of later repetitions of the same run saw."""
+        """Merge the watch of later repetitions of the same run."""
         self._seen += later._seen
         for name, theirs in later._worst.items():
             worst = self._worst.setdefault(name, _Worst())
@@ -62,11 +62,11 @@ class Watch:
                 worst.value, worst.joint = theirs.value, theirs.joint
 
     def found(self, error: PlantError | None = None, step: PlantStep | None = None) -> Found:
-        """Return what was found; of a run without a repetition that ended well only what its config says.
+        """Return the caveats; if no repetition succeeded, only those on the config.
 
         Args:
-            error: What the plant's step is worth, where that was measured.
-            step: That step.
+            error: Integration error of the plant, if it was measured.
+            step: Integration step of the plant.
         """
         caveats = [
             Caveat(rule.name, self._told(rule, worst), worst.value)
@@ -80,7 +80,7 @@ class Watch:
         return Found(caveats, rules_digest(), self._thresholds)
 
     def _note(self, rule: TraceRule, values: FloatArray, sprung: int) -> None:
-        """Note what a rule measured, shape (repetitions, n), and in how many of these it was sprung."""
+        """Record the values of a rule, shape (repetitions, n), and the number of repetitions that triggered it."""
         worst = self._worst.setdefault(rule.name, _Worst())
         worst.sprung += sprung
         largest = int(values.argmax())
@@ -94,7 +94,7 @@ class Watch:
 
 
 def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]]) -> list[Caveat]:
-    """Return what the config of a run says."""
+    """Return the caveats on the config of a run."""
     caveats = []
     for rule in SETTING_RULES:
         value = rule.measure(setting)
@@ -104,12 +104,12 @@ def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]])
 
 
 def look_together(watches: Sequence[Watch], signals: Signals) -> None:
-    """Look at the signals of several runs at once, each with a watch of its own.
+    """Evaluate the rules on several runs together, each with a separate watch.
 
     Args:
-        watches: The watch of each run. Their settings may differ in numbers of the config, not in what acts: plant,
-            commands, periods, kind of path, environment and settling band are those of the first.
-        signals: Those of all runs, which stand on the first axis, or of one; repetitions may stand on the next.
+        watches: The watch of each run. Plant, commands, periods, kind of path, environment and settling band must be
+            the same for all runs; other numbers of the config may differ.
+        signals: Signals of all runs on the first axis, or of one run; repetitions may be on the next axis.
     """
     if len(watches) == 1 and signals.q.ndim == 3 and len(signals.q) > _BLOCK:
         for first in range(0, len(signals.q), _BLOCK):
@@ -133,8 +133,8 @@ def look_together(watches: Sequence[Watch], signals: Signals) -> None:
         watches[run]._note(TRACE_RULES[number], values, int(sprung[run, number]))
 
 
-@lru_cache(maxsize=8)  # as the runs of a sweep share their thresholds
+@lru_cache(maxsize=8)  # the runs of a sweep share their thresholds
 def _by_rule(values: tuple[float, ...]) -> tuple[Mapping[str, Mapping[str, float]], Sequence[float]]:
-    """Return thresholds by rule and key, as they are stored, and those of the rules on signals in their order."""
+    """Return the thresholds by rule and key, as stored, and those of the trace rules in their order."""
     thresholds = {name: {key: value} for (name, key), value in zip(_KEYS.items(), values, strict=True)}
     return thresholds, [thresholds[rule.name][_KEYS[rule.name]] for rule in TRACE_RULES]

@@ -7,15 +7,15 @@ from runner.base.trace import by_rows
 from runner.metrics.caveats.rule import TraceRule, called, percent
 from runner.metrics.caveats.setting import Setting, Signals
 
-_SIZED = 60  # rows, the last one included, from which the size of a motion is told
-_END = 10  # of a motion to a goal the last tenth is looked at
+_SIZED = 60  # most rows, including the last one, used for the size of a motion
+_END = 10  # for a motion to a goal, the last tenth of the run is evaluated
 
 
 def _unfollowed(signals: Signals, setting: Setting) -> FloatArray:
-    """Return the tip's largest error in the size of its motion, shape (..., 1).
+    """Return the ratio of the largest tip error to the size of the motion, shape (..., 1).
 
-    The size is the largest distance of the desired position from the tip's start. Of a motion to a goal, whose error
-    begins at that size, the last tenth counts. An arm that is to stay, or to give way, has nothing to follow.
+    The size is the largest distance of the desired position from the start of the tip. For a motion to a goal, whose
+    error starts at that size, only the last tenth counts. The ratio is 0 if the arm must stay or comply.
     """
     if setting.complies:
         return np.zeros((*signals.q.shape[:-2], 1))
@@ -31,7 +31,7 @@ def _unfollowed(signals: Signals, setting: Setting) -> FloatArray:
 
 
 def _longest(vectors: FloatArray) -> FloatArray:
-    """Return the largest norm among rows of vectors, shapes (..., T, 3) to (...)."""
+    """Return the largest norm of the vectors in rows, shapes (..., T, 3) to (...)."""
     squares = vectors * vectors
     squared = squares[..., 0] + squares[..., 1]
     squared += squares[..., 2]
@@ -46,7 +46,7 @@ def _tell_unfollowed(value: float, joint: int, setting: Setting) -> str:
 
 
 def _beyond(signals: Signals, setting: Setting) -> FloatArray:
-    """Return how far each joint goes beyond a position limit, shape (..., nq), in rad; below 0 where it does not."""
+    """Return the excess of each joint over its position limits, shape (..., nq), in rad; negative within the limits."""
     lower, upper = setting.position_limits
     q = by_rows(signals.q)
     excess: FloatArray = np.maximum(lower - q.min(axis=-1), q.max(axis=-1) - upper)

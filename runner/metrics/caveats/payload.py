@@ -9,7 +9,7 @@ from runner.metrics.caveats.setting import Setting
 
 
 def _overload(setting: Setting) -> float | None:
-    """Return tool and payload in the rated payload; None where none is stated."""
+    """Return the ratio of tool and payload to the rated payload; None if no rating is given."""
     robot = setting.robot
     return None if robot.rated_payload is None else robot.burden / robot.rated_payload
 
@@ -22,7 +22,7 @@ def _tell_overload(value: float, setting: Setting) -> str:
 
 
 def _lifted(setting: Setting) -> float | None:
-    """Return the payload, in kg, where a joint has no torque limit."""
+    """Return the payload, in kg, if a joint has no torque limit."""
     return None if all(map(math.isfinite, setting.torque_limits.tolist())) else setting.robot.payload.largest
 
 

@@ -8,15 +8,15 @@ from runner.metrics.plant_error import PARTED, PLANT, PlantError, sufficient_ste
 from runner.plugins.metric_units import unit_of
 
 NAME = "plant_error"
-_OF_BAND = 0.01  # of the settling band: smaller differences do not matter
+_OF_BAND = 0.01  # of the settling band; smaller differences are ignored
 
 
 class PlantStep(NamedTuple):
-    """The step that the rule judges.
+    """Integration step that the rule checks.
 
     Attributes:
         plant: Kind of the plant.
-        step: Its step, in s.
+        step: Integration step of the plant, in s.
         period: The fastest control period, in s.
         band: Settling band of the robot, in m.
     """
@@ -28,16 +28,16 @@ class PlantStep(NamedTuple):
 
 
 def caveat_of(error: PlantError, own: PlantStep, threshold: float) -> Caveat | None:
-    """Return what the plant's own error says of a run; None where it is small enough.
+    """Return the caveat on the integration error of a run; None if the error is small enough.
 
-    The rule is sprung where the motions part, which counts as all of a metric, and by the share of a metric in m of
-    which the difference is above a hundredth of the settling band, too. Others, such as a peak torque of a single tick
-    or a settling time, which goes from tick to tick, are stored and shown alone.
+    The rule is triggered, with the value 1, if the motions part. It is also triggered by the relative error of a metric
+    in m whose difference exceeds a hundredth of the settling band. Errors of other metrics are only stored and shown,
+    such as a peak torque at a single tick, or a settling time, which changes by whole ticks.
 
     Args:
-        error: What the step is worth.
-        own: The step.
-        threshold: The share of a metric that the step may be worth.
+        error: Integration error of the run.
+        own: Integration step of the run.
+        threshold: Allowed relative error of a metric.
     """
     if error.parted is not None:
         return Caveat(NAME, _parted(error, own), 1.0) if threshold < 1.0 else None
@@ -72,7 +72,7 @@ def _parted(error: PlantError, own: PlantStep) -> str:
 
 
 def _replaced(setting: Setting) -> float | None:
-    """Return 1 where the default plant is missing and another one stands in for it."""
+    """Return 1 if another plant replaces the missing default plant."""
     return None if setting.in_place_of is None else 1.0
 
 

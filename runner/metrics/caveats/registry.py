@@ -23,7 +23,7 @@ _HEX = 24
 
 @cache
 def rules_digest() -> str:
-    """Return a digest of the rules' source."""
+    """Return a digest of the source of the rules."""
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")

@@ -10,12 +10,12 @@ from runner.metrics.caveats.setting import Setting, Signals
 
 @dataclass(frozen=True)
 class TraceRule:
-    """A rule on the signals of every repetition; what it measures springs it above its threshold.
+    """Rule on the signals of every repetition, triggered if its value exceeds its threshold.
 
     Attributes:
-        name: Its name; its threshold is in runner/config/judgement.py.
-        measure: Gives what it measures of runs, shape (..., n): a value for each joint, or one (n = 1).
-        tell: Says in words what a value means, of a joint by its index.
+        name: Name of the rule; its threshold is in runner/config/judgement.py.
+        measure: Function of runs; returns values of shape (..., n), one for each joint, or a single one (n = 1).
+        tell: Function of a value and the index of a joint; returns the message.
     """
 
     name: str
@@ -25,12 +25,12 @@ class TraceRule:
 
 @dataclass(frozen=True)
 class SettingRule:
-    """A rule on the config alone, which holds of all repetitions alike.
+    """Rule on the config only, with the same result for all repetitions.
 
     Attributes:
-        name: Its name, as of a TraceRule.
-        measure: Gives what it measures; None where there is nothing to measure.
-        tell: Says in words what a value means.
+        name: Name of the rule, as in TraceRule.
+        measure: Function that returns the value; None if the rule does not apply.
+        tell: Function of a value; returns the message.
     """
 
     name: str
@@ -39,24 +39,24 @@ class SettingRule:
 
 
 def percent(share: float) -> str:
-    """Return a share as a text, such as "12.5 %"."""
+    """Return a fraction as a percentage, such as "12.5 %"."""
     return f"{100.0 * share:.3g} %"
 
 
 def called(joint: int, setting: Setting) -> str:
-    """Return how a joint is spoken of, such as "joint q1"; a name that says so itself is enough, such as "joint2"."""
+    """Return the name of a joint in a message: "joint q1", or the name itself if it starts with joint, as "joint2"."""
     name = setting.joint_names[joint]
     return name if name.startswith("joint") else f"joint {name}"
 
 
 @dataclass(frozen=True)
 class Caveat:
-    """One reason why a result may not be what it seems.
+    """Warning that a result may be misleading.
 
     Attributes:
-        rule: Name of the rule, and of the group of its threshold.
-        text: What it found, in words.
-        value: What it measured, the worst over joints and repetitions; above the rule's threshold.
+        rule: Name of the rule, which is also the name of the group of its threshold.
+        text: Message of the rule.
+        value: Value of the rule, the largest over joints and repetitions; above the threshold.
     """
 
     rule: str
@@ -66,12 +66,12 @@ class Caveat:
 
 @dataclass(frozen=True)
 class Found:
-    """All that the rules found in a run.
+    """Results of all rules for a run.
 
     Attributes:
-        caveats: One for each rule that was sprung.
-        digest: Digest of the rules' source.
-        thresholds: What a run had to exceed, by rule and key.
+        caveats: One caveat for each rule that was triggered.
+        digest: Digest of the source of the rules.
+        thresholds: Thresholds by rule and key.
     """
 
     caveats: Sequence[Caveat]
@@ -79,7 +79,7 @@ class Found:
     thresholds: Mapping[str, Mapping[str, float]]
 
     def record(self) -> dict[str, Any]:
-        """Return what is stored of it."""
+        """Return the results in the form that is stored."""
         return {
             "caveats": [asdict(caveat) for caveat in self.caveats],
             "caveat_rules": {"digest": self.digest, "thresholds": self.thresholds},

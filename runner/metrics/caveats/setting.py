@@ -24,30 +24,30 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Setting:
-    """The setting of a run.
+    """Setting of a run.
 
     Attributes:
         repetitions: Number of repetitions.
-        duration: Length of the run, in s.
+        duration: Duration of the run, in s.
         robot: Config of the robot, for its payload and rating.
         joint_names: Names of the joints.
-        joint_units: Unit of each joint's position, rad or m.
-        position_limits: Lower and upper position limits, shape (2, nq), in rad; infinite where there is none.
-        torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
+        joint_units: Unit of the position of each joint, rad or m.
+        position_limits: Lower and upper position limits, shape (2, nq), in rad; infinite without a limit.
+        torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite without a limit.
         plant: Kind of the plant.
-        torques: Whether controllers command torques, not joint positions.
-        ticks_per_torque: Ticks for which a joint's torque is held, shape (nq,).
-        tracked: Whether the tip is to follow a path, not to go to a goal in its own way.
-        complies: True if the controller is to comply with the external wrench.
+        torques: True if controllers command torques instead of joint positions.
+        ticks_per_torque: Number of ticks for which the torque of each joint is constant, shape (nq,).
+        tracked: True if the tip must follow a path, instead of only reaching a goal.
+        complies: True if the controller must comply with the external wrench.
         noise: Noise of the joint measurement.
-        mismatch: How what controllers believe of the robot differs from it.
+        mismatch: Error of the nominal model of the controllers.
         mass: Mass of all moving links, in kg.
-        in_place_of: Kind of the default plant, where it is missing and this one stands in for it; else None.
-        contact: Of an arm behind joint servos with a wall, under an admittance law; None where there is none.
-        touch: How a small motion on a wall grows in a period of a law that pushes by torques; None where none does.
-        velocity_loop: How near a velocity loop is to what its period bears; None where no law says its gain.
-        slowest: The part of the laws that takes longest to do its work; None where no law says.
-        left_out: What the robot's files hold that would change the motion and is not in the run, in words, by file.
+        in_place_of: Kind of the default plant if this plant replaces it because it is missing; otherwise None.
+        contact: Contact of a servo-driven arm with a wall under an admittance law; None without one.
+        touch: Growth factor of a small motion on a wall in a period of a hybrid force law; None without one.
+        velocity_loop: Velocity gain relative to the stability limit of its period; None if no gain is known.
+        slowest: Slowest part of the control laws; None if no time constant is known.
+        left_out: Messages about contents of the robot's files that would change the motion and are missing, by file.
     """
 
     repetitions: int
@@ -78,7 +78,8 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
 
     Args:
         config: The checked config.
-        q_start: Joint positions at the start, shape (nq,), in rad; None leaves contact out, and takes home elsewhere.
+        q_start: Joint positions at the start, shape (nq,), in rad. None leaves out contact and otherwise uses the home
+            configuration.
     """
     from runner.controllers.sampled_stability import velocity_loop
     from runner.metrics.caveats.contact_stability import force_contact, servo_contact
@@ -117,23 +118,23 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
     )
 
 
-@lru_cache(maxsize=8)  # as the runs of a sweep share their arm
+@lru_cache(maxsize=8)  # the runs of a sweep share their arm
 def _of_model(model: "RobotModel") -> tuple[Sequence[str], FloatArray, float]:
-    """Return joint units, position limits and mass of an arm."""
+    """Return the joint units, position limits and mass of an arm."""
     return model.joint_units, model.position_limits, model.mass
 
 
 @dataclass(frozen=True)
 class Signals:
-    """Signals and metrics of a run, a row for each control tick; axes of several runs may stand in front.
+    """Signals and metrics of a run, with one row for each control tick; leading axes are for several runs.
 
     Attributes:
         q: Joint positions, shape (..., T, nq), in rad.
-        tau: Torques that were held, shape (..., T - 1, nq), in N m.
+        tau: Torques applied between the ticks, shape (..., T - 1, nq), in N m.
         tip: Tip positions, shape (..., T, 3), in m.
-        desired: Desired tip positions, likewise.
-        saturation: Share of the ticks that each joint is at its torque limit, shape (..., nq).
-        limits: Torque limit of each joint, shape (..., nq), in N m; infinite where there is none.
+        desired: Desired tip positions, shape (..., T, 3), in m.
+        saturation: Fraction of ticks at which each joint is at its torque limit, shape (..., nq).
+        limits: Torque limit of each joint, shape (..., nq), in N m; infinite without a limit.
     """
 
     q: FloatArray
@@ -144,16 +145,16 @@ class Signals:
     limits: FloatArray
 
     def part(self, first: int, last: int) -> "Signals":
-        """Return the runs on the first axis from one to before another."""
+        """Return the runs on the first axis from index `first` to before `last`."""
         return Signals(**{name: value[first:last] for name, value in vars(self).items()})
 
 
 def signals_of(trace: Trace | Traces, metrics: Mapping[str, float | FloatArray | None]) -> Signals:
-    """Return what rules look at in a run that did not fail, or in several, which then stand on the first axis.
+    """Return the signals for the rules, of a run that did not fail or of several such runs on the first axis.
 
     Args:
-        trace: The run, or the runs.
-        metrics: Its metrics, or arrays of theirs.
+        trace: The trace of the run, or the traces of the runs.
+        metrics: The metrics of the run, or arrays of metrics of the runs.
     """
     shares = [metrics[f"saturation_fraction_q{joint + 1}"] for joint in range(len(trace.joint_names))]
     tip = trace.end_points[-1]

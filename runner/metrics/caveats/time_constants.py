@@ -29,18 +29,18 @@ from runner.controllers.torque_law import PinocchioArm
 from runner.robots.task_space import mass_along, tip_mobility
 from runner.schema.values import by_stage
 
-_POSTURES = 32  # of the desired motion
+_POSTURES = 32  # configurations of the desired motion
 _ROUNDING = 1e-9
-_STEPS = 50  # of Newton, from below, as a sum of exponentials is convex
-_WEAK = 1e-6  # of the largest rate, below which one counts for nothing
+_STEPS = 50  # Newton steps; they converge from below, because a sum of exponentials is convex
+_WEAK = 1e-6  # of the largest rate; smaller rates are ignored
 
 
 class TimeConstant(NamedTuple):
-    """How long a part of a control law takes.
+    """Time constant of a part of a control law.
 
     Attributes:
-        seconds: Time in which what it has left to do falls to 1/e.
-        part: What it is, such as "integral".
+        seconds: Time in which the remaining error falls to 1/e, in s.
+        part: Name of the part, such as "integral".
     """
 
     seconds: float
@@ -48,13 +48,13 @@ class TimeConstant(NamedTuple):
 
 
 def slowest_part(run: RunConfig, q_start: FloatArray | None = None) -> TimeConstant | None:
-    """Return the part of a run's laws that takes longest, their observer included; None where no law says.
+    """Return the slowest part of a run's control laws and observer; None if no time constant is known.
 
     Args:
         run: The checked config.
-        q_start: Joint positions at the start, shape (nq,), in rad; None takes home.
+        q_start: Joint positions at the start, shape (nq,), in rad; None is the home configuration.
     """
-    ours = CONTROLLERS.is_ours(run.controller.kind)  # a law from outside may have a config of ours
+    ours = CONTROLLERS.is_ours(run.controller.kind)  # a user-supplied law may have a built-in config
     parts = dict(_parts(run.controller, run, run.arm.home if q_start is None else q_start) if ours else {})
     bandwidths = run.disturbance_observer.by_loop(run.loops)
     if bandwidths:
@@ -64,7 +64,7 @@ def slowest_part(run: RunConfig, q_start: FloatArray | None = None) -> TimeConst
 
 @singledispatch
 def _parts(config: object, run: RunConfig, q: FloatArray) -> dict[str, float]:
-    """Return the time constants of a law's parts, in s; none of a law that says nothing."""
+    """Return the time constants of the parts of a law, in s; empty if none is known."""
     return {}
 
 
@@ -97,7 +97,7 @@ def _(config: JointPidConfig, run: RunConfig, q: FloatArray) -> dict[str, float]
 
 @_parts.register
 def _(config: IterativeLearningConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
-    """Return that of the slow errors, of which a period leaves 1 - gamma; none is learned within a period."""
+    """Return the time constants, with learning by a factor of 1 - gamma of the slow errors in each period."""
     left = abs(1.0 - config.learning_gain)
     periods = max(1.0, -1.0 / math.log(left)) if left > 0.0 else 1.0
     return {
@@ -114,7 +114,7 @@ def _(config: OperationalSpaceConfig | MacroMiniConfig, run: RunConfig, q: Float
 
 @_parts.register
 def _(config: HybridForceConfig, run: RunConfig, q: FloatArray) -> dict[str, float]:
-    """Return those along the wall, and into it with the mass that the tip has at a posture."""
+    """Return the time constants along the wall, and into it with the tip's effective mass in a configuration."""
     mobility = tip_mobility(run.arm.model, q, run.loops[-1].joints.start)
     mass = mass_along(mobility, np.array(config.normal))
     square = config.wall_stiffness * (1.0 + config.force_gain) / mass
@@ -136,24 +136,24 @@ def _(config: DifferentialInverseKinematicsConfig, run: RunConfig, q: FloatArray
 
 
 def _loop(natural_frequency: float, damping_ratio: float) -> float:
-    """Return that of s^2 + 2 xi omega_n s + omega_n^2."""
+    """Return the time constant of s^2 + 2 xi omega_n s + omega_n^2, in s."""
     return _settling(1.0, 2.0 * damping_ratio * natural_frequency, natural_frequency**2)
 
 
 def _stage_loops(config: OperationalSpaceConfig | MacroMiniConfig | HybridForceConfig, run: RunConfig) -> float:
-    """Return that of the slowest stage."""
+    """Return the time constant of the slowest stage, in s."""
     names = run.arm.stage_names
     rates = by_stage("controller.natural_frequency", config.natural_frequency, names)
     return max(map(_loop, rates, by_stage("controller.damping_ratio", config.damping_ratio, names)))
 
 
 def _double_pole(config: JointLawConfig, run: RunConfig) -> float:
-    """Return that of joints with two poles at omega_n, and of the motion that leads the tip, if it is led."""
+    """Return the time constant of two joint poles at omega_n, or of the outer loop if the law tracks the tip."""
     return _loop(config.natural_frequency, 1.0 if run.loops[0].follows_joints else config.damping_ratio)
 
 
 def _with_integral(config: JointLawConfig, gain: float) -> dict[str, float]:
-    """Return that of s^3 + 2 xi omega_n s^2 + omega_n^2 s + k_i."""
+    """Return the time constant of s^3 + 2 xi omega_n s^2 + omega_n^2 s + k_i, in s."""
     rate, damping = config.natural_frequency, config.damping_ratio
     if gain == 0.0:
         return {"position loop": _loop(rate, damping)}
@@ -161,23 +161,22 @@ def _with_integral(config: JointLawConfig, gain: float) -> dict[str, float]:
 
 
 def _settling(*coefficients: float) -> float:
-    """Return the time constant of a polynomial's slowest root but 0, in s; 0 where a motion does not fade."""
+    """Return the time constant of the slowest nonzero root of a polynomial, in s; 0 if a motion does not decay."""
     roots = np.roots(coefficients)
     fades = min((-roots.real[roots != 0.0]).tolist(), default=0.0)
     return 1.0 / fades if fades > _ROUNDING * np.abs(roots).max() else 0.0
 
 
 def _adaptation(run: RunConfig, q: FloatArray) -> float:
-    r"""Return the time in which what wrong parameters leave of a torque falls to 1/e along the desired motion, in s.
+    r"""Return the time in which the torque error of wrong parameters falls to 1/e along the desired motion, in s.
 
-    A slow adaptation has s = K_D^-1 Y (theta - theta^), so that on average
+    For slow adaptation, s = K_D^-1 Y (theta - theta^), and on average
 
     .. math:: \dot{\tilde\theta} = -\Gamma \langle Y^T K_D^{-1} Y \rangle \tilde\theta
 
-    whose rates are r_i. What the parameters leave is a sum of exponentials, and how large each is depends on how wrong
-    which parameter is. Each is taken to be as wrong as its gain says, with the covariance Gamma: the mean square of
-    Y (theta - theta^) is then proportional to sum r_i exp(-2 r_i t). Where the tip is led, the joints are taken to move
-    about where they start.
+    with the rates r_i. The torque error is a sum of exponentials, whose sizes depend on the parameter errors. These are
+    assumed to have the covariance Gamma. Then the mean square of Y (theta - theta^) is proportional to
+    sum r_i exp(-2 r_i t). If the desired motion is one of the tip, the joint motion is linearized about the start.
     """
     law = cast(Adaptive, run.loops[0].controller)
     numbers, arm = law.numbers, PinocchioArm(law.models[0], law.gravity_compensation)
@@ -185,7 +184,7 @@ def _adaptation(run: RunConfig, q: FloatArray) -> float:
     R: FloatArray = np.zeros((len(root), len(root)))
     for posture, dq, ddq in _desired_joints(run, q):
         Y = arm.regressor(posture, dq, dq, ddq)
-        if Y.shape[1] < len(root):  # it adapts to friction
+        if Y.shape[1] < len(root):  # the law also adapts to friction
             Y = np.concatenate([Y, np.diag(dq), np.diag(np.sign(dq))], axis=1)
         scaled = Y * root / brake
         R += scaled.T @ scaled / _POSTURES

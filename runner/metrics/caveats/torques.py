@@ -7,11 +7,11 @@ from runner.metrics.caveats.rule import TraceRule, called, percent
 from runner.metrics.caveats.setting import Setting, Signals
 
 _AT_LIMIT = 1.0 - 1e-12  # as in the metric saturation_fraction
-_IDEAL = "kinematic"  # the plant whose joints go where they are told; its torques are those that this would need
+_IDEAL = "kinematic"  # the plant with ideal joint motion; its torques are those that the motion would need
 
 
 def _saturated(signals: Signals, setting: Setting) -> FloatArray:
-    """Return the share of ticks that each joint is at its torque limit, shape (..., nq)."""
+    """Return the fraction of ticks at which each joint is at its torque limit, shape (..., nq)."""
     return signals.saturation
 
 
@@ -29,15 +29,15 @@ def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
 
 
 def _chatter(signals: Signals, setting: Setting) -> FloatArray:
-    """Return the share of its loop's ticks at which each joint jumps from limit to opposite limit, shape (..., nq)."""
+    """Return the fraction of loop ticks with a torque jump from one limit to the opposite one, shape (..., nq)."""
     if setting.plant == _IDEAL:
         return np.zeros_like(signals.saturation)
     often = np.flatnonzero(signals.saturation.reshape(-1, signals.saturation.shape[-1]).any(axis=0))
     if not len(often):
         return signals.saturation
     share: FloatArray = np.zeros_like(signals.saturation)
-    tau = np.ascontiguousarray(signals.tau.swapaxes(-1, -2)[..., often, :])  # a row for each joint: quicker
-    leap = 2.0 * _AT_LIMIT * signals.limits[..., often, None]  # no torque can change by more
+    tau = np.ascontiguousarray(signals.tau.swapaxes(-1, -2)[..., often, :])  # one row for each joint is faster
+    leap = 2.0 * _AT_LIMIT * signals.limits[..., often, None]  # largest possible change of a torque
     jumps = (np.abs(tau[..., 1:] - tau[..., :-1]) >= leap).sum(axis=-1)
     share[..., often] = jumps * setting.ticks_per_torque[often] / tau.shape[-1]
     return np.minimum(share, 1.0)

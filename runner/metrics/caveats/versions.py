@@ -14,11 +14,11 @@ Thresholds = Mapping[str, Mapping[str, float]]
 
 
 def changes_since(rules: Mapping[str, Any] | None, today: Thresholds | None = None) -> list[str]:
-    """Return with what else than today a run's caveats were looked for, a text for each; none where nothing differs.
+    """Return a message for each difference between the rules of a run's caveats and the current rules.
 
     Args:
-        rules: Digest and thresholds as stored with the caveats; None of a run that was cut short, which has none.
-        today: The thresholds to compare with; None for those of `conf/`.
+        rules: Digest and thresholds stored with the caveats; None for an aborted run, which has none.
+        today: Current thresholds; None for those of `conf/`.
     """
     if rules is None:
         return []
@@ -33,7 +33,7 @@ def changes_since(rules: Mapping[str, Any] | None, today: Thresholds | None = No
 
 @cache
 def our_thresholds() -> Thresholds:
-    """Return the thresholds that our config files give."""
+    """Return the thresholds in the built-in config files."""
     values = yaml.safe_load((conf_dir() / "caveats.yaml").read_text(encoding="utf-8"))["caveats"]
     return dict(CaveatsConfig.model_validate(values).model_dump())
 
