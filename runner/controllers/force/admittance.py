@@ -22,7 +22,7 @@ Six = Annotated[list[float], Field(min_length=6, max_length=6)]
 
 
 class AdmittanceConfig(StrictModel):
-    """Config of admittance control; lists hold translation along x, y, z and rotation about them, of the base.
+    """Config of admittance control; lists have translation along and rotation about x, y, z of the base.
 
     Attributes:
         kind: Registry name of the controller.
@@ -30,13 +30,13 @@ class AdmittanceConfig(StrictModel):
         mass: M, in kg and kg m^2.
         damping: B, in N s/m and N m s/rad.
         stiffness: K, in N/m and N m/rad; 0 lets an axis be guided by hand.
-        wrench_frame: Where the wrench is taken to act: at the tool's tip, or at the flange.
-        compensation: What is taken off the sensor's reading: its bias, and the tool's weight, and its inertia.
-        tip_speed: Largest speed at which the spring's rest goes to a goal that jumps, in m/s.
-        limit_approach: How fast a joint may near its position limit, as a share of what is left, in 1/s.
-        sensor: What is believed of the wrist's sensor: its bias, rotation and height.
-        check_stability: Whether a wall is refused that the sampled law would bounce on with ideal joints, as those of a
-            kinematic plant; behind servos nothing is refused, and a caveat tells (unstable_contact).
+        wrench_frame: Reference point of the wrench: the tool's tip or the flange.
+        compensation: Loads subtracted from the sensor reading: none, bias and tool weight, or also the tool's inertia.
+        tip_speed: Maximum speed of the spring's rest position towards a goal that jumps, in m/s.
+        limit_approach: Maximum speed of a joint towards its position limit, per distance to it, in 1/s.
+        sensor: Nominal config of the wrist sensor: bias, rotation and height.
+        check_stability: True if a wall is rejected on which the sampled law would bounce with ideal joints, such as
+            those of a kinematic plant. With servos no wall is rejected; the caveat unstable_contact reports it.
     """
 
     kind: Literal["admittance"]
@@ -58,18 +58,18 @@ class AdmittanceConfig(StrictModel):
 
 
 class AdmittanceControl(PositionController):
-    r"""The law of AdmittanceFilter around a desired motion, led by a position-controlled arm.
+    r"""The law of AdmittanceFilter around a desired motion, for a position-controlled arm.
 
     .. math:: M \ddot e + B \dot e + K e = f, \qquad x_c = x_d + e
 
-    f is what the wrist's sensor feels of the world, its bias and the tool off, seen from the tip (Meca500 report,
-    sections 4 to 6), so that a force through the tip turns nothing. Orientation: that of home, turned by e. Where the
-    joints cannot follow, at their limits or at a singular posture, the filter is put where the arm is, as fast as
-    it is, and stays stable there; `messages` reports when it was.
+    f is the external wrench from the wrist sensor, about the tip (Meca500 report, sections 4 to 6), so a force through
+    the tip causes no rotation; wrench_frame and compensation can change this. The orientation is that of home, rotated
+    by e. If the joints cannot follow, at their limits or near a singular configuration, the filter is set to the pose
+    and velocity of the arm and so stays stable; `messages` reports when this happened.
 
     Args:
         robot: The robot.
-        config: The law's numbers.
+        config: Config of the law.
     """
 
     def __init__(self, robot: Robot, config: AdmittanceConfig) -> None:
@@ -84,7 +84,7 @@ class AdmittanceControl(PositionController):
         self.external_wrench = np.zeros(6)
 
     def reset(self, q: FloatArray) -> None:
-        """Rest where the arm stands; see PositionController."""
+        """Start at rest at the arm's configuration; see PositionController."""
         self._filter.reset()
         self._motion.reset(q)
         self._compensation.reset()
@@ -92,7 +92,7 @@ class AdmittanceControl(PositionController):
         self._reading, self.external_wrench = np.zeros(6), np.zeros(6)
 
     def update_wrench(self, reading: FloatArray) -> None:
-        """Take the wrist sensor's reading; see WrenchFeedbackController."""
+        """Store the wrist sensor's reading; see WrenchFeedbackController."""
         self._reading = reading
 
     def joint_positions(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
@@ -107,11 +107,11 @@ class AdmittanceControl(PositionController):
         if not self._motion.free:
             held, turned = reached.translation - rest, reached.rotation @ self._orientation.T
             way = np.concatenate([held - translation, pin.log3(turned @ rotation.T)])
-            self._filter.place(held, turned, way / self._config.period)  # as fast as the arm: it slows, not stops
+            self._filter.place(held, turned, way / self._config.period)  # keeps the arm's velocity
         return command
 
     def messages(self) -> list[str]:
-        """Return where joints or the reach have held the tool back; see WrenchFeedbackController."""
+        """Return the joint limits and singularities that held the tool back; see WrenchFeedbackController."""
         return self._motion.messages()
 
 
@@ -122,12 +122,12 @@ def build(config: AdmittanceConfig, robot: Robot) -> tuple[Loop, ...]:
     """Build the single loop of a config; it commands every joint.
 
     Raises:
-        ConfigError: for an arm of fewer than six joints, or a law that no mass on a damper and a spring has.
+        ConfigError: if the arm has fewer than six joints, or the law is not valid; see Admittance.
     """
     controller = AdmittanceControl(robot, config)
     return (Loop(robot.stage_names[-1], slice(0, robot.model.nq), config.period, controller, uses_wrench=True),)
 
 
 def start_posture(config: AdmittanceConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
-    """Return where the arm starts: at home's orientation."""
+    """Return the joint positions at the start, with the orientation of home; see task_start."""
     return task_start("pose", robot, start)

@@ -20,10 +20,10 @@ class Admittance:
     Attributes:
         mass: M, shape (6,), in kg and kg m^2.
         damping: B, shape (6,), in N s/m and N m s/rad.
-        stiffness: K, shape (6,), in N/m and N m/rad; zero lets an axis be guided by hand.
+        stiffness: K, shape (6,), in N/m and N m/rad; 0 lets an axis be guided by hand.
 
     Raises:
-        ConfigError: if M is not positive definite, or B or K not positive semi-definite; names the axes.
+        ConfigError: if M is not positive definite, or B or K not positive semi-definite; the message lists the axes.
     """
 
     mass: FloatArray
@@ -50,7 +50,7 @@ class Admittance:
 
 
 def discretise(law: Admittance, period: float) -> tuple[FloatArray, FloatArray]:
-    r"""Return the law sampled exactly for a load that is held over a period (zero-order hold).
+    r"""Return the law sampled exactly for a load that is constant over a period (zero-order hold).
 
     .. math::
 
@@ -64,7 +64,7 @@ def discretise(law: Admittance, period: float) -> tuple[FloatArray, FloatArray]:
     Returns:
         Phi, shape (6, 2, 2), and Gamma, shape (6, 2): (x, dx) at the next sample is Phi (x, dx) + Gamma f.
     """
-    from scipy.linalg import expm  # for few configs
+    from scipy.linalg import expm  # only a few configs need it
 
     continuous = np.zeros((6, 3, 3))
     continuous[:, 0, 1] = 1.0
@@ -76,10 +76,10 @@ def discretise(law: Admittance, period: float) -> tuple[FloatArray, FloatArray]:
 class AdmittanceFilter:
     """The law as a filter from a wrench to a displacement of a frame, sampled exactly at any rate.
 
-    Axes are those of the frame in which the wrench is given, which does not turn along. Rotation is that of a body:
-    the moment accelerates the angular velocity along fixed axes, each period's turn is composed onto the rotation
-    before it, and the spring pulls along the rotation vector (the logarithm). About one axis that is the law to
-    rounding; where the axis changes as it turns, it converges with the period. The report integrates angles.
+    The axes are those of the fixed frame of the wrench. Rotation is that of a rigid body. The moment accelerates the
+    angular velocity along the fixed axes, each period's rotation is composed onto the last one, and the spring acts
+    along the rotation vector (the logarithm). About one axis this is the law to rounding. If the axis changes, it
+    converges with the period. The report integrates angles instead.
 
     Args:
         law: The law.
@@ -93,25 +93,25 @@ class AdmittanceFilter:
         self.reset()
 
     def reset(self) -> None:
-        """Rest where the spring is relaxed."""
+        """Start at rest with the spring relaxed."""
         self._displacement = np.zeros(6)
         self._velocity = np.zeros(6)
         self._rotation = pin.Quaternion.Identity()
 
     @property
     def translation(self) -> FloatArray:
-        """Displacement from where the spring is relaxed, shape (3,), in m."""
+        """Displacement from the relaxed spring, shape (3,), in m."""
         return self._displacement[:3].copy()
 
     @property
     def rotation(self) -> FloatArray:
-        """Rotation from there, shape (3, 3)."""
+        """Rotation from the relaxed spring, shape (3, 3)."""
         matrix: FloatArray = self._rotation.matrix()
         return matrix
 
     @property
     def displacement(self) -> FloatArray:
-        """Translation in m and rotation vector, of at most half a turn, in rad, shape (6,)."""
+        """Translation in m and rotation vector in rad, at most half a turn, shape (6,)."""
         return self._displacement.copy()
 
     @property
@@ -120,7 +120,7 @@ class AdmittanceFilter:
         return self._velocity.copy()
 
     def place(self, translation: FloatArray, rotation: FloatArray, velocity: FloatArray) -> None:
-        """Move on from where something holds the frame.
+        """Set the state of the filter to that of a constrained frame.
 
         Args:
             translation: Displacement, shape (3,), in m.
@@ -132,7 +132,7 @@ class AdmittanceFilter:
         self._velocity = velocity.copy()
 
     def step(self, wrench: FloatArray) -> None:
-        """Move on by one period under a wrench, force in N and moment in N m, shape (6,)."""
+        """Advance one period under a wrench, force in N and moment in N m, shape (6,)."""
         x, v = self._displacement, self._velocity
         moved = self._xx * x + self._xv * v + self._xf * wrench
         self._velocity = self._vx * x + self._vv * v + self._vf * wrench

@@ -13,22 +13,22 @@ from runner.controllers.force.admittance_filter import AXES, Admittance, discret
 def contact_matrix(
     Phi: FloatArray, Gamma: FloatArray, period: float, stiffness: float, damping: float, delay: int
 ) -> FloatArray:
-    r"""Return the matrix that takes one axis in contact with a wall from one tick to the next.
+    r"""Return the transition matrix over one tick of an axis in contact with a wall.
 
-    The arm reaches each command by the next tick, and the filter feels the wall d ticks late:
+    The arm reaches each command by the next tick, and the wall's force reaches the filter d ticks late:
 
     .. math:: f_k = -k x_{k-d} - c (x_{k-d} - x_{k-d-1}) / h
 
     Args:
         Phi: The axis' sampled law, shape (2, 2); see discretise.
-        Gamma: Its input, shape (2,).
+        Gamma: The axis' sampled input, shape (2,).
         period: h, in s.
         stiffness: k of the wall, in N/m, or N m/rad.
         damping: c of the wall, in N s/m, or N m s/rad.
-        delay: d, in ticks: 0 for an arm that follows exactly, more for commands that act late.
+        delay: d, in ticks: 0 for an arm that follows exactly, more for delayed commands.
 
     Returns:
-        For the state (dx_k, x_k, x_{k-1} ... x_{k-d-1}), shape (d + 3, d + 3).
+        Matrix of the state (dx_k, x_k, x_{k-1} ... x_{k-d-1}), shape (d + 3, d + 3).
     """
     (xx, xv), (vx, vv) = Phi
     xf, vf = Gamma
@@ -43,7 +43,7 @@ def contact_matrix(
 
 
 def spectral_radius(law: Admittance, period: float, axis: int, stiffness: float, damping: float, delay: int) -> float:
-    """Return the largest modulus of the contact's eigenvalues: it is stable below 1; see contact_matrix."""
+    """Return the spectral radius of the contact, which is stable below 1; see contact_matrix."""
     Phi, Gamma = discretise(law, period)
     return _radius(contact_matrix(Phi[axis], Gamma[axis], period, stiffness, damping, delay))
 
@@ -51,7 +51,7 @@ def spectral_radius(law: Admittance, period: float, axis: int, stiffness: float,
 def stiffest_wall(law: Admittance, period: float, axis: int, damping: float, delay: int) -> float:
     """Return the wall stiffness up to which contact is stable, in N/m or N m/rad; see contact_matrix.
 
-    Zero where no wall is soft enough, as for an axis without damping.
+    0 if no wall is soft enough, as for an axis without damping.
     """
     from scipy.optimize import brentq  # takes longer to import than a run without a wall
 
@@ -59,7 +59,7 @@ def stiffest_wall(law: Admittance, period: float, axis: int, damping: float, del
         return _radius(contact_matrix(Phi[axis], Gamma[axis], period, 10.0**exponent, damping, delay)) - 1.0
 
     Phi, Gamma = discretise(law, period)
-    middle = -float(np.log10(Gamma[axis, 0]))  # there a period under the wall's force undoes what caused it
+    middle = -float(np.log10(Gamma[axis, 0]))  # the wall's force reverses its displacement in one period
     exponents = np.linspace(middle - 8.0, middle + 3.0, 111)
     unstable = [excess(exponent) >= 0.0 for exponent in exponents]
     first = unstable.index(True)
@@ -71,10 +71,10 @@ def _radius(matrix: FloatArray) -> float:
 
 
 def check_wall(law: Admittance, period: float, stiffness: float, damping: float, delay: int) -> None:
-    """Check that every axis of translation may touch a wall; see contact_matrix.
+    """Check that contact with a wall is stable along every axis of translation; see contact_matrix.
 
     Raises:
-        ConfigError: if one would be unstable; names the stiffness that would not.
+        ConfigError: if it is unstable along one; the message has the stiffness up to which it is stable.
     """
     problems = []
     for axis in range(3):

@@ -14,28 +14,28 @@ ReadingName = Literal["wrist", "joint_torque"]
 
 
 class ForceReading(Protocol):
-    """A reading of the world's wrench on the tip."""
+    """A measurement of the external wrench on the tip."""
 
     def reset(self) -> None:
-        """Forget an earlier run."""
+        """Clear the state of an earlier run."""
 
     def update_wrench(self, reading: FloatArray) -> None:
-        """Take the wrist sensor's reading, shape (6,); see WrenchFeedbackController."""
+        """Store the wrist sensor's reading, shape (6,); see WrenchFeedbackController."""
 
     def read_joint_torques(self, reading: FloatArray) -> None:
-        """Take the mean torques on the links since the last tick, shape (nq,); see ControlLaw."""
+        """Store the mean torques on the links since the last tick, shape (nq,); see ControlLaw."""
 
     def wrench(self, q: FloatArray, dq: FloatArray) -> FloatArray:
-        """Return force in N and moment about the tip in N m, along the base's axes, shape (6,)."""
+        """Return force in N and moment about the tip in N m, in the base frame, shape (6,)."""
         ...
 
 
 class WristReading:
-    """The wrist sensor's reading, its bias and the tool's weight taken off.
+    """External wrench from the wrist sensor's reading, less its bias and the tool's weight.
 
     Args:
         robot: The robot.
-        sensor: What is believed of the sensor.
+        sensor: Nominal config of the sensor.
         period: Time between two readings, in s.
     """
 
@@ -44,12 +44,12 @@ class WristReading:
         self._reading = np.zeros(6)
 
     def reset(self) -> None:
-        """Forget an earlier run; see ForceReading."""
+        """Clear the state of an earlier run; see ForceReading."""
         self._compensation.reset()
         self._reading = np.zeros(6)
 
     def update_wrench(self, reading: FloatArray) -> None:
-        """Take the reading; see ForceReading."""
+        """Store the reading; see ForceReading."""
         self._reading = reading
 
     def read_joint_torques(self, reading: FloatArray) -> None:
@@ -61,15 +61,15 @@ class WristReading:
 
 
 class JointTorqueReading:
-    r"""The force on the tip from torques in the joints, by the balance of momenta over the last period h.
+    r"""External force on the tip from joint torques, by the momentum balance over the last period h.
 
     .. math::
 
         \bar d = \frac{p_k - p_{k-1}}{h} - \bar\tau - \frac{b_{k-1} + b_k}{2}, \quad p = M \dot q, \;
         b = C^T \dot q - G, \qquad \bar f = \bar J^T \bar d = \Lambda J M^{-1} \bar d
 
-    as in MomentumObserver, without its filter. It is the mean of the period, so half a period late, and needs no
-    acceleration. What else the model does not know, such as a wrong mass, is read as force.
+    as in MomentumObserver, without its filter. The result is the mean over the period, so it is half a period late. It
+    needs no acceleration. Model errors, such as a wrong mass, appear as force.
 
     Args:
         robot: The nominal robot.
@@ -82,7 +82,7 @@ class JointTorqueReading:
         self.reset()
 
     def reset(self) -> None:
-        """Forget an earlier run; see ForceReading."""
+        """Clear the state of an earlier run; see ForceReading."""
         self._before: tuple[FloatArray, FloatArray] | None = None
         self._acted: FloatArray | None = None
 
@@ -90,11 +90,11 @@ class JointTorqueReading:
         """Do nothing."""
 
     def read_joint_torques(self, reading: FloatArray) -> None:
-        """Take the mean torques since the last tick; see ForceReading."""
+        """Store the mean torques since the last tick; see ForceReading."""
         self._acted = reading
 
     def wrench(self, q: FloatArray, dq: FloatArray) -> FloatArray:
-        """Return the mean force on the tip since the last tick, and no moment; see ForceReading."""
+        """Return the mean force on the tip since the last tick, with a moment of 0; see ForceReading."""
         p, b = self._arm.momentum(q, dq, self._model.gravity)
         found = np.zeros(6)
         if self._before is not None and self._acted is not None:

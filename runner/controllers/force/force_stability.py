@@ -8,11 +8,11 @@ from runner.base.arrays import FloatArray
 
 
 class ForceLaw(Protocol):
-    """The gains of a law that pushes, as HybridForceConfig has them."""
+    """Gains of a force law, as in HybridForceConfig."""
 
     @property
     def force_gain(self) -> float:
-        """Gain of the force's error."""
+        """Gain of the force error."""
         ...
 
     @property
@@ -22,9 +22,9 @@ class ForceLaw(Protocol):
 
 
 def force_loop_radius(rate: float, force_gain: float, damping: float, delay: int = 0) -> float:
-    r"""Return how a small motion in contact grows in a period: the spectral radius of the force loop's map.
+    r"""Return the spectral radius of the force loop over one period, in contact with a wall.
 
-    A mass on a wall of stiffness k under a push that is held for a period h and is d periods late,
+    A mass on a wall of stiffness k is pushed by u, constant over a period h and d periods late,
 
     .. math:: m \ddot x = u - k x, \qquad u = -k k_f x - 2 \xi m \omega_c \dot x, \qquad
         \omega_c^2 = k (1 + k_f) / m,
@@ -33,7 +33,7 @@ def force_loop_radius(rate: float, force_gain: float, damping: float, delay: int
 
     Args:
         rate: omega_c h.
-        force_gain: k_f; infinite is a position loop on no wall.
+        force_gain: k_f; infinite for a position loop without a wall.
         damping: xi.
         delay: d.
     """
@@ -44,16 +44,16 @@ def force_loop_radius(rate: float, force_gain: float, damping: float, delay: int
 def touch_radius(
     law: ForceLaw, mass: float, stiffness: float, drag: float, nominal_stiffness: float, period: float, delay: int
 ) -> float:
-    """Return the same of a law on a damping wall that differs from its nominal one.
+    """Return the spectral radius of a force loop on a damping wall that differs from the nominal wall.
 
     Args:
-        law: The law's gains.
-        mass: Of the tip along the normal, in kg.
-        stiffness: Of the wall, in N/m.
-        drag: Its damping, in N s/m.
-        nominal_stiffness: The law's nominal stiffness, in N/m.
+        law: Gains of the law.
+        mass: Mass of the tip along the normal, in kg.
+        stiffness: Stiffness of the wall, in N/m.
+        drag: Damping of the wall, in N s/m.
+        nominal_stiffness: Wall stiffness in the law, in N/m.
         period: h, in s.
-        delay: Periods from a push until it acts.
+        delay: Delay of the push, in periods.
     """
     brake = 2.0 * law.force_damping * float(np.sqrt(nominal_stiffness * (1.0 + law.force_gain) * mass))
     wall = np.array([stiffness * period, drag]) * period / mass
@@ -61,12 +61,12 @@ def touch_radius(
 
 
 def _radius(passive: FloatArray, gain: FloatArray, delay: int) -> float:
-    """Return the spectral radius of a unit mass under passive . (x, v) and a held push gain . (x, v), a period long."""
-    from scipy.linalg import expm  # for few configs
+    """Return the spectral radius of a unit mass under passive . (x, v) and a sampled push gain . (x, v)."""
+    from scipy.linalg import expm  # only a few configs need it
 
     step = expm(np.array([[0.0, 1.0, 0.0], [*passive, 1.0], [0.0, 0.0, 0.0]]))
     motion, push = step[:2, :2], step[:2, 2]
-    goes: FloatArray = np.zeros((2 + delay, 2 + delay))  # position, velocity, and the pushes to come, the next first
+    goes: FloatArray = np.zeros((2 + delay, 2 + delay))  # position, velocity, and the pending pushes, the next first
     goes[:2, :2] = motion
     if delay:
         goes[:2, 2] = push
@@ -92,20 +92,23 @@ def force_loop_limit(force_gain: float, damping: float, delay: int = 0) -> float
 
 
 def delay_limit(late: int) -> float:
-    """Return the largest omega_n h of a critically damped position loop that is so many periods late: 1, 0.4262, ..."""
+    """Return the largest stable omega_n h of a critically damped position loop with a delay in periods.
+
+    It is 1 without a delay and 0.4262 for one period.
+    """
     return force_loop_limit(np.inf, 1.0, late)
 
 
 def pattern_limit(missed: int) -> float:
-    """Return the largest omega_n h where after each hit so many periods are missed: the law at a longer period."""
+    """Return the largest stable omega_n h if so many periods are missed after each hit, which lengthens the period."""
     return delay_limit(0) / (missed + 1)
 
 
 def miss_radius(rate: float, missed: float, damping: float = 1.0) -> float:
-    r"""Return how the mean square of a small motion grows in a period, where each is missed with a probability p.
+    r"""Return the growth of the mean square of a small motion per period, if each is missed with probability p.
 
-    A unit mass has position, velocity and the acceleration that is held; in a period that is hit the law renews it, in
-    one that is missed it stays:
+    The state of a unit mass is position, velocity and commanded acceleration. A hit (H) updates the acceleration, a
+    miss (S) keeps it:
 
     .. math:: \rho ((1 - p) H \otimes H + p S \otimes S)
 
@@ -120,7 +123,7 @@ def miss_radius(rate: float, missed: float, damping: float = 1.0) -> float:
 
 
 def miss_limit(rate: float, damping: float = 1.0) -> float:
-    """Return the largest probability of a miss that a loop bears in the mean square; 0 where it bears none."""
+    """Return the largest probability of a miss at which the mean square is stable; 0 if it never is."""
     from scipy.optimize import brentq  # takes longer to import than a short run to simulate
 
     if miss_radius(rate, 0.0, damping) >= 1.0:
@@ -129,7 +132,7 @@ def miss_limit(rate: float, damping: float = 1.0) -> float:
 
 
 def _maps(rate: float, damping: float) -> tuple[FloatArray, FloatArray]:
-    """Return the maps of a hit and of a miss, shapes (3, 3); the period is the unit of time."""
+    """Return the state transitions of a hit and of a miss, shapes (3, 3); the period is the unit of time."""
     miss = np.array([[1.0, 1.0, 0.5], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
     renewed = np.eye(3)
     renewed[2] = [-(rate**2), -2.0 * damping * rate, 0.0]

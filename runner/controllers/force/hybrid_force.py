@@ -16,18 +16,18 @@ from runner.sensing.force_torque import ForceTorqueConfig
 
 
 class HybridForceConfig(TipForceConfig):
-    """Config of hybrid force and motion control; the motion is that along the wall.
+    """Config of hybrid force and motion control, with motion along a wall.
 
     Attributes:
         kind: Registry name of the controller.
-        normal: Out of the wall, as it is believed, a unit vector along the base's axes.
-        wall_stiffness: Of the wall, as it is believed, in N/m; it sets the damping.
-        force: f_d, how hard the tip is to push, in N.
-        force_gain: k_f of the force's error; 0 leaves f_d as it is.
-        integral_gain: k_i, in 1/s; 0 is none. It integrates while something is felt.
+        normal: Nominal normal out of the wall, a unit vector in the base frame.
+        wall_stiffness: Nominal stiffness of the wall, in N/m; it sets the damping.
+        force: Desired contact force f_d, in N.
+        force_gain: Gain k_f of the force error; 0 leaves f_d unchanged.
+        integral_gain: Integral gain k_i of the force error, in 1/s; 0 for no integral. It integrates only in contact.
         force_damping: xi of the motion into the wall.
-        force_source: Where the force is read: at the wrist, or from torque sensors in the joints.
-        sensor: What is believed of the wrist's sensor: its bias, rotation and height.
+        force_source: Source of the contact force: the wrist sensor or the joint torque sensors.
+        sensor: Nominal config of the wrist sensor: bias, rotation and height.
     """
 
     kind: Literal["hybrid_force"]
@@ -49,20 +49,20 @@ class HybridForce(Controller):
         \tau = J^T [\Lambda (\Omega F^* - \dot J \dot q) - n (f_d + k_f (f_d - f) + k_i \int (f_d - f) dt
         + 2 \xi m_n \omega_c \, n \cdot v)] + V + G + N^T \tau_0, \qquad \Omega = 1 - n n^T
 
-    with the tip's mass along the normal m_n = 1 / (n^T Lambda^-1 n) and omega_c = sqrt(k (1 + k_f) / m_n), so that on
-    a wall of the believed stiffness k
+    with the tip's mass along the normal m_n = 1 / (n^T Lambda^-1 n) and omega_c = sqrt(k (1 + k_f) / m_n). With k_i = 0
+    and a wall of the nominal stiffness k, the depth d obeys
 
     .. math:: m_n \ddot d + 2 \xi m_n \omega_c \dot d + k (1 + k_f) \, d = (1 + k_f) f_d
 
-    of the depth d. Before the wall is felt the tip goes there at (1 + k_f) f_d / (2 xi m_n omega_c). F* is TipTask's.
+    Before contact the tip approaches the wall at (1 + k_f) f_d / (2 xi m_n omega_c). F* is that of TipTask.
 
     Args:
-        task: What pushes.
-        config: The law's numbers.
-        reading: What reads the force.
+        task: Force task of the robot.
+        config: Config of the law.
+        reading: Measurement of the contact force.
 
     Raises:
-        ConfigError: where the arm cannot push along the normal, or that leaves no direction to move in.
+        ConfigError: if the arm cannot push along the normal, or has no other direction of motion.
     """
 
     reads_joint_torques = True
@@ -81,16 +81,16 @@ class HybridForce(Controller):
         return self._tip.velocity_gain
 
     def reset(self) -> None:
-        """Forget an earlier run; see Controller."""
+        """Clear the state of an earlier run; see Controller."""
         self._reading.reset()
         self._sum, self.external_wrench = 0.0, np.zeros(6)
 
     def update_wrench(self, reading: FloatArray) -> None:
-        """Take the wrist sensor's reading; see WrenchFeedbackController."""
+        """Store the wrist sensor's reading; see WrenchFeedbackController."""
         self._reading.update_wrench(reading)
 
     def read_joint_torques(self, reading: FloatArray) -> None:
-        """Take the joint torque sensors' reading; see ControlLaw."""
+        """Store the readings of the joint torque sensors; see ControlLaw."""
         self._reading.read_joint_torques(reading)
 
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
@@ -117,10 +117,10 @@ CONFIG = HybridForceConfig
 
 
 def build(config: HybridForceConfig, robot: Robot) -> tuple[Loop, ...]:
-    """Make the loops that a config describes: one, or one for each stage where the last one pushes alone.
+    """Build the loops of a config: one, or one for each stage if only the last stage pushes.
 
     Raises:
-        ConfigError: where a value misses a stage, the arm has too few joints, or cannot push and move.
+        ConfigError: if a value is missing for a stage, or the arm has too few joints or cannot push and move.
     """
     task = find_force_task(config, robot)
     reading: ForceReading = (

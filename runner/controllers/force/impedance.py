@@ -17,11 +17,11 @@ Three = Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]
 class ImpedanceConfig(TipForceConfig):
     """Config of impedance control; lists hold values along x, y, z of the base.
 
-    The natural frequency and damping ratio are those of the stages that carry the one that acts; see actuated_stages.
+    Natural frequency and damping ratio apply to the stages below the compliant one; see actuated_stages.
 
     Attributes:
         kind: Registry name of the controller.
-        tip_stiffness: K_d, in N/m; 0 lets an axis go.
+        tip_stiffness: K_d, in N/m; 0 leaves an axis free.
         tip_damping: D_d, in N s/m.
     """
 
@@ -31,21 +31,21 @@ class ImpedanceConfig(TipForceConfig):
 
 
 class Impedance(Controller):
-    r"""A tip that gives way as a spring and a damper do, with the mass that it has (Hogan 1985).
+    r"""Spring and damper at the tip, with its natural inertia (Hogan 1985).
 
     .. math::
 
         \tau = J^T [\Lambda (\ddot x_d - \dot J \dot q) + K_d (x_d - x) + D_d (\dot x_d - \dot x)] + V + G + N^T \tau_0
 
-    so that under a force f of the world, with M_d = Lambda,
+    so that under an external force f, with M_d = Lambda,
 
     .. math:: \Lambda (\ddot x - \ddot x_d) + D_d (\dot x - \dot x_d) + K_d (x - x_d) = f
 
-    Another M_d would need f.
+    Another M_d would require a measurement of f.
 
     Args:
-        tip: What gives way.
-        config: The law's numbers.
+        tip: TipForce of the compliant stage.
+        config: Config of the law.
     """
 
     def __init__(self, tip: TipForce, config: ImpedanceConfig) -> None:
@@ -53,7 +53,7 @@ class Impedance(Controller):
         self._stiffness, self._damping = np.diag(config.tip_stiffness), np.diag(config.tip_damping)
 
     def reset(self) -> None:
-        """Do nothing: the law keeps nothing."""
+        """Do nothing: the law has no state."""
 
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the torques of the law above; see Controller.torque."""
@@ -67,10 +67,10 @@ CONFIG = ImpedanceConfig
 
 
 def build(config: ImpedanceConfig, robot: Robot) -> tuple[Loop, ...]:
-    """Make the loops that a config describes: one, or one for each stage where the last one gives way alone.
+    """Build the loops of a config: one, or one for each stage if only the last stage is compliant.
 
     Raises:
-        ConfigError: where a value misses a stage, or the arm has too few joints.
+        ConfigError: if a value is missing for a stage, or the arm has too few joints.
     """
     task = find_force_task(config, robot)
     return task.loops(Impedance(task.tip, config), uses_wrench=False)

@@ -21,19 +21,18 @@ from runner.symbolic.maths import NUMPY
 
 
 class TipForceConfig(StrictModel):
-    """What the configs of laws have in common that put a force on the tip.
+    """Config of every law that commands a force on the tip.
 
     Attributes:
-        actuated_stages: What acts on the world where stages ride on each other: the whole arm, or the last stage alone,
-            while those below hold its base on the way and know its mass.
-        natural_frequency: omega_n of the tip's motion where it is led, in rad/s; of each stage. The whole arm takes the
-            last stage's, and so for the next two.
-        damping_ratio: xi of it.
-        period: Time between two ticks, in s.
+        actuated_stages: Stages that exert the force: the whole arm, or only the last stage. The lower stages then keep
+            its base on the path, and their models include its mass.
+        natural_frequency: omega_n of the tip motion, in rad/s, by stage; the whole arm uses that of the last stage.
+        damping_ratio: xi of the tip motion, by stage; the whole arm uses that of the last stage.
+        period: Time between two ticks, in s, by stage; the whole arm uses that of the last stage.
         gravity_compensation: True if the law includes the gravity term.
         feedforward: True if the law uses the desired velocity and acceleration.
         singularity_damping: As in operational-space control.
-        null_space_frequency: omega_n of the posture task, home, of an arm with joints to spare, in rad/s.
+        null_space_frequency: omega_n of the posture task to home if the arm has redundant joints, in rad/s.
     """
 
     actuated_stages: Literal["whole", "last_stage"]
@@ -47,21 +46,21 @@ class TipForceConfig(StrictModel):
 
 
 class TaskState(NamedTuple):
-    """The tip's task in one state, along the axes of the arm's own base; rows as the task has them.
+    """State of the tip task, in the base frame of the arm and along the rows of the task.
 
     Attributes:
-        axes: The task's rows in the robot's base frame, shape (rows, 3): what a vector there has along them.
+        axes: Directions of the task's rows in the robot's base frame, shape (rows, 3).
         q: Joint positions of the arm, shape (n,), in rad.
-        dq: Joint velocities, likewise, in rad/s.
-        gravity: Along the base's axes, shape (3,), in m/s^2.
-        J: The task's Jacobian, shape (rows, n).
+        dq: Joint velocities of the arm, shape (n,), in rad/s.
+        gravity: Gravity in the base frame of the arm, shape (3,), in m/s^2.
+        J: Jacobian of the task, shape (rows, n).
         dJ_dq: dJ/dt dq, shape (rows,), in m/s^2.
         M_inverse_J: M^-1 J^T, shape (n, rows).
         error: Desired less actual position, shape (rows,), in m.
-        lag: Desired less actual velocity, likewise, in m/s; without feedforward nothing is desired but rest.
-        velocity: Velocity of the tip as the robot's base sees it, likewise, in m/s.
-        asked: F* of TipTask, likewise, in m/s^2.
-        desired: Desired acceleration, likewise.
+        lag: Desired less actual velocity, shape (rows,), in m/s; the desired velocity is 0 without feedforward.
+        velocity: Velocity of the tip relative to the robot's base, shape (rows,), in m/s.
+        asked: F* of TipTask, shape (rows,), in m/s^2.
+        desired: Desired acceleration, shape (rows,), in m/s^2; 0 without feedforward.
     """
 
     axes: FloatArray
@@ -84,20 +83,20 @@ class TaskState(NamedTuple):
 
 
 class TipForce:
-    r"""The joint torques that give a tip an acceleration a and put a force F on it beside, with a null space.
+    r"""Joint torques for a tip acceleration a and an additional tip force F, with a null space.
 
     .. math:: \tau = h + J^T (\Lambda (a - \dot J \dot q) + F) + N^T \tau_0
 
-    as WholeBody, whose law it is with F = 0. A stage that rides has its own Lambda, J and h as if its base stood still;
-    target, velocities and gravity are seen from there, turned by R.
+    With F = 0 this is the law of WholeBody. A mounted stage has its own Lambda, J and h, as if its base were at rest;
+    target, velocities and gravity are expressed in its base frame.
 
     Args:
         robot: The robot.
-        stage: Index of the stage that acts; None is the whole arm.
-        law: The numbers of the tip's motion and of the posture.
+        stage: Index of the stage that exerts the force; None for the whole arm.
+        law: Config of the tip motion and of the posture task.
 
     Raises:
-        ConfigError: if the arm has fewer joints than the tip has directions to go, or leaves nothing to choose.
+        ConfigError: if the arm has fewer joints than the tip has directions of motion, or the tip cannot move.
     """
 
     def __init__(self, robot: Robot, stage: int | None, law: WholeBodyLaw) -> None:
@@ -119,16 +118,16 @@ class TipForce:
 
     @property
     def velocity_gain(self) -> VelocityGain:
-        """K_v of the motion that F* asks for."""
+        """K_v of F*."""
         return VelocityGain(0.0, float(self._task.numbers.k_v))
 
     @property
     def directions(self) -> FloatArray:
-        """Directions in which the arm can move its tip, in its own base frame, shape (rows, 3)."""
+        """Directions of motion of the tip in the arm's base frame, shape (rows, 3)."""
         return self._task.numbers.directions
 
     def task_state(self, q: FloatArray, dq: FloatArray, reference: FloatArray) -> TaskState:
-        """Return the task at the robot's measured state, shapes (nq,), and reference, shape (3, 3)."""
+        """Return the state of the task from measurements of the robot, shapes (nq,), and a reference, shape (3, 3)."""
         numbers, own_q, own_dq = self._task.numbers, q[self.joints], dq[self.joints]
         tip = self._arm.tip(own_q, own_dq)
         J, dJ_dq = (values.copy() for values in self._task.jacobian(numbers, tip))
@@ -161,7 +160,7 @@ class TipForce:
         )
 
     def torque(self, state: TaskState, acceleration: FloatArray, force: FloatArray) -> FloatArray:
-        """Return the torques of the law above for an acceleration and a force along the task's rows, shapes (rows,)."""
+        """Return the torques of the law above for an acceleration and a force along the rows, shapes (rows,)."""
         J, numbers = state.J, self._task.numbers
         ddq_0, spring = self._posture.acceleration_and_torque(NUMPY, self._posture.numbers, J, state.q, state.dq)
         F = acceleration - state.dJ_dq - J @ ddq_0
@@ -176,13 +175,13 @@ class TipForce:
 
 
 class ForceTask(NamedTuple):
-    """What acts on the world, and what carries it.
+    """Stage that exerts a force on the environment, and the loops of the stages below it.
 
     Attributes:
-        name: Name of the stage at whose end it acts.
-        tip: Its tip.
-        period: Time between two ticks of its law, in s.
-        below: Loops of the stages that hold its base on the way; none where the whole arm acts.
+        name: Name of the last stage.
+        tip: TipForce of the last stage or of the whole arm.
+        period: Time between two ticks of the law, in s.
+        below: Loops of the stages that keep its base on the path; empty if the whole arm exerts the force.
     """
 
     name: str
@@ -191,15 +190,15 @@ class ForceTask(NamedTuple):
     below: tuple[Loop, ...]
 
     def loops(self, controller: Controller, uses_wrench: bool) -> tuple[Loop, ...]:
-        """Return the loops of a robot whose tip a controller leads, which may be given the wrist sensor's reading."""
+        """Return the loops of the robot with a controller of the tip; it can use the wrist sensor."""
         return (*self.below, Loop(self.name, self.tip.joints, self.period, controller, uses_wrench=uses_wrench))
 
 
 def find_force_task(config: TipForceConfig, robot: Robot) -> ForceTask:
-    """Return what of a robot acts on the world.
+    """Return the force task of a robot.
 
     Raises:
-        ConfigError: where a value misses a stage, or an arm has too few joints.
+        ConfigError: if a value is missing for a stage, or an arm has too few joints.
     """
     names = robot.stage_names
     frequencies = by_stage("controller.natural_frequency", config.natural_frequency, names)
@@ -222,7 +221,7 @@ def find_force_task(config: TipForceConfig, robot: Robot) -> ForceTask:
 def _carrying(
     config: TipForceConfig, robot: Robot, frequencies: list[float], ratios: list[float], periods: list[float]
 ) -> tuple[Loop, ...]:
-    """Return the loops of all stages but the last, by the one-way coupling; they know what rides on them."""
+    """Return the loops of all stages except the last, with one-way coupling and known mounted masses."""
     names = robot.stage_names
     stages = MacroMiniConfig(
         kind="macro_mini",

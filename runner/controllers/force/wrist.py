@@ -15,17 +15,17 @@ Compensation = Literal["none", "gravity", "gravity_and_inertia"]
 
 
 class ToolCompensation:
-    r"""The wrench of the world on the tip and on the flange, from the sensor's reading, along the base's axes.
+    r"""External wrench on the tip and on the flange in the base frame, from the wrist sensor's reading.
 
     .. math:: f_e = f - f_0 - f_t
 
-    f_0 is the sensor's bias and f_t what the tool puts on it, both taken as known: its weight at the measured posture
-    and, where asked for, its inertia at the measured velocity and the acceleration differenced from it.
+    f_0 is the nominal bias of the sensor and f_t the nominal load of the tool: its weight at the measured configuration
+    and, with gravity_and_inertia, its inertial load at the measured velocity and the acceleration differenced from it.
 
     Args:
         robot: The robot with its tool.
-        sensor: The sensor's config.
-        compensation: What is taken off.
+        sensor: Config of the sensor.
+        compensation: Subtracted loads: none, bias and weight, or also the inertial load.
         period: Time between two readings, in s.
     """
 
@@ -44,16 +44,16 @@ class ToolCompensation:
         self._last: FloatArray | None = None
 
     def reset(self) -> None:
-        """Forget the velocity before."""
+        """Clear the last velocity."""
         self._last = None
 
     def external(self, q: FloatArray, dq: FloatArray, reading: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the world's wrench about the tip and about the flange's origin, along the base's axes.
+        """Return the external wrench about the tip and about the flange's origin in the base frame, shapes (6,).
 
         Args:
             q: Measured joint positions, shape (nq,), in rad.
             dq: Measured joint velocities, shape (nq,), in rad/s.
-            reading: The sensor's, force in N and moment in N m, shape (6,).
+            reading: Sensor reading, force in N and moment in N m, shape (6,).
         """
         model, data = self._model, self._data
         ddq = self._zero if self._last is None else (dq - self._last) / self._period

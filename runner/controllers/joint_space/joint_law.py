@@ -28,7 +28,7 @@ class JointLawConfig(StrictModel):
         damping_ratio: xi of the joints and of the tip motion.
         period: Time between two ticks, in s.
         gravity_compensation: True if the law includes the gravity term.
-        feedforward: True if the law uses the desired velocity and acceleration; False if the reference is a moving goal.
+        feedforward: True if the law uses the desired velocity and acceleration; False to follow a moving goal.
         singularity_damping: Damping of the inverse of J near a singular configuration, as a fraction of the tip error;
             0 for no damping.
         null_space_frequency: omega_n of the posture task to home if the arm has redundant joints, in rad/s.

@@ -22,7 +22,7 @@ from runner.schema.values import PositivePerJoint, expand
 COMMANDS = "position"
 FOLLOWS_PATHS = True
 
-# Explicit Runge-Kutta rules: where within the period each slope is taken, along the one before, and its weight.
+# Explicit Runge-Kutta rules: position of each slope in the period, along the slope before, and its weight.
 _RULES = {
     "euler": ((0.0,), (1.0,)),
     "midpoint": ((0.0, 0.5), (0.0, 1.0)),
@@ -36,14 +36,14 @@ class DifferentialInverseKinematicsConfig(StrictModel):
     Attributes:
         kind: Registry name of the controller.
         period: Time between two commands, in s.
-        task: Whether the tip's position is led, or its pose, with home's orientation kept.
-        gain: K, how fast a tip error is to vanish, in 1/s; at most 1 / period.
-        feedforward: Whether the law knows the desired motion's derivatives, or sees a moving goal.
-        feedback: Where the tip's error is taken: at the measured joint positions, or at those commanded.
-        integration: Rule by which a command follows from the one before.
-        damping: Singular value, as a share of the arm's reach, below which the inverse is damped; 0: J^+ undamped.
-        weights: What the motion of each joint costs, of all or one for each.
-        null_space: The null-space task.
+        task: Controlled tip motion: the position, or the pose with the orientation of home.
+        gain: K, the decay rate of a tip error, in 1/s; at most 1 / period.
+        feedforward: True if the law uses the derivatives of the desired motion; False to follow a moving goal.
+        feedback: Joint positions at which the tip error is taken: measured or commanded.
+        integration: Rule that integrates joint velocities from one command to the next.
+        damping: Singular value below which the inverse is damped, as a fraction of the arm's reach; 0 for no damping.
+        weights: Cost of the motion of each joint; one for all joints or a list with one for each.
+        null_space: Config of the null-space task.
     """
 
     kind: Literal["differential_inverse_kinematics"]
@@ -59,23 +59,23 @@ class DifferentialInverseKinematicsConfig(StrictModel):
 
 
 class DifferentialInverseKinematics(PositionController):
-    r"""Closed-loop inverse kinematics: joint velocities that lead the tip, integrated to joint positions.
+    r"""Closed-loop inverse kinematics: joint velocities for the tip motion, integrated to joint positions.
 
     .. math:: \dot q = J^\# (\dot x_d + K (x_d - x)) + (1 - J^\# J) \dot q_0
 
-    J^# and its bounds are those of ResolvedRate, the speed and position limits of the URDF; q0' is the null-space
-    task's. For a pose the orientation of home is kept: the angular error is the rotation vector from the tip's
-    orientation to it, in the base frame. Commands continue the command before, and the error of the measured tip is
-    fed back on top: a servo's sag is corrected, as integral action would, and the measurement's noise enters by K only.
+    J^# is that of ResolvedRate, within the speed and position limits of the URDF. q0' is the velocity of the null-space
+    task. A pose keeps the orientation of home: the angular error is the rotation vector from the tip's orientation to
+    it, in the base frame. Each command continues from the last command. Feedback of the measured tip error removes the
+    steady-state error of a servo, as integral action would, and measurement noise enters only through K.
 
     Args:
         model: The arm.
-        config: The law's numbers.
+        config: Config of the law.
         home: Joint positions at home, shape (nq,), in rad.
 
     Raises:
-        ConfigError: for a task of more dimensions than the arm has joints, a list of the wrong length, a gain that no
-            sampled loop stands.
+        ConfigError: if the task has more dimensions than the arm has joints, a list has the wrong length, or the gain
+            is above 1 / period.
     """
 
     def __init__(self, model: RobotModel, config: DifferentialInverseKinematicsConfig, home: FloatArray) -> None:
@@ -126,7 +126,7 @@ class DifferentialInverseKinematics(PositionController):
     def _joint_velocity(
         self, q: FloatArray, ahead: float, off: FloatArray, turn: FloatArray, reference: FloatArray, bounds: FloatArray
     ) -> FloatArray:
-        """Return the law's joint velocities, within bounds, at joint positions commanded for a time ahead, in s."""
+        """Return the bounded joint velocities of the law at joint positions commanded for a time ahead, in s."""
         x, R, J = self._tip_at(q)
         x_d, dx_d, ddx_d = reference
         v = self._gain * (x_d - x - off)
@@ -173,5 +173,5 @@ def build(config: DifferentialInverseKinematicsConfig, robot: Robot) -> tuple[Lo
 
 
 def start_posture(config: DifferentialInverseKinematicsConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
-    """Return where the arm starts: at home's orientation for a pose; None leaves it to the position alone."""
+    """Return the joint positions at the start; see task_start."""
     return task_start(config.task, robot, start)

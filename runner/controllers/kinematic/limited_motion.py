@@ -9,20 +9,21 @@ from runner.controllers.kinematic.resolved_rate import ResolvedRate
 from runner.robots.model import RobotModel
 from runner.trajectories.blend import quintic_blend
 
-_DAMPED_BELOW = 0.02  # of the reach: singular value below which the inverse is damped
-_FREE = 1e-6  # m and rad; farther from the pose wanted than this the tip is held back
+_DAMPED_BELOW = 0.02  # singular value below which the inverse is damped, as a fraction of the reach
+_FREE = 1e-6  # m and rad; distance from the desired pose above which the tip is held back
 
 
 class LimitedMotion:
-    """Joint positions that bring the tip to one wanted pose after the other, a period each.
+    """Joint positions for a sequence of desired tip poses, one in each period.
 
-    A joint's speed stays within its limit, and within a share of what is left to its position limit: it nears that
-    exponentially and never passes it. Near singular postures the inverse is damped: the tip stays behind.
+    The speed of a joint is limited by its speed limit and by a fraction of the distance to its position limit. So a
+    joint approaches its position limit exponentially and never exceeds it. Near singular configurations the inverse is
+    damped, and the tip lags.
 
     Args:
         model: The arm.
         period: Time for each pose, in s.
-        approach: How fast a joint may near its position limit, as a share of what is left, in 1/s.
+        approach: Maximum speed of a joint towards its position limit, per distance to it, in 1/s.
 
     Raises:
         ConfigError: if the arm has fewer joints than a pose has dimensions.
@@ -46,10 +47,10 @@ class LimitedMotion:
         self._q = np.zeros(model.nq)
         self._held: dict[str, float] = {}
         self.free = True
-        """Whether the tip came to the last pose wanted."""
+        """True if the tip reached the last desired pose."""
 
     def reset(self, q: FloatArray) -> None:
-        """Stand at joint positions, shape (nq,), in rad."""
+        """Start at joint positions, shape (nq,), in rad."""
         self._q, self._held, self.free = q.copy(), {}, True
 
     @property
@@ -59,7 +60,7 @@ class LimitedMotion:
         return self._data.oMf[self._frame].copy()
 
     def lead(self, time: float, wanted: "pin.SE3") -> "tuple[FloatArray, pin.SE3]":
-        """Return the joint positions for a wanted pose, shape (nq,), in rad, and the pose that they reach."""
+        """Return the joint positions for a desired pose, shape (nq,), in rad, and the pose that they reach."""
         J = pin.computeFrameJacobian(self._model, self._data, self._q, self._frame, pin.LOCAL_WORLD_ALIGNED)
         tip = self._data.oMf[self._frame]
         way = np.concatenate([wanted.translation - tip.translation, pin.log3(wanted.rotation @ tip.rotation.T)])
@@ -69,7 +70,7 @@ class LimitedMotion:
         self._q = self._q + self._period * dq
         reached = self.tip
         off = np.concatenate([wanted.translation - reached.translation, pin.log3(wanted.rotation @ reached.rotation.T)])
-        # A step along the tangent is off by the square of its length at most, which the next one mends.
+        # A step along the tangent has an error of about its squared length, which the next step corrects.
         self.free = bool(np.abs(off).max() <= _FREE + 2.0 * float(way @ way))
         if not self.free:
             self._note(time, dq, lower, upper)
@@ -85,16 +86,16 @@ class LimitedMotion:
             self._held.setdefault("the posture, singular or nearly so", time)
 
     def messages(self) -> list[str]:
-        """Return what has held the tip back, each with the time when it first did."""
+        """Return the causes that held the tip back, each with its first time."""
         return [f"{what} has held the tool back, first at t = {time:.4g} s" for what, time in self._held.items()]
 
 
 class Approach:
-    """A position that follows a desired one as it is, and goes to one that jumps by a rest-to-rest quintic.
+    """A position that equals the desired one, and follows a jump of it by a rest-to-rest quintic.
 
     Args:
         period: Time between two positions, in s.
-        speed: Largest speed at which a jump is made good, in m/s; a desired motion faster than it is a jump too.
+        speed: Maximum speed after a jump, in m/s; a faster desired motion is also a jump.
     """
 
     def __init__(self, period: float, speed: float) -> None:
@@ -110,7 +111,7 @@ class Approach:
         self.position, self._way = position.copy(), None
 
     def follow(self, desired: FloatArray) -> FloatArray:
-        """Move on by one period towards a desired position, shape (3,), in m, and return the reference."""
+        """Advance one period towards a desired position, shape (3,), in m, and return the reference."""
         if self._way is None and np.linalg.norm(desired - self.position) <= self._speed * self._period:
             self.position = desired.copy()
             return self.position
@@ -118,7 +119,7 @@ class Approach:
             self._way, self._time = (self.position, desired.copy()), 0.0
         start, goal = self._way
         self._time += self._period
-        duration = 1.875 * float(np.linalg.norm(goal - start)) / self._speed  # the quintic's peak is 1.875 of its mean
+        duration = 1.875 * float(np.linalg.norm(goal - start)) / self._speed  # 1.875: peak over mean speed
         share, _, _ = quintic_blend(np.array([self._time / duration]))
         self.position = start + share * (goal - start)
         if self._time >= duration:

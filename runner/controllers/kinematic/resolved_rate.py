@@ -7,24 +7,23 @@ from runner.base.lazy_modules import lapack
 
 
 class ResolvedRate:
-    r"""The joint velocities that give a tip its velocity, closest to those of a null-space task.
+    r"""Joint velocities for a tip velocity, closest to those of a null-space task.
 
     .. math::
 
         \dot q = \dot q_0 + W^{-1} J^T (J W^{-1} J^T + \lambda^2 1)^{-1} (v - J \dot q_0)
 
-    With lambda = 0 and W = 1 this is J^+ v + (1 - J^+ J) q0', J^+ = J^T (J J^T)^-1: of a wide Jacobian it is J J^T
-    that has an inverse. lambda grows from zero as the smallest singular value sigma of J W^-1/2 falls below a
-    threshold, lambda^2 = damping^2 (1 - (sigma / damping)^2) (Nakamura and Hanafusa, Journal of Dynamic Systems,
-    Measurement and Control 108, 1986).
+    With lambda = 0 and W = 1 this is J^+ v + (1 - J^+ J) q0', with J^+ = J^T (J J^T)^-1 of a wide Jacobian. lambda
+    grows from zero as the smallest singular value sigma of J W^-1/2 falls below a threshold, lambda^2 = damping^2
+    (1 - (sigma / damping)^2) (Nakamura and Hanafusa, Journal of Dynamic Systems, Measurement and Control 108, 1986).
 
-    Joints that would leave their bounds are held at them, the worst first, and the others asked again (saturation in
-    the null space: Flacco, De Luca and Khatib, IEEE Transactions on Robotics 31(3), 2015). Where the others cannot do
-    it, what is left is as near as least squares bring it, and clipped.
+    Joints that would leave their bounds are fixed at them, the worst first, and the others are solved again (saturation
+    in the null space: Flacco, De Luca and Khatib, IEEE Transactions on Robotics 31(3), 2015). If the others cannot
+    compensate, the velocities are clipped and v is not reached.
 
     Args:
-        weights: Diagonal of W, shape (nq,): what each joint's motion costs.
-        damping: Threshold of the singular value, and largest lambda, in the unit of J; 0 is no damping.
+        weights: Diagonal of W, shape (nq,): cost of the motion of each joint.
+        damping: Threshold of the singular value, and largest lambda, in the unit of J; 0 for no damping.
     """
 
     def __init__(self, weights: FloatArray, damping: float) -> None:
@@ -39,10 +38,10 @@ class ResolvedRate:
             v: Velocity of the tip's task, shape (m,).
             dq0: Joint velocities of the null-space task, shape (nq,), in rad/s.
             lower: Smallest joint velocities, shape (nq,), in rad/s.
-            upper: Largest joint velocities, likewise.
+            upper: Largest joint velocities, shape (nq,), in rad/s.
 
         Raises:
-            numpy.linalg.LinAlgError: at a singular posture, without damping.
+            numpy.linalg.LinAlgError: at a singular configuration, without damping.
         """
         dq = self._solve(J, v, dq0)
         beyond = np.maximum(lower - dq, dq - upper)
@@ -57,7 +56,7 @@ class ResolvedRate:
             try:
                 dq[free] = self._solve(J[:, free], left, dq0[free], self._mobility[free])
             except np.linalg.LinAlgError:
-                break  # the others cannot do it
+                break  # the others are singular
             beyond = np.where(free, np.maximum(lower - dq, dq - upper), 0.0)
         return np.minimum(np.maximum(dq, lower), upper)
 
@@ -73,7 +72,7 @@ class ResolvedRate:
         return np.asarray(dq0 + spread.dot(solution))
 
     def _is_near(self, A: FloatArray) -> bool:
-        """Tell whether an eigenvalue of A lies below the damping's square, which a Cholesky factor shows sooner."""
+        """Return True if an eigenvalue of A is below damping^2; a Cholesky factorisation shows it faster."""
         above = A.copy()
         above.flat[:: len(A) + 1] -= self._damping**2
         return bool(lapack.dpotrf(above)[1] != 0)
