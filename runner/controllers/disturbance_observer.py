@@ -104,7 +104,7 @@ class MomentumObserver(TorqueFilter):
 
     @property
     def remembers(self) -> int:
-        """Size of its memory."""
+        """Size of the memory."""
         return (3 + self._late) * len(self.numbers.limits)
 
     def start(self, q: FloatArray) -> FloatArray:

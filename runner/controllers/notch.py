@@ -79,7 +79,7 @@ class Notch(TorqueFilter):
 
     @property
     def remembers(self) -> int:
-        """Size of its memory."""
+        """Size of the memory."""
         return 2 * len(self.numbers.b[0])
 
     def filter(

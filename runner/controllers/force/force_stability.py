@@ -61,7 +61,7 @@ def touch_radius(
 
 
 def _radius(passive: FloatArray, gain: FloatArray, delay: int) -> float:
-    """Return the spectral radius of a unit mass under passive . (x, v) and a sampled push gain . (x, v)."""
+    """Return the spectral radius of a unit mass under passive . (x, v) and gain . (x, v), held for a unit period."""
     from scipy.linalg import expm  # only a few configs need it
 
     step = expm(np.array([[0.0, 1.0, 0.0], [*passive, 1.0], [0.0, 0.0, 0.0]]))

@@ -17,10 +17,10 @@ class DampingNumbers(NamedTuple):
     """The numbers of inertial damping.
 
     Attributes:
-        law: Of the stage's law.
-        offset: r_0, the tip's place at home in the stage's base frame, shape (3,), in m.
-        gravity: In the robot's base frame, shape (3,), in m/s^2.
-        share: g / (2 xi omega_c), of the base's velocity that is asked of the tip.
+        law: Numbers of the stage's law.
+        offset: r_0, position of the tip at home in the stage's base frame, shape (3,), in m.
+        gravity: Gravity in the robot's base frame, shape (3,), in m/s^2.
+        share: g / (2 xi omega_c), the commanded tip velocity per base velocity.
     """
 
     law: StageNumbers
@@ -30,26 +30,27 @@ class DampingNumbers(NamedTuple):
 
 
 class InertialDamping(StageLoop[DampingNumbers]):
-    r"""The loop of a riding stage that takes energy out of the vibration of its base, and gives tracking up.
+    r"""The loop of a mounted stage that damps the vibration of its base instead of tracking.
 
-    As others damped flexible arms by small ones at their ends (Lew and Trudnowski, IEEE Control Systems 16(1), 1996,
-    the thesis' reference 14): the tip, seen from its base, is held to its home offset softly, and pushed along the
-    base's velocity v_E, less the desired one.
+    After the damping of flexible arms by small arms at their ends (Lew and Trudnowski, IEEE Control Systems 16(1),
+    1996, reference 14 of the thesis). A soft spring holds the tip at its home offset p = r_0 in the base frame. A force
+    pushes it along the base velocity less the desired velocity.
 
     .. math:: F = g R^T (\dot x_E - \dot x_d) - 2 \xi \omega_c \dot p - \omega_c^2 (p - r_0), \qquad \tau = J^T
         \Lambda F + V + G
 
-    Its law knows no acceleration of its base, so Lambda F is the force in the ground's frame, and its reaction brakes
-    the base. A mode of frequency omega_1 and modal mass m_1 there, with the mass m of the tip along it, gains
+    The law does not include the base acceleration, so Lambda F is the force in the ground frame. Its reaction damps the
+    base. A mode of frequency omega_1 and modal mass m_1 at the base, with the tip mass m along it, gains the damping
+    ratio
 
     .. math:: \Delta \zeta_1 = \frac{m (g + 2 \omega_c)}{2 m_1 \omega_1}
 
-    for omega_c well below omega_1, at a stroke of g X / omega_1 for an amplitude X.
+    for omega_c well below omega_1. The stroke is g X / omega_1 for an amplitude X.
 
     Args:
         robot: The robot.
         stage: Index of the stage, 1 or more.
-        law: The stage's law, whose natural frequency is omega_c.
+        law: Law of the stage, with natural frequency omega_c.
         gain: g, in 1/s.
     """
 

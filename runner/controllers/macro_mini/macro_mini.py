@@ -25,23 +25,24 @@ class MacroMiniConfig(StrictModel):
     Attributes:
         kind: Registry name of the controller.
         natural_frequency: omega_n of each stage's closed loop, in rad/s.
-        damping_ratio: xi of each.
-        period: Time between two ticks of each, in s; every other one a multiple of the shortest.
-        coupling: one_way, the riding arm makes up for what its carrier misses; two_way, the carrier in turn makes up
-            for where the rider stands; independent, the rider keeps its home offset in its own frame, which turns with
-            the carrier; independent_base, it keeps it in the robot's base frame; mini_held, its joints are held;
-            inertial_damping, its tip swings against the carrier's vibration, about its home offset.
-        damping_gain: g of inertial damping, in 1/s: the push on the tip per velocity of its base and mass.
-        macro_target: minus_home, the carrier goes to x_d - r_0; tip_goal, to x_d itself, so that the rider folds.
-        mini_reference_velocity: Whether the rider follows its target's velocity (full) or a series of goals (zero).
-        wrist_rotation: Whether controllers know how the carrier turns the rider's base (real) or take it parallel.
-        gravity_compensation: Whether the laws hold the gravity term.
-        feedforward: Whether the carrier follows the desired velocity and acceleration.
-        schedule: both arms move at any time, or in turns, a carrier period each.
-        reach: Distance of the target from the rider's base up to which it follows it, in m; with further riders, of
-            the target that leaves them at their home offset. One for all riders.
-        beyond_reach: What the rider does beyond: hold its posture, or stretch towards the target.
-        payload: Whether the carrier's model knows the rider's mass.
+        damping_ratio: xi of each stage.
+        period: Time between two ticks of each stage, in s; each is a multiple of the shortest.
+        coupling: Target of the mounted stage (Mini). one_way: it compensates the error of the base stage (Macro);
+            two_way: the Macro also compensates the Mini's present offset; independent: the Mini keeps its home offset
+            in its own base frame, which turns with the Macro; independent_base: in the robot's base frame; mini_held:
+            its joints are held at home; inertial_damping: its tip damps the Macro's vibration, about its home offset.
+        damping_gain: g of inertial damping, in 1/s: force on the tip per base velocity and tip mass.
+        macro_target: Target of the Macro with one_way coupling: x_d - r_0 (minus_home), or x_d (tip_goal), so that the
+            Mini folds.
+        mini_reference_velocity: Reference of the Mini: with its target's velocity (full) or a series of goals (zero).
+        wrist_rotation: Rotation of the Mini's base in the controllers: measured (real), or that at home (parallel).
+        gravity_compensation: True if the laws include the gravity term.
+        feedforward: True if the Macro uses the desired velocity and acceleration.
+        schedule: both, the stages move at any time; turns, they move in turns of one Macro period.
+        reach: Distance of the target from the Mini's base up to which the Mini follows it, in m. With several Minis the
+            target leaves the later ones at their home offset. One value for all Minis.
+        beyond_reach: Behaviour of the Mini beyond reach: hold its configuration, or stretch towards the target.
+        payload: Mass of the mounted stages in the model of the stage below: included (known), or not (unknown).
         singularity_damping: As in operational-space control.
     """
 
@@ -73,10 +74,10 @@ _AIMS: Mapping[str, Aim] = {
 
 
 def build(config: MacroMiniConfig, robot: Robot) -> tuple[Loop, ...]:
-    """Make the loops that a config describes, one for each stage.
+    """Build the loops of a config, one for each stage.
 
     Raises:
-        ConfigError: if the robot has one stage only, a value misses a stage, or a stage does not suit its law.
+        ConfigError: if the robot has only one stage, a value is missing for a stage, or a stage does not fit its law.
     """
     names = robot.stage_names
     if len(names) < 2:

@@ -30,7 +30,7 @@ class _Flags:
 
     @property
     def keeps_base_offset(self) -> bool:
-        """Whether the Mini keeps its home offset in the base frame, which its own frame turns against."""
+        """True if the Mini keeps its home offset in the robot's base frame while its own base frame turns."""
         return self.coupling == "independent_base" and self.real
 
     @property
@@ -39,17 +39,17 @@ class _Flags:
 
     @property
     def spins(self) -> bool:
-        """Whether the Mini's target has a velocity that hangs on the Macro's."""
+        """True if the velocity of the Mini's target depends on the Macro's."""
         return self.moving and (self.follows or self.keeps_base_offset)
 
     @property
     def rest(self) -> bool:
-        """Whether anything takes the rest of the way."""
+        """True if a block uses r = x_d - x_E."""
         return self.follows or self.turns
 
     @property
     def kinematics(self) -> bool:
-        """Whether anything takes the Macro's end point or its rotation from the Macro's measured joints."""
+        """True if a block uses the Macro's end point or rotation from its measured joints."""
         return self.rest or self.keeps_base_offset or (self.gravity and self.real)
 
 
@@ -75,20 +75,19 @@ def macro_mini_graph(
 ) -> ControlGraph:
     r"""Return the two closed loops that `MacroController` and `MiniController` (or `HeldController`) execute.
 
-    The arms' own laws are a block each; they are the operational-space law of `operational_space_graph`. Encoders
-    give the Macro's joints q_M and the Mini's q_m; x_E is the Macro's end point, r = x_d - x_E the rest of the way,
-    R the rotation of the Macro's last link, R_0 that at home, which controllers take for it where wrist_rotation is
-    parallel, rho the reach. A signal that the config leaves out is absent. That the Macro carries the Mini is no
-    signal; it is written into the Mini's block.
+    Each arm's law is a block, the operational-space law of `operational_space_graph`. Encoders measure the Macro's
+    joints q_M and the Mini's q_m. x_E is the Macro's end point, r = x_d - x_E, R the rotation of the Macro's last link,
+    R_0 that at home, which replaces R if wrist_rotation is parallel, and rho the reach. The graph omits a signal that
+    the config leaves out. The Mini's block notes that the Mini is mounted on the Macro, because this is not a signal.
 
     Args:
         coupling: one_way, two_way, independent, independent_base or mini_held; this and the next ones as in
             MacroMiniConfig.
-        macro_target: minus_home or tip_goal; it counts for one_way alone.
+        macro_target: minus_home or tip_goal; only one_way uses it.
         mini_reference_velocity: full or zero.
         wrist_rotation: real or parallel.
-        gravity_compensation: Whether the laws hold the gravity term.
-        feedforward: Whether the Macro follows the desired velocity and acceleration.
+        gravity_compensation: True if the laws include the gravity term.
+        feedforward: True if the Macro uses the desired velocity and acceleration.
         torque_limited: True if torques are clipped.
         goal: True if the reference is a goal at rest, which has no derivatives.
         schedule: both or turns.
@@ -119,7 +118,7 @@ def macro_mini_graph(
 
 
 def _add_arm(parts: _Parts, stage: str, name: str, controller: float, limited: bool) -> None:
-    """Add an arm's own loop: controller, torque limit, arm, encoders."""
+    """Add the loop of an arm: controller, torque limit, arm, encoders."""
     macro = stage == "macro"
     index, row, lane = ("M", 0.0, _OVER) if macro else ("m", _MINI, _UNDER)
     outside: Side
@@ -153,7 +152,7 @@ def _add_arm(parts: _Parts, stage: str, name: str, controller: float, limited: b
 
 
 def _add_macro_target(parts: _Parts, flags: _Flags) -> None:
-    """Add the Macro's target x_d - o, and who has the turn."""
+    """Add the Macro's target x_d - o, and the test of the turn."""
     desired = "x_g" if flags.goal else "x_d"
     bundle = rf"{desired},\dot{{x}}_d,\ddot{{x}}_d" if flags.feedforward and not flags.goal else desired
     offset = flags.coupling != "one_way" or flags.macro_target == "minus_home"
@@ -189,7 +188,7 @@ def _add_macro_target(parts: _Parts, flags: _Flags) -> None:
 
 
 def _add_kinematics(parts: _Parts, flags: _Flags) -> None:
-    """Add the Macro's end point as measured, and the rest of the way from there, r = x_d - x_E."""
+    """Add the Macro's measured end point, and r = x_d - x_E."""
     moving = flags.follows and flags.moving
     parts.nodes.append(Node("kinematics", "block", "Macro\nkinematics", 4.5, _BETWEEN))
     symbol = r"$q_M,\dot{q}_M$" if flags.spins else "$q_M$"
@@ -205,7 +204,7 @@ def _add_kinematics(parts: _Parts, flags: _Flags) -> None:
 
 
 def _add_mini_target(parts: _Parts, flags: _Flags) -> None:
-    """Add the Mini's target: the rest of the way where it is within reach, its home offset, or its posture."""
+    """Add the Mini's target: r within reach, its home offset, or its home configuration."""
     if flags.keeps_base_offset:
         _add_base_offset(parts, flags)
         return
@@ -237,7 +236,7 @@ def _add_mini_target(parts: _Parts, flags: _Flags) -> None:
 
 
 def _add_base_offset(parts: _Parts, flags: _Flags) -> None:
-    """Add the Mini's target where it keeps its home offset in the base frame: R^T r_0, from its turning base."""
+    """Add the Mini's target R^T r_0, which keeps the home offset in the robot's base frame."""
     label = "$R^T r_0$" + ("\n" + r"$-R^T (\omega \times r_0)$" if flags.moving else "")
     parts.nodes += [
         Node("mini_offset_source", "source", "Home offset $r_0$", 0.9, _MINI),
@@ -252,7 +251,7 @@ def _add_base_offset(parts: _Parts, flags: _Flags) -> None:
 
 
 def _add_gravity(parts: _Parts, flags: _Flags) -> None:
-    """Add gravity as the Mini's base sees it."""
+    """Add gravity in the Mini's base frame."""
     label, place = f"${flags.rotation}^T g$", (_MINI_CONTROLLER, _ABOVE_MINI)
     parts.nodes.append(Node("gravity", "block" if flags.real else "source", label, *place))
     parts.edges.append(Edge("gravity", "mini_controller", leave="bottom", enter="top"))

@@ -23,11 +23,11 @@ class MacroNumbers(NamedTuple):
     """The numbers of the first stage's loop.
 
     Attributes:
-        law: Of the stage's law.
-        offset: Offset o as a motion, shape (3, 3): it stands still.
-        later: Home offset of what rides on the first rider, in the robot's base frame, shape (3,), in m.
-        rotations: From the riders' base frames at home into the robot's, shape (riders, 3, 3).
-        reach: Distance up to which the first rider follows its target, in m.
+        law: Numbers of the stage's law.
+        offset: Offset o as a motion at rest, shape (3, 3).
+        later: Home offset of the stages on the first mounted stage, in the robot's base frame, shape (3,), in m.
+        rotations: Rotations from the mounted stages' base frames at home into the robot's, shape (mounted, 3, 3).
+        reach: Distance up to which the first mounted stage follows its target, in m.
         turn: Length of a turn, in s.
     """
 
@@ -40,16 +40,16 @@ class MacroNumbers(NamedTuple):
 
 
 class MiniNumbers(NamedTuple):
-    """The numbers of a riding stage's loop.
+    """The numbers of a mounted stage's loop.
 
     Attributes:
-        law: Of the stage's law.
-        offset: Offset r_0 that it keeps as a motion, shape (3, 3): it stands still.
-        later: Home offset of what rides on it, in the robot's base frame, shape (3,), in m.
-        rotation: From its base frame at home into the robot's, shape (3, 3).
-        between: The same of each riding stage below it, shape (k, 3, 3), where bases are taken parallel; else k is 0.
-        gravity: In the robot's base frame, shape (3,), in m/s^2.
-        reach: Distance up to which it follows its target, in m.
+        law: Numbers of the stage's law.
+        offset: Home offset r_0 as a motion at rest, shape (3, 3).
+        later: Home offset of the stages mounted on it, in the robot's base frame, shape (3,), in m.
+        rotation: Rotation from its base frame at home into the robot's, shape (3, 3).
+        between: Same rotation of each mounted stage below it, shape (k, 3, 3); k is 0 unless base rotation is ignored.
+        gravity: Gravity in the robot's base frame, shape (3,), in m/s^2.
+        reach: Distance up to which the stage follows its target, in m.
         turn: Length of a turn, in s.
     """
 
@@ -67,10 +67,10 @@ class HeldNumbers(NamedTuple):
     """The numbers of a loop that holds a stage's joints.
 
     Attributes:
-        law: Of the stage's law.
-        posture: Shape (n,), in rad.
-        rotation: From the stage's base frame at home into the robot's, shape (3, 3).
-        gravity: In the robot's base frame, shape (3,), in m/s^2.
+        law: Numbers of the stage's law.
+        posture: Held configuration, shape (n,), in rad.
+        rotation: Rotation from the stage's base frame at home into the robot's, shape (3, 3).
+        gravity: Gravity in the robot's base frame, shape (3,), in m/s^2.
     """
 
     law: StageNumbers
@@ -83,7 +83,7 @@ N = TypeVar("N", bound=Any)  # a NamedTuple with the numbers of the stage's law,
 
 
 class StageLoop(TorqueLaw[N]):
-    """What the loops of stages have in common; `_released` is the memory of one that holds no posture."""
+    """Base class of the loops of stages; `_released` is the memory without a held configuration."""
 
     _released: FloatArray = np.zeros(0)
 
@@ -93,23 +93,23 @@ class StageLoop(TorqueLaw[N]):
         return VelocityGain(0.0, self.numbers.law.k_v)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return that no posture is held; see TorqueLaw."""
+        """Return the memory without a held configuration; see TorqueLaw."""
         return self._released
 
 
 class MacroController(StageLoop[MacroNumbers]):
-    """The loop of the first stage, which stands on the ground.
+    """The loop of the first stage, which is fixed to the ground.
 
-    Its target is x_d - o, where o stands for the stages that ride on it: nothing (macro_target tip_goal), their
-    offset at home (minus_home), or their present offset (two-way coupling).
+    Its target is x_d - o. The offset o of the mounted stages is 0 (macro_target tip_goal), their offset at home
+    (minus_home), or their present offset (two-way coupling).
 
     Args:
         robot: The robot.
-        law: The stage's law.
-        offset: Offset o, shape (3,), in m; None takes the riders' present one.
-        ignore_base_rotation: Whether the riders' base is taken parallel to the ground's.
-        reach: Distance up to which the first rider follows its target, in m.
-        turn: Length of a turn, in s; see mini_moves. None where both arms move at any time.
+        law: Law of the stage.
+        offset: Offset o, shape (3,), in m; None for the present offset.
+        ignore_base_rotation: True if the rotation of the mounted stages' bases is taken as that at home.
+        reach: Distance up to which the first mounted stage follows its target, in m.
+        turn: Length of a turn, in s; see mini_moves. None if the stages move at any time.
     """
 
     def __init__(
@@ -152,7 +152,7 @@ class MacroController(StageLoop[MacroNumbers]):
         reference: Array,
         memory: Array,
     ) -> tuple[Array, Array]:
-        """Return the torques of the first stage, and the posture held; see TorqueLaw."""
+        """Return the torques of the first stage, and the memory of the held configuration; see TorqueLaw."""
         own, own_q, own_dq = arms[0], q[: self._end], dq[: self._end]
         bases = [arm.tip_pose(q) for arm in arms[1 : 1 + self._bases]] if self._bases else []
         target = reference - numbers.offset
@@ -174,27 +174,27 @@ class MacroController(StageLoop[MacroNumbers]):
 
 
 class MiniController(StageLoop[MiniNumbers]):
-    """The loop of a stage that rides on others.
+    """The loop of a mounted stage.
 
-    Its target is the rest of the way, R^T (x_d - o - x_E), seen from its base. As for the first stage, o is the home
-    offset of the stages that ride on it, whatever way they have turned; each of them makes up for what is left. Reach
-    counts from its base to this target, so that it is that of the stage's own arm. Gravity seen from its base is R^T g.
-    Where bases are taken parallel, x_E is the carrier's end point and the offsets of the stages between, none turned.
+    Its target in its base frame is R^T (x_d - o - x_E). o is the home offset of the stages mounted on it, regardless of
+    their rotation, because each of them compensates the remaining error. The reach is measured from its base to this
+    target, so it is that of the stage's own arm. Gravity in its base frame is R^T g. With ignore_base_rotation, x_E is
+    the first stage's end point plus the offsets of the stages between, with R at home.
 
-    Or it follows nothing and keeps its own home offset: r_0 in its own frame, which turns with the carrier, or R^T r_0
+    With another aim the target is its home offset: r_0 in its base frame, which turns with the stage below, or R^T r_0
     with r_0 in the robot's base frame.
 
     Args:
         robot: The robot.
         stage: Index of the stage, 1 or more.
-        law: The stage's law.
-        aim: What its target is: the rest of the way, or its home offset in its own frame or in the robot's base frame.
-        later_offset: Home offset o of the stages that ride on this one, in the robot's base frame, shape (3,), in m.
-        ignore_base_rotation: Whether its base is taken parallel to the ground's.
-        moving_target: Whether the target's velocity is part of the reference.
-        reach: Distance up to which it follows, in m.
-        stretch: Whether it stretches towards a target beyond reach; else it holds its posture.
-        turn: Length of a turn, in s; see mini_moves. None where both arms move at any time.
+        law: Law of the stage.
+        aim: Target: the remaining distance (rest), or the home offset in its own or the robot's base frame.
+        later_offset: Home offset o of the stages mounted on this one, in the robot's base frame, shape (3,), in m.
+        ignore_base_rotation: True if the rotation of its base is taken as that at home.
+        moving_target: True if the target's velocity is part of the reference.
+        reach: Distance up to which the stage follows its target, in m.
+        stretch: True if it stretches towards a target beyond reach; else it holds its configuration.
+        turn: Length of a turn, in s; see mini_moves. None if the stages move at any time.
     """
 
     def __init__(
@@ -244,7 +244,7 @@ class MiniController(StageLoop[MiniNumbers]):
         reference: Array,
         memory: Array,
     ) -> tuple[Array, Array]:
-        """Return the torques of this stage, and the posture held; see TorqueLaw."""
+        """Return the torques of this stage, and the memory of the held configuration; see TorqueLaw."""
         own = arms[0]
         backend, own_q, own_dq = own.backend, q[self._first : self._end], dq[self._first : self._end]
         way, target, gravity = self._seen(arms[1:], numbers, q, dq, reference)
@@ -267,7 +267,7 @@ class MiniController(StageLoop[MiniNumbers]):
     def _seen(
         self, below: Sequence[Arm], numbers: MiniNumbers, q: Array, dq: Array, reference: Array
     ) -> tuple[Array, Array, Array]:
-        """Return the way to the target in the robot's base frame, and target and gravity in the stage's own."""
+        """Return the vector to the target in the robot's base frame; target and gravity in the stage's."""
         base, *between = below
         if self._moving:
             x, R, moves = base.tip_pose_and_twist(q, dq)
@@ -300,13 +300,13 @@ class MiniController(StageLoop[MiniNumbers]):
 
 
 class HeldController(StageLoop[HeldNumbers]):
-    """The loop of a riding stage whose joints are held at home.
+    """The loop of a mounted stage whose joints are held at home.
 
     Args:
         robot: The robot.
         stage: Index of the stage, 1 or more.
-        law: The stage's law.
-        ignore_base_rotation: Whether its base is taken parallel to the ground's.
+        law: Law of the stage.
+        ignore_base_rotation: True if the rotation of its base is taken as that at home.
     """
 
     def __init__(self, robot: Robot, stage: int, law: StageLaw, ignore_base_rotation: bool) -> None:
@@ -335,33 +335,33 @@ class HeldController(StageLoop[HeldNumbers]):
 
 
 def mini_moves(backend: Backend, turn: Scalar, time: Scalar) -> Scalar:
-    """Return 1 in the rider's turn and 0 in the carrier's, which begins; each is of this length, in s."""
+    """Return 0 in the turns of the first stage, which begins, and 1 in those of the mounted stages; turn is in s."""
     count = backend.floor(time / turn + 1e-9)
     return count - 2.0 * backend.floor(0.5 * count)
 
 
 def base_at_home(robot: Robot, stage: int) -> tuple[RobotModel, FloatArray]:
-    """Return the robot with the base of a riding stage as its tip, and the base's rotation at home, shape (3, 3)."""
+    """Return the robot with the base of a mounted stage as its tip, and the base's rotation at home, shape (3, 3)."""
     frame = robot.stages[stage].base_frame
-    assert frame is not None  # noqa: S101 - it rides
+    assert frame is not None  # noqa: S101 - a mounted stage
     model = robot.model.with_tip(frame)
     return model, model.tip_pose(robot.home)[:3, :3]
 
 
 def _at_rest(position: Array) -> Array:
-    """Return a position as a motion, shape (3, 3)."""
+    """Return a position as a motion at rest, shape (3, 3)."""
     return np.array([position, _STILL, _STILL])
 
 
 def _no_posture(joints: int | None) -> FloatArray:
-    """Return the memory of a stage that holds no posture: one of its joints, and 1 where it is held; None never is."""
+    """Return the memory without a held configuration: joint positions, then a flag; empty if a stage never holds."""
     return np.zeros(0 if joints is None else joints + 1)
 
 
 def _hold(
     law: StageLaw, arm: Arm, numbers: StageNumbers, q: Array, dq: Array, memory: Array, gravity: Array | None = None
 ) -> tuple[Array, Array]:
-    """Return the torques that hold a posture from the first moment of a hold to its end, and the memory of it."""
+    """Return the torques that hold the configuration at the start of a hold, and its memory."""
     backend = arm.backend
     kept = backend.choose(backend.less(0.5, memory[-1]), lambda: memory, lambda: np.concatenate([q, [1.0]]))
     return law.hold(arm, numbers, q, dq, kept[:-1], gravity), kept

@@ -14,11 +14,11 @@ class NullSpaceConfig(StrictModel):
     """Config of the null-space task.
 
     Attributes:
-        task: What is sought: a posture, the middle of the joints' ranges, the largest manipulability, or nothing (the
-            joint motion is then the shortest).
-        gain: How fast, in 1/s.
-        posture: The posture sought, in rad; m where a joint slides. None is home.
-        max_speed: Largest joint speed asked for, in rad/s; m/s where a joint slides. None is no limit.
+        task: Objective: a configuration (posture), the middle of the joint ranges, the largest manipulability, or none,
+            which gives the shortest joint motion.
+        gain: Gain k of the task, in 1/s.
+        posture: Desired configuration, in rad (m for a prismatic joint); None for home.
+        max_speed: Maximum joint speed of the task, in rad/s (m/s for a prismatic joint); None for no limit.
     """
 
     task: Literal["none", "posture", "joint_limits", "manipulability"]
@@ -28,16 +28,16 @@ class NullSpaceConfig(StrictModel):
 
 
 class NullSpaceTask:
-    r"""Joint velocities that a task asks for, to be projected into the null space of the tip's.
+    r"""Joint velocities of a task, before their projection into the null space of the tip task.
 
     - posture: k (q_rest - q);
-    - joint_limits: k (q_mid - q) / d^2 per joint, d half its range: downhill on Liegeois' sum of squared distances
-      from the middle (IEEE Transactions on Systems, Man and Cybernetics 7(12), 1977); zero for unlimited joints;
+    - joint_limits: k (q_mid - q) / d^2 for each joint, with d half its range: descent of Liegeois' sum of squared
+      distances from the middle (IEEE Transactions on Systems, Man and Cybernetics 7(12), 1977); 0 for unlimited joints;
     - manipulability: k times the gradient of ln w, with Yoshikawa's w = sqrt(det J J^T).
 
     Args:
-        config: The task's numbers.
-        rest: Posture sought, shape (nq,), in rad.
+        config: Config of the task.
+        rest: Desired configuration, shape (nq,), in rad.
         position_limits: Lower and upper joint positions, shape (2, nq), in rad; infinite if there are none.
     """
 
@@ -52,12 +52,12 @@ class NullSpaceTask:
         self._pull = np.where(bounded, 4.0 / (upper - lower) ** 2, 0.0)
 
     def velocity(self, q: FloatArray, J: FloatArray, directions: FloatArray) -> FloatArray:
-        """Return the joint velocities asked for, shape (nq,), in rad/s.
+        """Return the joint velocities of the task, shape (nq,), in rad/s.
 
         Args:
             q: Joint positions, shape (nq,), in rad.
             J: The tip's basic Jacobian in the base frame, shape (6, nq).
-            directions: What the tip's task asks for, shape (rows, 3) for the position, (rows, 6) for the pose; see
+            directions: Directions of the tip task, shape (rows, 3) for the position, (rows, 6) for the pose; see
                 task_basis.
         """
         if self._task == "none" or self._gain == 0.0:
@@ -85,16 +85,16 @@ def log_manipulability_gradient(J: FloatArray, directions: FloatArray) -> FloatA
 
     .. math:: \partial \ln w / \partial q_k = \mathrm{tr}(J^+ \, \partial J / \partial q_k)
 
-    A joint turns or shifts what comes after it: with j_i the linear and z_i the angular column of joint i (z_i = 0
-    where it slides),
+    A joint moves the links after it. With j_i the linear and z_i the angular column of joint i (z_i = 0 for a prismatic
+    joint),
     dj_i/dq_k = z_k x j_i and dz_i/dq_k = z_k x z_i for k <= i, dj_i/dq_k = z_i x j_k and dz_i/dq_k = 0 for k > i.
 
     Args:
         J: The tip's basic Jacobian in the base frame, shape (6, nq).
-        directions: What w is of, shape (rows, 3) for the position, (rows, 6) for the pose.
+        directions: Task directions of w, shape (rows, 3) for the position, (rows, 6) for the pose.
 
     Raises:
-        numpy.linalg.LinAlgError: at a singular posture.
+        numpy.linalg.LinAlgError: at a singular configuration.
     """
     linear, angular = J[:3].T, J[3:].T
     first = np.minimum.outer(np.arange(len(linear)), np.arange(len(linear)))  # [k, i]: the one nearer to the base

@@ -26,16 +26,15 @@ class OperationalSpaceConfig(StrictModel):
 
     Attributes:
         kind: Registry name of the controller.
-        task: Whether the tip's position is led, or its pose, with home's orientation held.
+        task: Controlled tip motion: the position, or the pose with the orientation of home.
         natural_frequency: omega_n of the closed loop in every direction of the tip, in rad/s.
         damping_ratio: xi of the closed loop.
         period: Time between two ticks, in s.
-        gravity_compensation: Whether the law holds the gravity term p(x).
-        feedforward: Whether the law follows the desired velocity and acceleration, or sees a moving goal.
-        singularity_damping: Share of the tip's error by which the inverse of J is damped near a singular posture;
-            0 is the law as printed.
-        null_space_frequency: omega_n of the posture task, home, of an arm with more joints than the task needs, in
-            rad/s.
+        gravity_compensation: True if the law includes the gravity term p(x).
+        feedforward: True if the law uses the desired velocity and acceleration; False to follow a moving goal.
+        singularity_damping: Damping of the inverse of J near a singular configuration, as a fraction of the tip error;
+            0 for the law in the thesis.
+        null_space_frequency: omega_n of the posture task to home if the arm has redundant joints, in rad/s.
     """
 
     kind: Literal["operational_space"]
@@ -53,11 +52,11 @@ class OperationalSpaceNumbers(NamedTuple):
     """The numbers of operational-space control.
 
     Attributes:
-        weights: Of desired position, velocity and acceleration in F*, shape (3,).
-        k_p: omega_n^2, shape (3,), in 1/s^2: NumPy multiplies arrays quicker than a float.
+        weights: Weights of desired position, velocity and acceleration in F*, shape (3,).
+        k_p: omega_n^2, shape (3,), in 1/s^2, because NumPy multiplies arrays faster than an array and a float.
         k_v: 2 xi omega_n, shape (3,), in 1/s.
-        damping: Square of the share of the tip's error by which the inverse of J is damped.
-        singular_below: Singular value below which it is, in m.
+        damping: singularity_damping^2.
+        singular_below: Singular value below which the inverse of J is damped, in m.
     """
 
     weights: Array
@@ -81,23 +80,23 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
 
     .. math:: \tau = M J^{-1} (F^* - \dot J \dot q) + V + G,
 
-    inverse dynamics at the joint acceleration J^-1 (F* - dJ/dt dq), which is how it is computed: one linear solve,
-    no inverse. Without feedforward the desired velocity and acceleration are taken as zero, which is the goal law,
-    eq. (3.33). Without gravity compensation the term p (that is G) is left out.
+    inverse dynamics at the joint acceleration J^-1 (F* - dJ/dt dq). The code computes this form with one linear solve.
+    Without feedforward the desired velocity and acceleration are zero, which is the goal law, eq. (3.33). Without
+    gravity compensation the law omits p (that is G).
 
-    The law has no answer at a singular posture, and sampled control no finite one beside it: an unlimited goal
-    move of the Macro passes the base axis within a tick and diverges. So where J is nearly singular its inverse is
-    damped (Levenberg-Marquardt): J^T (J J^T + lambda^2 I)^-1 with lambda = singularity_damping |x_d - x|, faded in as
-    the smallest singular value falls below a tenth of the reach. It vanishes with the error, so that neither rest
-    nor close tracking is touched.
+    The law has no solution at a singular configuration. Sampled control diverges near one: in an unlimited goal move
+    the Macro passes the base axis within a tick. So the inverse of a nearly singular J is damped (Levenberg-Marquardt):
+    J^T (J J^T + lambda^2 I)^-1 with lambda = singularity_damping |x_d - x|. The damping fades in as the smallest
+    singular value falls below a tenth of the reach. It vanishes with the error, so it does not change rest or close
+    tracking.
 
     Args:
-        model: The robot; only its URDF-derived constants are read.
-        law: The law's numbers; k_p = omega_n^2 (3.37), k_v = 2 xi omega_n (3.38). It has no null space, and its tip
-            speed no limit.
+        model: The robot; the law reads only its URDF-derived constants.
+        law: Config of the law; k_p = omega_n^2 (3.37), k_v = 2 xi omega_n (3.38). The null-space frequency and the
+            maximum tip speed are ignored.
 
     Raises:
-        ConfigError: if the arm has another number of joints than three.
+        ConfigError: if the arm does not have three joints.
     """
 
     def __init__(self, model: RobotModel, law: WholeBodyLaw) -> None:
@@ -148,7 +147,7 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
         F = numbers.weights.dot(reference) - numbers.k_p * tip.x - numbers.k_v * J.dot(dq) - tip.dJ_dq[:3]
         solution, determinant = backend.solve_three(J, F, None if self._damped else "the tip's Jacobian is singular")
         if self._damped:
-            # |det J| over the other two singular values' largest possible product: a lower bound of the smallest.
+            # |det J| over the largest possible product of the other two singular values: a lower bound of the smallest.
             entries = J.ravel()
             nearness = 2.0 * backend.absolute(determinant) / (entries.dot(entries) * numbers.singular_below)
 
@@ -165,19 +164,19 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
 def tip_law(
     model: RobotModel, numbers: WholeBodyLaw, home: FloatArray, orientation: FloatArray | None = None
 ) -> OperationalSpace | WholeBody:
-    """Return the law that leads an arm's tip, whatever its number of joints.
+    """Return the tip control law of an arm with any number of joints.
 
-    Three joints that can bring the tip in every direction lead it by OperationalSpace. Others do by WholeBody, whose
-    null space draws all joints to spare home; without that an arm drifts into its joint stops.
+    OperationalSpace controls the position of an arm with three joints if its tip can move in every direction. WholeBody
+    controls all others. Its null space pulls redundant joints home, because they would drift into their stops.
 
     Args:
         model: The arm.
-        numbers: The law's numbers.
+        numbers: Config of the law.
         home: Joint positions at home, shape (nq,), in rad.
-        orientation: The orientation that the tip holds, in the base frame, shape (3, 3); None leads its position alone.
+        orientation: Desired orientation of the tip in the base frame, shape (3, 3); None for position control.
 
     Raises:
-        ConfigError: if the arm has fewer joints than the tip has directions to go.
+        ConfigError: if the arm has fewer joints than the tip has directions of motion.
     """
     if model.nq == 3 == len(task_basis(model, pose=False)) and orientation is None:
         return OperationalSpace(model, numbers)
@@ -218,5 +217,5 @@ def build(config: OperationalSpaceConfig, robot: Robot) -> tuple[Loop, ...]:
 
 
 def start_posture(config: OperationalSpaceConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
-    """Return where the arm stands at a trajectory's start: for a pose, with home's orientation."""
+    """Return the joint positions at the start; see task_start."""
     return task_start(config.task, robot, start)

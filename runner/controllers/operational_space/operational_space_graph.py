@@ -13,12 +13,12 @@ def operational_space_graph(
         F^* = \ddot x_d + k_v (\dot x_d - \dot x) + k_p (x_d - x), \qquad
         \tau = J^T (\hat\Lambda F^* + \hat\mu + \hat p)
 
-    A term that the config leaves out is absent from the graph. All the model's terms are taken at the measured
-    state, which is the upper and the lower line of the picture. The damping of J^-1 beside a singular posture, which is
-    no part of the law as printed, is not shown.
+    The graph omits a term that the config leaves out. All model terms are taken at the measured state, drawn as the
+    upper and the lower line. The damping of J^-1 near a singular configuration, which the thesis does not have, is not
+    shown.
 
     Args:
-        gravity_compensation: Whether the law holds p(x).
+        gravity_compensation: True if the law includes p(x).
         feedforward: True if the law uses the desired velocity and acceleration.
         torque_limited: True if torques are clipped.
         goal: True if the reference is a goal at rest, which has no derivatives.
@@ -76,10 +76,10 @@ def operational_space_graph(
 
 
 def damping(derivatives: bool) -> tuple[list[Node], list[Edge]]:
-    r"""Return the way of the tip's velocity to F*, through k_v.
+    r"""Return the path from the tip's velocity to F*, through k_v.
 
     Args:
-        derivatives: Whether \dot x_d is taken from it, and \ddot x_d goes to F*.
+        derivatives: True if the law uses \dot x_d and \ddot x_d.
     """
     if not derivatives:
         return [], [

@@ -17,7 +17,7 @@ TaskName = Literal["position", "pose"]
 
 
 class TipTaskConfig(Protocol):
-    """What the config of a law says of the motion of the tip."""
+    """Config of the tip motion of a law."""
 
     natural_frequency: float
     damping_ratio: float
@@ -31,12 +31,12 @@ class TipNumbers(NamedTuple):
     Attributes:
         k_p: omega_n^2, in 1/s^2.
         k_v: 2 xi omega_n, in 1/s.
-        directions: What the task has for its rows, shape (rows, 3) or (rows, 6); see task_basis.
-        orientation: The orientation held, in the base frame, shape (3, 3).
+        directions: Directions of the task's rows, shape (rows, 3) or (rows, 6); see task_basis.
+        orientation: Desired orientation in the base frame, shape (3, 3).
         max_acceleration: Largest k_p |x_d - x|, in m/s^2.
-        damping: Square of the share of the tip's error by which inverses are damped.
-        singular_below: Square of the singular value below which they are, in m^2.
-        lengths: Length that a unit of each row counts as, shape (rows,).
+        damping: singularity_damping^2.
+        singular_below: Square of the singular value below which inverses are damped, in m^2.
+        lengths: Length equivalent to a unit of each row, shape (rows,): 1 or, for a rotation, the reach in m.
     """
 
     k_p: Scalar
@@ -50,33 +50,33 @@ class TipNumbers(NamedTuple):
 
 
 class TipTask:
-    r"""Linear control of the tip: the acceleration that it is asked for, eq. (3.40) of the thesis.
+    r"""Linear control of the tip: the commanded acceleration, eq. (3.40) of the thesis.
 
     .. math:: F^* = \ddot x_d + k_v (\dot x_d - \dot x) + k_p (x_d - x)
 
-    Without feedforward the desired velocity and acceleration are taken as zero, which is the goal law, eq. (3.33).
-    With a largest tip speed V it is Khatib's saturated form,
+    Without feedforward the desired velocity and acceleration are zero, which is the goal law, eq. (3.33). With a
+    maximum tip speed V it is Khatib's saturated form,
 
     .. math::
 
         F^* = \ddot x_d - k_v (\dot x - \dot x_d - \nu \frac{k_p}{k_v} (x_d - x)), \quad
         \nu = \min(1, V k_v / (k_p |x_d - x|))
 
-    A pose has three rows more. They hold an orientation R_0, with the error as a rotation vector in the base frame:
+    A pose has three more rows for an orientation R_0, with the error as a rotation vector in the base frame:
 
     .. math:: F^*_\omega = -k_v \omega + k_p \log(R_0 R^T)
 
-    About any one axis this is the same linear law. An error of half a turn has no unique axis.
+    About a single axis this is the same linear law. An error of half a turn has no unique axis.
 
-    Where an arm can move or turn its tip in some directions only, as a planar one, the task has these alone for its
-    rows; see task_basis.
+    If the tip can move or rotate only in some directions, as that of a planar arm, the task has only these rows; see
+    task_basis.
 
     Args:
         model: The arm.
-        orientation: R_0 in the base frame, shape (3, 3); None leads the position alone.
-        law: omega_n, with k_p = omega_n^2 (3.37); xi, with k_v = 2 xi omega_n (3.38); whether the desired derivatives
-            are part of F*; and the share of the tip's error by which inverses are damped near a singular posture.
-        max_speed: V in m/s; None is no limit.
+        orientation: R_0 in the base frame, shape (3, 3); None for position control.
+        law: Config with omega_n, where k_p = omega_n^2 (3.37); xi, where k_v = 2 xi omega_n (3.38); the feedforward;
+            and the damping of inverses near a singular configuration, as a fraction of the tip error.
+        max_speed: V in m/s; None for no limit.
     """
 
     def __init__(
@@ -88,14 +88,14 @@ class TipTask:
     ) -> None:
         directions = task_basis(model, orientation is not None)
         self.rows = len(directions)
-        """Dimensions of the task: 3 or 6 of an arm that can move its tip in every direction."""
-        moves = int(np.count_nonzero(directions[:, :3].any(axis=1)))  # the other rows turn
+        """Dimensions of the task: 3 or 6 if the arm can move its tip in every direction."""
+        moves = int(np.count_nonzero(directions[:, :3].any(axis=1)))  # the other rows are rotations
         self._moves, self._turns = moves, orientation is not None
         self._whole = self.rows == directions.shape[1]
         self._feedforward, self._bounded = law.feedforward, max_speed is not None
         self._damped = law.singularity_damping > 0.0
         k_p, k_v = law.natural_frequency**2, 2.0 * law.damping_ratio * law.natural_frequency
-        # A turn counts as the way that it moves a point a reach away, so that all rows are lengths.
+        # A rotation counts as the displacement of a point at the distance of the reach, so all rows are lengths.
         lengths = np.array(moves * [1.0] + (self.rows - moves) * [model.reach])
         self.numbers = TipNumbers(
             k_p=k_p,
@@ -112,7 +112,7 @@ class TipTask:
         """Check that an arm has enough joints for the task.
 
         Raises:
-            ConfigError: if it has fewer than the tip has directions to go.
+            ConfigError: if it has fewer than the tip has directions of motion, or the tip cannot move.
         """
         if not 0 < self.rows <= model.nq:
             raise ConfigError(
@@ -128,7 +128,7 @@ class TipTask:
         return (J, dJ_dq) if self._whole else (numbers.directions.dot(J), numbers.directions.dot(dJ_dq))
 
     def error(self, backend: Backend, numbers: TipNumbers, tip: Tip, reference: Array) -> Array:
-        """Return desired less actual, shape (rows,), in m and rad."""
+        """Return desired less actual position and orientation, shape (rows,), in m and rad."""
         error: Array = reference[0] - tip.x
         if self._turns:
             error = np.concatenate([error, backend.rotation_vector(numbers.orientation.dot(tip.R.T))])
@@ -158,17 +158,17 @@ class TipTask:
         )
 
     def damp(self, backend: Backend, numbers: TipNumbers, J: Array, error: Array, mobility: Array) -> Array:
-        r"""Return J A J^T, shape (rows, rows), with what is added to its diagonal before it is inverted.
+        r"""Return J A J^T, shape (rows, rows), with damping on its diagonal.
 
-        With rows in units of length that is lambda^2 = (singularity_damping |e|)^2, times how large J A J^T is to
-        J J^T. It fades in as the smallest singular value falls below a tenth of the reach, and vanishes with the error,
-        so that neither rest nor close tracking is touched.
+        With rows in units of length the damping is lambda^2 = (singularity_damping |e|)^2, times the ratio of the
+        traces of J A J^T and J J^T. It fades in as the smallest singular value falls below a tenth of the reach. It
+        vanishes with the error, so it does not change rest or close tracking.
 
         Args:
-            backend: The functions over the scalars of these arrays.
-            numbers: The task's numbers.
-            J: The task's Jacobian, shape (rows, nq).
-            error: The task's error, shape (rows,).
+            backend: Functions over the scalars of these arrays.
+            numbers: Numbers of the task.
+            J: Jacobian of the task, shape (rows, nq).
+            error: Error of the task, shape (rows,).
             mobility: J A J^T, shape (rows, rows).
         """
         if not self._damped:
@@ -188,7 +188,7 @@ class TipTask:
 
 
 def held_orientation(task: TaskName, model: RobotModel, home: FloatArray) -> FloatArray | None:
-    """Return the orientation that a task holds: home's for a pose, None for a position.
+    """Return the desired orientation of a task: that of home for a pose, None for a position.
 
     Raises:
         ConfigError: if the task has more dimensions than the arm has joints.
@@ -204,7 +204,13 @@ def held_orientation(task: TaskName, model: RobotModel, home: FloatArray) -> Flo
 
 
 def task_start(task: TaskName, robot: Robot, start: FloatArray) -> FloatArray | None:
-    """Return joint positions that start a task with the tip at a place, shape (3,); None leaves it to the position."""
+    """Return joint positions for a pose with the orientation of home and the tip at `start`; None for a position task.
+
+    Args:
+        task: The task.
+        robot: The robot.
+        start: Start position of the tip, shape (3,), in m.
+    """
     if task == "position":
         return None
     pose = robot.model.tip_pose(robot.home)

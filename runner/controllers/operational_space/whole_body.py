@@ -18,18 +18,18 @@ from runner.symbolic.maths import Array, Scalar
 
 
 class WholeBodyLaw(StrictModel):
-    """The numbers of the whole-body law.
+    """Config of the whole-body law.
 
     Attributes:
         natural_frequency: omega_n of the closed loop in every direction of the tip, in rad/s.
         damping_ratio: xi of the closed loop.
         gravity_compensation: True if the law includes the gravity term.
         feedforward: True if the law uses the desired velocity and acceleration.
-        null_space_frequency: omega_n of the posture task in the null space, in rad/s; it holds joints at home, and
-            damps all joints.
-        max_tip_speed: Tip speed at which the approach to the goal saturates, in m/s; None is no limit.
-        singularity_damping: Share of the tip's error by which the inverse of J M^-1 J^T is damped near a singular
-            posture; 0 is the law as printed.
+        null_space_frequency: omega_n of the posture task in the null space, in rad/s; it pulls joints home and damps
+            all joints.
+        max_tip_speed: Tip speed at which the approach to the goal saturates, in m/s; None for no limit.
+        singularity_damping: Damping of the inverse of J M^-1 J^T near a singular configuration, as a fraction of the
+            tip error; 0 for the law in the thesis.
     """
 
     natural_frequency: RadiansPerSecond[PositiveFloat]
@@ -54,7 +54,7 @@ class WholeBodyConfig(WholeBodyLaw):
 
 
 class WholeBodyNumbers(NamedTuple):
-    """The numbers of the whole-body law: the tip's, and the posture's."""
+    """The numbers of the whole-body law: those of the tip task and of the posture task."""
 
     tip: TipNumbers
     posture: PostureNumbers
@@ -68,20 +68,19 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         \tau = h + J^T \Lambda (F^* - \dot J \dot q) + N^T \tau_0, \qquad
         \Lambda = (J M^{-1} J^T)^{-1}, \quad \bar J = M^{-1} J^T \Lambda, \quad N^T = 1 - J^T \bar J^T
 
-    F* is that of TipTask: of the tip's position, or of its pose where an orientation is held. tau_0 is the posture
-    task's, of JointStiffness or PostureTask; J M^-1 N^T = 0, so that the tip does not feel it.
+    F* is that of TipTask, for the tip's position or, with an orientation, its pose. tau_0 is the torque of the posture
+    task, JointStiffness or PostureTask. J M^-1 N^T = 0, so tau_0 does not accelerate the tip.
 
     Args:
         model: The whole arm.
-        config: The law's numbers.
-        rest: Posture of the null space, shape (nq,), in rad.
-        first_held: The first joint whose posture is held by a spring, and with it all after it. None holds all but as
-            many as the task has dimensions, which is all that riding Minis have; 0 draws all joints to the posture, see
-            PostureTask.
-        orientation: The orientation that the tip holds, in the base frame, shape (3, 3); None leads its position alone.
+        config: Config of the law.
+        rest: Configuration of the posture task, shape (nq,), in rad.
+        first_held: Index of the first joint with a spring (JointStiffness); all later joints also have one. None leaves
+            as many joints free as the task has dimensions, so that springs hold the mounted Minis. 0 uses PostureTask.
+        orientation: Desired orientation of the tip in the base frame, shape (3, 3); None for position control.
 
     Raises:
-        ConfigError: if the arm has fewer joints than the tip has directions to go.
+        ConfigError: if the arm has fewer joints than the tip has directions of motion.
     """
 
     def __init__(
@@ -155,7 +154,7 @@ CONFIG = WholeBodyConfig
 def build(config: WholeBodyConfig, robot: Robot) -> tuple[Loop, ...]:
     """Build the single loop of a config; it commands every joint.
 
-    The posture of riding arms is held; of an arm on which nothing rides all joints are drawn home.
+    Springs hold the joints of mounted arms at home. If the robot has one stage, the law pulls all joints home.
     """
     joints, first_held = slice(0, robot.model.nq), 0 if len(robot.stages) == 1 else None
     return (Loop("whole", joints, config.period, WholeBody(robot.model, config, robot.home, first_held)),)

@@ -3,7 +3,7 @@
 from runner.controllers.graph import ControlGraph, Edge, Node
 from runner.controllers.operational_space.operational_space_graph import damping
 
-_TASK, _TORQUE = 1.1, 3.2  # columns from F* to the task's and to the torques' summing point
+_TASK, _TORQUE = 1.1, 3.2  # columns from F* to the summing points of the task and of the torques
 
 
 def whole_body_graph(
@@ -21,19 +21,18 @@ def whole_body_graph(
 
         \tau = h + J^T \Lambda (F^* - \dot J \dot q) + N^T (K (q_0 - q) - k_{vn} M \dot q), \qquad h = V + G
 
-    Where all joints are drawn home, its last term is M (1 - J^+ J) (k_p0 (q_0 - q) - k_v0 dq); N^T leaves it as it is.
-    A term that the config leaves out is absent from the graph. All the model's terms are taken at the measured state,
-    which is the upper and the lower line of the picture. The damping of Lambda beside a singular posture, which is no
-    part of the law as printed, is not shown.
+    With all_joints, the last term is M (1 - J^+ J) (k_p0 (q_0 - q) - k_v0 dq), which N^T does not change. The graph
+    omits a term that the config leaves out. All model terms are taken at the measured state, drawn as the upper and the
+    lower line. The damping of Lambda near a singular configuration, which the thesis does not have, is not shown.
 
     Args:
-        gravity_compensation: Whether the law holds G(q).
+        gravity_compensation: True if the law includes G(q).
         feedforward: True if the law uses the desired velocity and acceleration.
         torque_limited: True if torques are clipped.
         goal: True if the reference is a goal at rest, which has no derivatives.
-        speed_limited: Whether the approach to the goal saturates at a largest tip speed V.
-        posture_task: Whether the null space holds a posture: null_space_frequency is not 0.
-        all_joints: Whether that posture is of all joints alike (PostureTask), or of some (JointStiffness).
+        speed_limited: True if the approach to the goal saturates at a maximum tip speed V.
+        posture_task: True if the null space has a posture task: null_space_frequency is not 0.
+        all_joints: True if this task acts on all joints (PostureTask), False if on some (JointStiffness).
     """
     bottom = 4.0 if posture_task else 2.0
     force = 3.2 if speed_limited else 2.75
@@ -52,7 +51,7 @@ def whole_body_graph(
 def _loop(
     gravity_compensation: bool, torque_limited: bool, torque: float, bottom: float, below: str
 ) -> tuple[list[Node], list[Edge]]:
-    """Return what stands around the law: arm, encoders, kinematics, h, the limit."""
+    """Return the arm, encoders, kinematics, h and the torque limit."""
     arm = torque + (2.15 if torque_limited else 1.0)
     velocity = r"V(q,\dot{q})"
     nodes = [
@@ -83,7 +82,7 @@ def _loop(
 def _task(
     derivatives: bool, desired: str, speed_limited: bool, force: float, torque: float
 ) -> tuple[list[Node], list[Edge]]:
-    """Return the tip's part of the law, from the reference to J^T."""
+    """Return the tip task, from the reference to J^T."""
     task = force + _TASK
     name = "Trajectory" if desired == "x_d" else "Goal"
     nodes = [
@@ -124,7 +123,7 @@ def _task(
 
 
 def _posture(torque: float, bottom: float, all_joints: bool) -> tuple[list[Node], list[Edge]]:
-    """Return the null space's part: a posture's torque, projected so that the tip does not feel it."""
+    """Return the posture task, projected into the null space of the tip task."""
     if all_joints:
         stiffness, damping, asked, projector = "$k_{p0}$", "$k_{v0}$", r"$\ddot{q}_0$", r"$M(1 - J^+\!J)$"
     else:

@@ -15,8 +15,8 @@ class PostureNumbers(NamedTuple):
     Attributes:
         k_p: omega_n^2, in 1/s^2.
         k_v: 2 omega_n, in 1/s.
-        rest: The posture, shape (nq,), in rad.
-        stiffness: K of a spring, shape (nq, nq), in N m/rad.
+        rest: Desired configuration, shape (nq,), in rad.
+        stiffness: K of the springs, shape (nq, nq), in N m/rad.
     """
 
     k_p: Scalar
@@ -26,11 +26,11 @@ class PostureNumbers(NamedTuple):
 
 
 class Posture(Protocol):
-    """A posture task; its torque is M a + s, before the tip's part is taken out of it."""
+    """A posture task; its torque is M a + s, before the projection into the null space of the tip task."""
 
     @property
     def numbers(self) -> PostureNumbers:
-        """Its numbers."""
+        """Numbers of the task."""
         ...
 
     def acceleration_and_torque(
@@ -39,30 +39,30 @@ class Posture(Protocol):
         """Return a joint acceleration a, in rad/s^2, and a torque s, in N m or None, both of shape (nq,).
 
         Args:
-            backend: The functions over the scalars of these arrays.
-            numbers: The task's numbers.
-            J: Jacobian of the tip's task, shape (rows, nq).
+            backend: Functions over the scalars of these arrays.
+            numbers: Numbers of the task.
+            J: Jacobian of the tip task, shape (rows, nq).
             q: Joint positions, shape (nq,), in rad.
-            dq: Joint velocities, likewise, in rad/s.
+            dq: Joint velocities, shape (nq,), in rad/s.
         """
         ...
 
 
 class JointStiffness:
-    r"""Joints from one on are held, and all are damped.
+    r"""Posture task with springs on the joints from `first` on, and damping of all joints.
 
     .. math:: \tau_0 = -k_{vn} M \dot q - K (q - q_\mathrm{rest})
 
-    Damping alone would let a Mini that rides on a Macro stretch. K is constant, symmetric, and zero but for the joints
-    whose posture is held: a spring, so that the posture can only lose energy while the tip rests. At rest it gives them
-    omega_n = frequency: K is omega_n^2 times the inertia that they meet there with the tip held. An acceleration,
-    M S (q - q_rest), is no spring: of one of the Mini's joints alone N^T leaves nothing at home.
+    With damping only, a Mini on a Macro would stretch. K is constant, symmetric, and zero for the free joints. Because
+    it is a spring, the posture only loses energy while the tip rests. K is omega_n^2 times the inertia of the held
+    joints at q_rest with the tip fixed, so their natural frequency there is omega_n. An acceleration M S (q - q_rest)
+    would not be a spring: at home N^T cancels it if it acts on a single Mini joint.
 
     Args:
         model: The arm.
         frequency: omega_n of the posture, in rad/s.
-        rest: The posture, shape (nq,), in rad.
-        first: The first joint that is held, and with it all after it; as many as the tip's position takes stay free.
+        rest: Desired configuration, shape (nq,), in rad.
+        first: Index of the first joint with a spring; the joints before it stay free for the tip task.
     """
 
     def __init__(self, model: RobotModel, frequency: float, rest: FloatArray, first: int) -> None:
@@ -72,22 +72,22 @@ class JointStiffness:
     def acceleration_and_torque(
         self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array
     ) -> tuple[Array, Array | None]:
-        """Return -k_vn dq and the spring's torque; see Posture."""
+        """Return -k_vn dq and the torque of the springs; see Posture."""
         return -numbers.k_v * dq, numbers.stiffness.dot(numbers.rest - q)
 
 
 class PostureTask:
-    r"""All joints are drawn to a posture, as far as the tip's task leaves them.
+    r"""Posture task that pulls all joints to a configuration, as far as the tip task allows.
 
     .. math:: \tau_0 = M (1 - J^+ J) (-2 \omega_n \dot q - \omega_n^2 (q - q_\mathrm{rest}))
 
-    While the tip rests, |dq|^2 + omega_n^2 |q - q_rest|^2 falls, and the arm ends where it is nearest to the posture
-    counted in joint angles. A spring of every joint's own inertia would count in these: it turns the light wrist of an
-    arm by radians before it moves the heavy shoulder.
+    While the tip rests, |dq|^2 + omega_n^2 |q - q_rest|^2 decreases, and the arm ends at the nearest configuration to
+    q_rest by joint angles. Springs in proportion to the joint inertias would weight the distance by inertia: they turn
+    the light wrist of an arm by radians before they move the heavy shoulder.
 
     Args:
         frequency: omega_n of the posture, in rad/s.
-        rest: The posture, shape (nq,), in rad.
+        rest: Desired configuration, shape (nq,), in rad.
     """
 
     def __init__(self, frequency: float, rest: FloatArray) -> None:
@@ -96,24 +96,24 @@ class PostureTask:
     def acceleration_and_torque(
         self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array
     ) -> tuple[Array, Array | None]:
-        """Return the joint acceleration that the tip does not feel, and no torque; see Posture."""
+        """Return the joint acceleration in the null space of the tip task, and None; see Posture."""
         return null_space_projection(backend, J, posture_pd(numbers, q, dq)), None
 
 
 def posture_pd(numbers: PostureNumbers, q: Array, dq: Array) -> Array:
-    """Return the joint acceleration towards a posture, whatever the tip does, shape (nq,), in rad/s^2."""
+    """Return the joint acceleration towards a configuration, without projection, shape (nq,), in rad/s^2."""
     return np.asarray(numbers.k_p * (numbers.rest - q) - numbers.k_v * dq)
 
 
 def null_space_projection(backend: Backend, J: Array, ddq: Array) -> Array:
-    """Return (1 - J^+ J) ddq, shapes (rows, nq) and (nq,); smooth through singular postures."""
+    """Return (1 - J^+ J) ddq, shape (nq,), from shapes (rows, nq) and (nq,); smooth through singular configurations."""
     square = J.dot(J.T)
     square = square + 1e-12 * sum(square[i, i] for i in range(len(square))) * np.eye(len(square))
     return np.asarray(ddq - J.T.dot(backend.solve_symmetric(square, J.dot(ddq), None)))
 
 
 def _inertia_at_rest(model: RobotModel, rest: FloatArray, first: int) -> FloatArray:
-    """Return the inertia that the joints from a first one on meet at rest, shape (nq, nq), zero for the others."""
+    """Return the inertia of the joints from `first` on with a fixed tip, shape (nq, nq); zero for the others."""
     inertia = np.zeros((model.nq, model.nq))
     held = slice(first, model.nq)
     M, J = model.mass_matrix(rest), model.tip_jacobian(rest)[:3]
