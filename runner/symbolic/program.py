@@ -114,6 +114,10 @@ def program(pattern: str, what: str, express: Callable[[], Expressed], lanes: in
     return _program(hashlib.sha256(content.encode()).hexdigest(), what, ours, lanes, _Maker(express))
 
 
+PACKAGES = ("analysis", "controllers", "plants", "sensing", "simulation", "symbolic")
+"""Packages whose source decides what a program computes; kept machine code of another source is not used."""
+
+
 class _Maker:
     """Function that returns expressions; all instances are equal, because the cache key identifies the expressions."""
 
@@ -155,9 +159,9 @@ def _loaded(code: bytes, widths: Mapping[str, int], errors: Sequence[str], lanes
 
 @cache
 def _source_digest() -> str:
-    """Return a digest of the source that builds expressions."""
+    """Return a digest of the source of all packages whose code makes expressions."""
     digest = hashlib.sha256()
-    for room in ("compiled", "controllers"):
-        for path in sorted((package_dir() / room).glob("*.py")):
-            digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    for package in PACKAGES:
+        for path in sorted((package_dir() / package).rglob("*.py")):
+            digest.update(str(path.relative_to(package_dir())).encode() + b"\0" + path.read_bytes() + b"\0")
     return digest.hexdigest()

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from runner.base.paths import package_dir
+from runner.symbolic import program as program_module
 from runner.symbolic.code import ACTING, GIVEN, ROWS, SCRATCH, STATE, Block, Repeat
 from runner.symbolic.expression import (
     absolute,
@@ -110,3 +112,21 @@ def test_what_stands_twice_is_computed_once():
 
     text = write_program([Block([(ROWS, 0, (A + B) * (A + B)), (ROWS, 1, A + B)])], [], WIDTHS, 1)
     assert (text.count("fadd"), text.count("fmul")) == (1, 1)
+
+
+@pytest.mark.parametrize("package", program_module.PACKAGES)
+def test_kept_code_of_another_source_is_not_used(tmp_path, monkeypatch, package):
+    file = tmp_path / package / "deep" / "law.py"
+    file.parent.mkdir(parents=True)
+    file.write_text("GAIN = 1.0")
+    monkeypatch.setattr(program_module, "package_dir", lambda: tmp_path)
+    before = program_module._source_digest.__wrapped__()
+    file.write_text("GAIN = 2.0")
+    assert program_module._source_digest.__wrapped__() != before
+
+
+def test_the_source_of_kept_code_is_that_of_every_package_with_expressions():
+    files = [path for path in package_dir().rglob("*.py") if "from runner.symbolic" in path.read_text()]
+    users = {path.relative_to(package_dir()).parts[0] for path in files}
+    assert users - {"cli", "store"} <= set(program_module.PACKAGES)  # these ask for the version of the compiler
+    assert all((package_dir() / package).is_dir() for package in program_module.PACKAGES)
