@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import BeforeValidator, Field
 
@@ -18,7 +18,7 @@ from runner.schema.units import Hertz
 from runner.trajectories import Trajectory
 from runner.trajectories.impulses import in_turn, zero_vibration
 from runner.trajectories.joint_motion import TipOfJoints
-from runner.trajectories.shaped import Shaped, ShapedJoints
+from runner.trajectories.shaped import Shaped
 
 _KEY = "input_shaper.frequency"
 _MODE = re.compile(r"mode_([1-9]\d?)")
@@ -97,7 +97,7 @@ def shape(
         raise ConfigError(unseen)
     impulses = in_turn([zero_vibration(config.kind, *mode) for mode in found])
     if isinstance(path, TipOfJoints):
-        return replace(path, joints=ShapedJoints(path.joints, impulses))
+        return replace(path, joints=Shaped(cast(Trajectory, path.joints), impulses))
     return Shaped(path, impulses)
 
 

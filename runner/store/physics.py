@@ -60,10 +60,10 @@ _TABLE = """
     simulation/compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         program regressor structure tangent vectors=compiled.vectors
-    trajectories: __init__=trajectories.__init__ blend circle closed_figure from_file goal impulses interpolation
+    trajectories: __init__=trajectories.__init__ blend circle from_file goal impulses
         joint_motion=trajectories.joint_motion joint_quintic joint_sinusoids joint_waypoints kinds=trajectories.kinds
-        line lissajous nearest quintic sampled_curve shaped square table trajectory=trajectories.trajectory
-        vectors=trajectories.vectors waypoints
+        line lissajous motion nearest quintic sampled_curve shaped splines square table
+        trajectory=trajectories.trajectory vectors=trajectories.vectors waypoints
 """  # fmt: skip
 
 

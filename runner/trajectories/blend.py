@@ -18,11 +18,3 @@ def quintic_blend(u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         30.0 * u**2 * (1.0 - u) ** 2,
         60.0 * u * (1.0 - u) * (1.0 - 2.0 * u),
     )
-
-
-def quintic_motion(start: FloatArray, goal: FloatArray, duration: float, times: FloatArray) -> FloatArray:
-    """Return the blended motion from start to goal with two derivatives, shapes (k,), (k,), (T,) to (T, 3, k)."""
-    blend, rate = quintic_blend(times / duration), 1.0 / duration
-    motion = np.stack([np.outer(s * rate**order, goal - start) for order, s in enumerate(blend)], axis=1)
-    motion[:, 0] += start
-    return motion

@@ -9,7 +9,7 @@ from pydantic import PositiveFloat, PositiveInt
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
-from runner.trajectories.closed_figure import ClosedFigure, TimeScaling
+from runner.trajectories.motion import ClosedCurve, Easing, PathMotion
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Direction, InPlane, Point, component, plane_axes
 
@@ -34,12 +34,12 @@ class CircleConfig(StrictModel):
     normal: Direction
     centre_direction: InPlane
     turns: PositiveInt
-    easing: TimeScaling
+    easing: Easing
     duration: Seconds[PositiveFloat]
 
 
 @dataclass(frozen=True)
-class Circle:
+class Circle(ClosedCurve):
     r"""A circle, with phi = 2 pi turns u, and unit vectors e to the centre and f along the initial motion.
 
     .. math:: c(u) = x_0 + r (1 - \cos \varphi) e + r \sin \varphi f
@@ -88,4 +88,4 @@ def build(config: CircleConfig, start: FloatArray) -> Trajectory:
     """Build the circle that a config describes; `start` is the tip at t = 0."""
     e, g = plane_axes(config.normal, config.centre_direction)
     # In a counter-clockwise rotation about the normal, the tip leaves the start towards -g.
-    return ClosedFigure(Circle(start, config.radius, e, -g, config.turns), config.duration, config.easing)
+    return PathMotion(Circle(start, config.radius, e, -g, config.turns), config.duration, config.easing)

@@ -1,6 +1,5 @@
 """Tip or joint motion from a data file."""
 
-from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -11,11 +10,10 @@ from runner.base.errors import ConfigError
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import Seconds
-from runner.trajectories.interpolation import Interpolated, Interpolation, interpolate
 from runner.trajectories.joint_motion import JointMotion
-from runner.trajectories.nearest import distance_to_curve
+from runner.trajectories.splines import Interpolation, Spline, interpolate
 from runner.trajectories.table import parts_of, wrong_columns
-from runner.trajectories.trajectory import TrackedMotion, Trajectory
+from runner.trajectories.trajectory import Trajectory
 
 
 def _check_interpolation(value: Any) -> Any:
@@ -67,56 +65,11 @@ class FromFileConfig(StrictModel):
             raise ValueError(f"the file lasts {columns['t'][-1]:g} s; allowed: null")
         return value
 
-    def motion(self) -> Interpolated:
+    def motion(self) -> Spline:
         """Return the interpolated motion of the tip or of the joints."""
         columns = self.columns or {}
         rows = [[columns[name] for name in part] for part in parts_of(list(columns))]  # (orders, k, N)
         return interpolate(np.array(columns["t"]), np.moveaxis(np.array(rows), -1, 0), self.interpolation)
-
-
-@dataclass(frozen=True)
-class TipMotion(TrackedMotion):
-    """Motion of the tip through the rows of a file; see Trajectory for the attributes.
-
-    Attributes:
-        rows: The interpolated motion, in m.
-    """
-
-    rows: Interpolated
-
-    @property
-    def start(self) -> FloatArray:
-        """Tip position in the first row."""
-        start: FloatArray = self.rows.sample(np.zeros(1))[0, 0]
-        return start
-
-    @property
-    def goal(self) -> FloatArray:
-        """Tip position in the last row."""
-        goal: FloatArray = self.rows.sample(self.rows.times[-1:])[0, 0]
-        return goal
-
-    @property
-    def duration(self) -> float:
-        """Time t_f of the last row, in s."""
-        return self.rows.duration
-
-    def sample(self, times: FloatArray) -> FloatArray:
-        """Return the motion; after t_f it rests at the last row."""
-        return self.rows.sample(times)
-
-    def distance_to_path(self, points: FloatArray) -> FloatArray:
-        """Return the distance to the curve through the rows."""
-        even = np.linspace(0.0, self.duration, self.rows.samples + 1)
-        return distance_to_curve(points, self.sample, np.union1d(even, self.rows.times))
-
-
-class JointRows(Interpolated):
-    """Motion of the joints through the rows of a file, in rad; see JointMotion."""
-
-    def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return the motion; after t_f it rests at the last row."""
-        return self.sample(times)
 
 
 CONFIG = FromFileConfig
@@ -124,7 +77,7 @@ CONFIG = FromFileConfig
 
 def build(config: FromFileConfig, _: FloatArray) -> Trajectory:
     """Build the motion of the tip from a file; it starts at the first row of the file."""
-    return TipMotion(config.motion())
+    return config.motion()
 
 
 def joint_motion(config: FromFileConfig, robot: Robot) -> JointMotion | None:
@@ -142,5 +95,4 @@ def joint_motion(config: FromFileConfig, robot: Robot) -> JointMotion | None:
             f"trajectory.file: has {len(positions)} joints, q1 to q{len(positions)}; the robot has {len(names)}: "
             f"{', '.join(names)}"
         )
-    motion = config.motion()
-    return JointRows(motion.times, motion.orders)
+    return config.motion()

@@ -43,20 +43,25 @@ def start_of(value: Configuration | None, robot: Robot) -> FloatArray:
 
 
 class JointMotion(Protocol):
-    """Desired motion of the joints of a robot, from rest to rest."""
+    """Desired motion of the joints of a robot, from rest to rest, in rad and s; m for prismatic joints."""
+
+    @property
+    def start(self) -> FloatArray:
+        """Joint positions at t = 0, shape (nq,)."""
+        ...
 
     @property
     def duration(self) -> float:
         """Time t_f after which the joints rest, in s."""
         ...
 
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return q, dq/dt and d2q/dt2, shape (T, 3, nq)."""
+        ...
+
     @property
     def samples(self) -> int:
         """Number of equal time intervals, so short that the path of the tip bends only once in each of them."""
-        ...
-
-    def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return q, dq/dt and d2q/dt2, shape (T, 3, nq), in rad, rad/s and rad/s^2; m for prismatic joints."""
         ...
 
 
@@ -79,8 +84,7 @@ class TipOfJoints(TrackedMotion):
     @property
     def q_start(self) -> FloatArray:
         """Joint positions at t = 0, shape (nq,), in rad."""
-        start: FloatArray = self.joints.sample_joints(np.zeros(1))[0, 0]
-        return start
+        return self.joints.start
 
     @property
     def start(self) -> FloatArray:
@@ -101,11 +105,11 @@ class TipOfJoints(TrackedMotion):
 
     def sample_joints(self, times: FloatArray) -> FloatArray:
         """Return the motion of the joints; see JointMotion."""
-        return self.joints.sample_joints(times)
+        return self.joints.sample(times)
 
     def sample(self, times: FloatArray) -> FloatArray:
         """Return the motion of the tip; it rests after t_f."""
-        joints = self.joints.sample_joints(times)
+        joints = self.joints.sample(times)
         robot = self.robot
         if not self.ignore_base_rotation:
             return _tip_motion(robot.model, joints)

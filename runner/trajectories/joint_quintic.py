@@ -1,18 +1,14 @@
 """Quintic joint motion between two configurations, from rest to rest."""
 
-from dataclasses import dataclass
 from typing import Literal
 
 from pydantic import PositiveFloat
 
-from runner.base.arrays import FloatArray
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import JointPosition, Seconds
-from runner.trajectories.blend import quintic_motion
 from runner.trajectories.joint_motion import Configuration, JointMotion, configuration_of, start_of
-
-_SAMPLES = 512
+from runner.trajectories.motion import quintic_motion
 
 
 class JointQuinticConfig(StrictModel):
@@ -33,30 +29,6 @@ class JointQuinticConfig(StrictModel):
     duration: Seconds[PositiveFloat]
 
 
-@dataclass(frozen=True)
-class JointQuintic:
-    r"""Synchronous motion of all joints from rest to rest, with u = t / t_f; see JointMotion for the attributes.
-
-    .. math:: q(t) = q_0 + (q_f - q_0) (10 u^3 - 15 u^4 + 6 u^5)
-
-    The peak speed of each joint is 1.875 |q_f - q_0| / t_f, at half time.
-
-    Attributes:
-        start: q_0, shape (nq,), in rad.
-        goal: q_f, shape (nq,), in rad.
-        duration: t_f, in s.
-    """
-
-    start: FloatArray
-    goal: FloatArray
-    duration: float
-    samples: int = _SAMPLES
-
-    def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return the motion; after t_f it rests at the goal."""
-        return quintic_motion(self.start, self.goal, self.duration, times)
-
-
 CONFIG = JointQuinticConfig
 
 
@@ -67,4 +39,4 @@ def joint_motion(config: JointQuinticConfig, robot: Robot) -> JointMotion:
         ConfigError: if the length of a configuration differs from the number of joints.
     """
     goal = configuration_of("trajectory.goal_configuration", config.goal_configuration, robot)
-    return JointQuintic(start_of(config.start_configuration, robot), goal, config.duration)
+    return quintic_motion(start_of(config.start_configuration, robot), goal, config.duration)

@@ -69,14 +69,14 @@ class JointSinusoids:
     and back to 0 at the end. So the arm starts and ends at rest in q_0.
 
     Attributes:
-        centre: q_0, shape (nq,), in rad.
+        start: q_0, shape (nq,), in rad.
         coefficients: a and b, shape (nq, N, 2), in rad.
         omega: Fundamental frequency, in rad/s.
         ramp: t_r, in s.
         duration: t_f, in s.
     """
 
-    centre: FloatArray
+    start: FloatArray
     coefficients: FloatArray
     omega: float
     ramp: float
@@ -88,7 +88,7 @@ class JointSinusoids:
         highest = self.coefficients.shape[1] * self.omega / (2.0 * np.pi)
         return int(np.ceil(_SAMPLES * (self.duration * highest + 2.0)))
 
-    def sample_joints(self, times: FloatArray) -> FloatArray:
+    def sample(self, times: FloatArray) -> FloatArray:
         """Return the motion; after t_f it rests in q_0."""
         harmonics = self.coefficients.shape[1]
         parts = np.array_split(times, len(times) * harmonics // _AT_ONCE + 1)
@@ -104,7 +104,7 @@ class JointSinusoids:
         ddf = -(rate**2 * sine) @ a - (rate**2 * cosine) @ b
         w, dw, ddw = self._window(times)
         return np.stack(
-            [self.centre + w * f, dw * f + w * df, ddw * f + 2.0 * dw * df + w * ddf],
+            [self.start + w * f, dw * f + w * df, ddw * f + 2.0 * dw * df + w * ddf],
             axis=1,
         )
 

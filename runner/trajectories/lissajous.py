@@ -9,7 +9,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, ValidationInfo, fie
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Radians, Seconds
-from runner.trajectories.closed_figure import ClosedFigure, TimeScaling
+from runner.trajectories.motion import ClosedCurve, Easing, PathMotion
 from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import Trajectory
 from runner.trajectories.vectors import Point
@@ -35,7 +35,7 @@ class LissajousConfig(StrictModel):
     amplitudes: Metres[Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]]
     frequencies: Annotated[list[Annotated[int, Field(ge=0, le=100)]], Field(min_length=3, max_length=3)]
     phases: Radians[Point]
-    easing: TimeScaling
+    easing: Easing
     duration: Seconds[PositiveFloat]
 
     @field_validator("amplitudes")
@@ -56,7 +56,7 @@ class LissajousConfig(StrictModel):
 
 
 @dataclass(frozen=True)
-class Lissajous:
+class Lissajous(ClosedCurve):
     r"""A Lissajous figure, with theta = 2 pi u.
 
     .. math:: c_i(u) = x_{0i} + A_i (\sin(n_i \theta + \varphi_i) - \sin \varphi_i)
@@ -99,4 +99,4 @@ CONFIG = LissajousConfig
 def build(config: LissajousConfig, start: FloatArray) -> Trajectory:
     """Build the Lissajous figure that a config describes; `start` is the tip at t = 0."""
     values = (np.array(value, dtype=float) for value in (config.amplitudes, config.frequencies, config.phases))
-    return ClosedFigure(Lissajous(start, *values), config.duration, config.easing)
+    return PathMotion(Lissajous(start, *values), config.duration, config.easing)

@@ -1,9 +1,8 @@
 """Motions derived from another: input-shaped against vibration of flexible arms, or with an offset."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -53,7 +52,7 @@ class DerivedMotion(OfTip):
 
 @dataclass(frozen=True)
 class Shaped(DerivedMotion):
-    r"""Desired motion of the tip, convolved with impulses; see Trajectory for the attributes.
+    r"""Desired motion of the tip or of the joints, convolved with impulses; see Trajectory for the attributes.
 
     .. math:: x_s(t) = \sum_i A_i x(t - t_i)
 
@@ -73,59 +72,30 @@ class Shaped(DerivedMotion):
         return self.motion.duration + self.impulses.delay
 
     @property
+    def samples(self) -> int:
+        """Number of time intervals of a joint motion, as many per second as in the original one; see JointMotion."""
+        return ceil(cast("JointMotion", self.motion).samples * self.duration / self.motion.duration)
+
+    @property
     def run_duration(self) -> float:
         """Default duration of a run plus the delay of the last impulse, in s."""
         return self.motion.run_duration + self.impulses.delay
 
     def sample(self, times: FloatArray) -> FloatArray:
-        """Return the shaped motion."""
-        return _convolved(self.motion.sample, self.motion.start, self.impulses, times)
+        """Return the shaped motion and two derivatives, shape (T, 3, n)."""
+        start = self.motion.start
+        motion = np.zeros((len(times), 3, len(start)))
+        for at, share in zip(self.impulses.times, self.impulses.shares, strict=True):
+            late = times - at
+            part = self.motion.sample(np.maximum(late, 0.0))
+            part[late < 0.0] = 0.0
+            part[late < 0.0, 0] = start
+            motion += share * part
+        return motion
 
     def distance_to_path(self, points: FloatArray) -> FloatArray:
         """Return the distance to the path of the original motion."""
         return self.motion.distance_to_path(points)
-
-
-@dataclass(frozen=True)
-class ShapedJoints:
-    """Desired motion of the joints, convolved with impulses; see JointMotion and Shaped.
-
-    Attributes:
-        motion: The original motion.
-        impulses: The impulses.
-    """
-
-    motion: "JointMotion"
-    impulses: Impulses
-
-    @property
-    def duration(self) -> float:
-        """Duration of the original motion plus the delay of the last impulse, in s."""
-        return self.motion.duration + self.impulses.delay
-
-    @property
-    def samples(self) -> int:
-        """Number of time intervals, as many per second as in the original motion."""
-        return ceil(self.motion.samples * self.duration / self.motion.duration)
-
-    def sample_joints(self, times: FloatArray) -> FloatArray:
-        """Return the shaped motion."""
-        start = self.motion.sample_joints(np.zeros(1))[0, 0]
-        return _convolved(self.motion.sample_joints, start, self.impulses, times)
-
-
-def _convolved(
-    sample: Callable[[FloatArray], FloatArray], start: FloatArray, impulses: Impulses, times: FloatArray
-) -> FloatArray:
-    """Return a motion with two derivatives, shape (T, 3, k), convolved with impulses; it rests before t = 0."""
-    motion = np.zeros((len(times), 3, len(start)))
-    for at, share in zip(impulses.times, impulses.shares, strict=True):
-        late = times - at
-        part = sample(np.maximum(late, 0.0))
-        part[late < 0.0] = 0.0
-        part[late < 0.0, 0] = start
-        motion += share * part
-    return motion
 
 
 @dataclass(frozen=True)

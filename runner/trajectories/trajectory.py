@@ -61,17 +61,19 @@ class OfTip:
         return None
 
 
-class _HasDuration(Protocol):
+class _Timed(Protocol):
     @property
     def duration(self) -> float: ...
+    @property
+    def goal(self) -> FloatArray | None: ...
 
 
 class TrackedMotion(OfTip):
-    """Defaults of tip motions that end at rest; see Trajectory."""
+    """Defaults of motions that are tracked; see Trajectory."""
 
     tracked = True
 
     @property
-    def run_duration(self: _HasDuration) -> float:
-        """One second more than the motion, so that the settling of the arm is visible."""
-        return self.duration + 1.0
+    def run_duration(self: _Timed) -> float:
+        """One period; or one second more than a motion to rest, so that the settling of the arm is visible."""
+        return self.duration if self.goal is None else self.duration + 1.0

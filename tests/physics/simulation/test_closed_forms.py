@@ -5,7 +5,7 @@ import pytest
 from support.arms import model_of
 from support.covers import covered
 
-from runner.trajectories.quintic import Quintic
+from runner.trajectories.motion import quintic_motion
 
 ARMS = [("macro", 1.0), ("mini", 0.1)]  # name, and by what its lengths, masses, times and torques are scaled
 SCALES = dict(ARMS)
@@ -221,7 +221,7 @@ def test_peak_torque_of_joint_1_keeps_the_limit_from_3_86_s_on(simulated, robot,
 def test_the_ideal_motion_takes_the_limit_at_3_82_s(arms):
     # Inverse dynamics along the path, without sampling or plant. Joint 1 feels no gravity: torque goes as t_f^-2.
     macro = arms["macro"]
-    motion = Quintic(HOME_TIP, GOAL, 1.0).sample(np.linspace(0.0, 1.0, 2001))
+    motion = quintic_motion(HOME_TIP, GOAL, 1.0).sample(np.linspace(0.0, 1.0, 2001))
     q, torque = np.zeros(3), []
     for position, velocity, acceleration in motion:
         for _ in range(4):

@@ -6,14 +6,15 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from runner.base.errors import ConfigError
-from runner.trajectories.line import Line, LineConfig, build
+from runner.trajectories.line import LineConfig, build
+from runner.trajectories.motion import PathMotion, Segment
 
 points = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array)
 A, B = np.array([0.643, -0.2, 0.1508]), np.array([0.643, 0.2, 0.1508])  # of the xArm7 report
 
 
 def test_the_report_s_line_moves_along_y_alone_by_40_cm():
-    motion = Line(A, B, 10.0).sample(np.linspace(0.0, 10.0, 1_001))
+    motion = PathMotion(Segment(A, B), 10.0, "cosine").sample(np.linspace(0.0, 10.0, 1_001))
     np.testing.assert_array_equal(motion[:, 0, [0, 2]], np.tile([0.643, 0.1508], (1_001, 1)))
     np.testing.assert_array_equal(motion[:, 1:, [0, 2]], 0.0)
     assert np.ptp(motion[:, 0, 1]) == pytest.approx(0.4, abs=1e-15)
@@ -21,7 +22,7 @@ def test_the_report_s_line_moves_along_y_alone_by_40_cm():
 
 @given(points, points, st.floats(0.1, 10.0))
 def test_it_is_at_rest_in_a_and_in_b_and_halfway_between_at_a_quarter(start, end, T):
-    motion = Line(start, end, T).sample(T * np.array([0.0, 0.25, 0.5, 0.75, 1.0]))
+    motion = PathMotion(Segment(start, end), T, "cosine").sample(T * np.array([0.0, 0.25, 0.5, 0.75, 1.0]))
     np.testing.assert_allclose(motion[:, 0], [start, (start + end) / 2, end, (start + end) / 2, start], atol=1e-14)
     np.testing.assert_allclose(motion[[0, 2, 4], 1], 0.0, atol=1e-14 / T)
 
@@ -30,7 +31,7 @@ def test_it_is_at_rest_in_a_and_in_b_and_halfway_between_at_a_quarter(start, end
 def test_peak_speed_and_acceleration(start, end, T):
     D = np.linalg.norm(end - start)
     assume(D > 1e-3)
-    motion = Line(start, end, T).sample(np.linspace(0.0, T, 4_001))
+    motion = PathMotion(Segment(start, end), T, "cosine").sample(np.linspace(0.0, T, 4_001))
     speed, acceleration = (np.linalg.norm(motion[:, k], axis=1) for k in (1, 2))
     assert speed.max() == pytest.approx(np.pi * D / T, rel=1e-12)
     assert speed.argmax() in (1_000, 3_000)
@@ -41,17 +42,17 @@ def test_peak_speed_and_acceleration(start, end, T):
 @given(points, points)
 def test_it_swings_about_its_middle_as_on_a_spring(start, end):
     T = 2.0
-    motion = Line(start, end, T).sample(np.linspace(0.0, 3.0 * T, 61))
+    motion = PathMotion(Segment(start, end), T, "cosine").sample(np.linspace(0.0, 3.0 * T, 61))
     np.testing.assert_allclose(motion[:, 2], -((2.0 * np.pi / T) ** 2) * (motion[:, 0] - (start + end) / 2), atol=1e-12)
 
 
 def test_its_speed_is_a_sine_whose_cosine_is_the_place():
-    y = Line(A, B, 10.0).sample(np.linspace(0.0, 5.0, 101))[:, :2, 1]
+    y = PathMotion(Segment(A, B), 10.0, "cosine").sample(np.linspace(0.0, 5.0, 101))[:, :2, 1]
     np.testing.assert_allclose(y[:, 1], 0.2 * 2.0 * np.pi / 10.0 * np.sin(np.arccos(-y[:, 0] / 0.2)), atol=1e-9)
 
 
 def test_the_distance_beyond_its_ends_goes_to_the_end():
-    line = Line(np.zeros(3), np.array([2.0, 0.0, 0.0]), 3.0)
+    line = PathMotion(Segment(np.zeros(3), np.array([2.0, 0.0, 0.0])), 3.0, "cosine")
     found = line.distance_to_path(np.array([[0.5, 3.0, 4.0], [-3.0, 4.0, 0.0], [5.0, 0.0, 4.0]]))
     np.testing.assert_allclose(found, [5.0, 5.0, 5.0])
 

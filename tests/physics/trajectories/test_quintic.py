@@ -5,7 +5,8 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from runner.trajectories.quintic import Quintic, QuinticConfig, build
+from runner.trajectories.motion import quintic_motion
+from runner.trajectories.quintic import QuinticConfig, build
 
 points = st.lists(st.floats(-2.0, 2.0), min_size=3, max_size=3).map(np.array)
 durations = st.floats(0.1, 10.0)
@@ -13,7 +14,7 @@ durations = st.floats(0.1, 10.0)
 
 @given(points, points, durations)
 def test_the_six_end_conditions(start, goal, t_f):
-    first, last = Quintic(start, goal, t_f).sample(np.array([0.0, t_f]))
+    first, last = quintic_motion(start, goal, t_f).sample(np.array([0.0, t_f]))
     np.testing.assert_allclose(first, [start, np.zeros(3), np.zeros(3)], atol=1e-12)
     np.testing.assert_allclose(last, [goal, np.zeros(3), np.zeros(3)], atol=1e-12)
 
@@ -22,7 +23,7 @@ def test_the_six_end_conditions(start, goal, t_f):
 def test_velocity_and_acceleration_are_the_derivatives(start, goal, t_f, share):
     h = 1e-4 * t_f
     t = share * t_f
-    before, here, after = Quintic(start, goal, t_f).sample(np.array([t - h, t, t + h]))
+    before, here, after = quintic_motion(start, goal, t_f).sample(np.array([t - h, t, t + h]))
     np.testing.assert_allclose((after[0] - before[0]) / (2.0 * h), here[1], atol=1e-6 / t_f)
     np.testing.assert_allclose((after[1] - before[1]) / (2.0 * h), here[2], atol=1e-5 / t_f**2)
 
@@ -30,7 +31,7 @@ def test_velocity_and_acceleration_are_the_derivatives(start, goal, t_f, share):
 @given(points, points, durations)
 def test_it_is_a_polynomial_of_fifth_order(start, goal, t_f):
     times = np.linspace(0.0, t_f, 13)
-    position = Quintic(start, goal, t_f).sample(times)[:, 0]
+    position = quintic_motion(start, goal, t_f).sample(times)[:, 0]
     fit = np.polynomial.polynomial.polyfit(times / t_f, position, 5)
     np.testing.assert_allclose(np.polynomial.polynomial.polyval(times / t_f, fit).T, position, atol=1e-12)
 
@@ -39,7 +40,7 @@ def test_it_is_a_polynomial_of_fifth_order(start, goal, t_f):
 def test_peak_speed_and_acceleration(start, goal, t_f):
     D = np.linalg.norm(goal - start)
     assume(D > 1e-3)
-    motion = Quintic(start, goal, t_f).sample(np.linspace(0.0, t_f, 4001))
+    motion = quintic_motion(start, goal, t_f).sample(np.linspace(0.0, t_f, 4001))
     speed, acceleration = (np.linalg.norm(motion[:, k], axis=1) for k in (1, 2))
     assert speed.max() == pytest.approx(1.875 * D / t_f, rel=1e-9)
     assert speed.argmax() == 2000
@@ -49,7 +50,7 @@ def test_peak_speed_and_acceleration(start, goal, t_f):
 
 @given(points, points, durations)
 def test_it_is_symmetric_in_time(start, goal, t_f):
-    quintic, times = Quintic(start, goal, t_f), np.linspace(0.0, t_f, 21)
+    quintic, times = quintic_motion(start, goal, t_f), np.linspace(0.0, t_f, 21)
     there, back = quintic.sample(times), quintic.sample(t_f - times)
     np.testing.assert_allclose(there[:, 0] + back[:, 0], np.tile(start + goal, (21, 1)), atol=1e-12)
     np.testing.assert_allclose(there[:, 1], back[:, 1], atol=1e-11 / t_f)
@@ -58,7 +59,7 @@ def test_it_is_symmetric_in_time(start, goal, t_f):
 
 @given(points, points, durations)
 def test_it_runs_along_the_straight_path(start, goal, t_f):
-    quintic = Quintic(start, goal, t_f)
+    quintic = quintic_motion(start, goal, t_f)
     path = quintic.sample(np.linspace(0.0, t_f, 21))[:, 0]
     np.testing.assert_allclose(quintic.distance_to_path(path), 0.0, atol=1e-12)
     assert ((np.diff(path, axis=0) @ (goal - start)) >= -1e-12).all()  # and never back
@@ -66,12 +67,12 @@ def test_it_runs_along_the_straight_path(start, goal, t_f):
 
 @given(points, points, durations, st.floats(1.0, 5.0))
 def test_it_rests_after_t_f(start, goal, t_f, share):
-    (motion,) = Quintic(start, goal, t_f).sample(np.array([share * t_f]))
+    (motion,) = quintic_motion(start, goal, t_f).sample(np.array([share * t_f]))
     np.testing.assert_allclose(motion, [goal, np.zeros(3), np.zeros(3)], atol=1e-12)
 
 
 def test_the_distance_to_the_path_goes_to_its_nearest_point():
-    quintic = Quintic(np.zeros(3), np.array([2.0, 0.0, 0.0]), 3.0)
+    quintic = quintic_motion(np.zeros(3), np.array([2.0, 0.0, 0.0]), 3.0)
     found = quintic.distance_to_path(np.array([[0.5, 3.0, 4.0], [-3.0, 4.0, 0.0], [5.0, 0.0, 4.0]]))
     np.testing.assert_allclose(found, [5.0, 5.0, 5.0])
 

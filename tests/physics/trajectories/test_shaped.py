@@ -5,13 +5,12 @@ import pytest
 
 from runner.trajectories.goal import Goal
 from runner.trajectories.impulses import zero_vibration
-from runner.trajectories.joint_quintic import JointQuintic
-from runner.trajectories.quintic import Quintic
-from runner.trajectories.shaped import Shaped, ShapedJoints
+from runner.trajectories.motion import quintic_motion
+from runner.trajectories.shaped import Shaped
 
 A, B = np.array([0.0, 1.0, 1.0]), np.array([0.4, 0.7, 0.6])
 IMPULSES = zero_vibration("zvd", 2.7, 0.02)
-LINE = Shaped(Quintic(A, B, 1.0), IMPULSES)
+LINE = Shaped(quintic_motion(A, B, 1.0), IMPULSES)
 
 
 def test_velocity_and_acceleration_are_derivatives_of_the_position():
@@ -34,7 +33,7 @@ def test_it_starts_and_ends_where_the_motion_does_and_later_by_the_last_impulse(
 
 def test_impulses_come_at_their_exact_times():
     """A motion of 1 ms shows each impulse as a step of its share."""
-    quick, (_, at, _) = Shaped(Quintic(A, B, 1e-3), IMPULSES), IMPULSES.times
+    quick, (_, at, _) = Shaped(quintic_motion(A, B, 1e-3), IMPULSES), IMPULSES.times
     share = IMPULSES.shares[0]
     reached = quick.sample(np.array([at, at + 1e-3]))[:, 0]
     assert reached[0] == pytest.approx(A + share * (B - A), abs=1e-12)
@@ -54,8 +53,8 @@ def test_a_straight_line_stays_straight():
 
 
 def test_joints_are_shaped_alike():
-    joints = ShapedJoints(JointQuintic(A, B, 1.0), IMPULSES)
+    joints = Shaped(quintic_motion(A, B, 1.0), IMPULSES)
     times = np.linspace(0.0, 2.0, 31)
-    assert joints.sample_joints(times) == pytest.approx(LINE.sample(times), abs=1e-12)
+    assert joints.sample(times) == pytest.approx(LINE.sample(times), abs=1e-12)
     assert joints.duration == LINE.duration
     assert joints.samples == np.ceil(512 * LINE.duration)

@@ -7,7 +7,7 @@ import pytest
 
 from runner.analysis.sensitivity.smooth_metrics import WITHOUT, Change, derivatives
 from runner.metrics import MetricContext, evaluate
-from runner.trajectories.quintic import Quintic
+from runner.trajectories.motion import quintic_motion
 
 STEP, ROWS, PARAMETERS = 1e-6, 400, 2
 T = np.linspace(0.0, 2.0, ROWS)
@@ -18,7 +18,7 @@ def test_every_metric_that_is_not_left_out_has_the_derivative_of_its_differences
     rng = np.random.default_rng(0)
     q, dq, tau, d_q, d_dq, d_tau = rng.normal(size=(6, ROWS, 2))
     tip, d_tip = rng.normal(size=(2, ROWS, 3))
-    trajectory = Quintic(np.zeros(3), np.array([0.5, 0.2, 0.1]), 1.0)
+    trajectory = quintic_motion(np.zeros(3), np.array([0.5, 0.2, 0.1]), 1.0)
     context = MetricContext(trajectory, 1e-3, float(T[1]))
     trace = hand_made_trace(T, tip, trajectory.sample(T)[:, 0], q, dq, tau, units=units)
     scales = np.array([1.0, -0.3])[:, None, None]

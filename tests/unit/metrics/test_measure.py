@@ -10,22 +10,20 @@ from runner.base.trace import Traces
 from runner.metrics import MetricContext, evaluate, measure, of_run
 from runner.trajectories import TRAJECTORIES
 from runner.trajectories.circle import Circle
-from runner.trajectories.closed_figure import ClosedFigure
 from runner.trajectories.goal import Goal
-from runner.trajectories.line import Line
 from runner.trajectories.lissajous import Lissajous
-from runner.trajectories.quintic import Quintic
+from runner.trajectories.motion import PathMotion, Segment, quintic_motion
+from runner.trajectories.splines import minimum_jerk
 from runner.trajectories.square import Square
-from runner.trajectories.waypoints import minimum_jerk
 
 A, B, C = np.array([0.1, -0.2, 0.3]), np.array([0.4, 0.15, 0.21]), np.array([0.2, 0.3, -0.1])
 PATHS = {
     "goal": Goal(A, B),
-    "quintic": Quintic(A, B, 1.3),
-    "line": Line(A, B, 1.9),
+    "quintic": quintic_motion(A, B, 1.3),
+    "line": PathMotion(Segment(A, B), 1.9, "cosine"),
     "square": Square(np.array([A, B, C, A - B, A]), 1.5),
-    "circle": ClosedFigure(Circle(A, 0.2, np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.6, 0.8]), 2), 1.5, "quintic"),
-    "lissajous": ClosedFigure(
+    "circle": PathMotion(Circle(A, 0.2, np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.6, 0.8]), 2), 1.5, "quintic"),
+    "lissajous": PathMotion(
         Lissajous(A, np.array([0.1, 0.2, 0.05]), np.array([1.0, 2.0, 3.0]), np.array([0.0, 0.3, 1.0])), 2.0, "none"
     ),
     "waypoints": minimum_jerk(np.array([A, B, C]), np.array([0.0, 0.7, 1.2])),

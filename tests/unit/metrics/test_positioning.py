@@ -9,7 +9,7 @@ from support.one_run import of_one
 from runner.metrics import MetricContext, positioning
 from runner.metrics.positioning import UNITS
 from runner.trajectories.goal import Goal
-from runner.trajectories.quintic import Quintic
+from runner.trajectories.motion import quintic_motion
 
 evaluate = of_one(positioning)
 
@@ -78,7 +78,7 @@ def test_the_steady_window_is_the_last_half_second(hand_made_trace, tick, counts
 @pytest.mark.parametrize(("t_f", "known"), [(3.0, True), (3.5, True), (3.51, False), (4.0, False)])
 def test_no_steady_error_with_less_than_half_a_second_after_t_f(hand_made_trace, t_f, known):
     trace = with_error(hand_made_trace, np.full(3, 1e-3))
-    found = evaluate(trace, context(Quintic(START, GOAL, t_f)))["steady_state_error"]
+    found = evaluate(trace, context(quintic_motion(START, GOAL, t_f)))["steady_state_error"]
     assert found == (pytest.approx(1e-3) if known else None)
 
 

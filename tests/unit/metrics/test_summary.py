@@ -8,21 +8,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.base.trace import Failure
-from runner.metrics import Columns, MetricContext, evaluate
+from runner.metrics import MetricContext, evaluate, summarize_arrays
 from runner.metrics.summary import MOST_LISTED
 from runner.plugins.metric_units import units
 from runner.trajectories.goal import Goal
-from runner.trajectories.quintic import Quintic
+from runner.trajectories.motion import quintic_motion
 
 T = np.arange(401) * 0.01
-TRACKED = MetricContext(Quintic(np.zeros(3), np.ones(3), 3.0), 0.02, 0.01)
+TRACKED = MetricContext(quintic_motion(np.zeros(3), np.ones(3), 3.0), 0.02, 0.01)
 
 
 def summarize(repetitions):
-    columns = Columns(len(repetitions))
-    for repetition, values in enumerate(repetitions):
-        columns.put(repetition, values)
-    return columns.summarize()
+    names = tuple(dict.fromkeys(name for values in repetitions for name in values))
+    rows = [[values.get(name) for name in names] for values in repetitions]
+    return summarize_arrays(names, np.array(rows, dtype=float).reshape(len(rows), len(names)))
 
 
 def summary(*values, name="settling_time"):

@@ -6,15 +6,14 @@ from support.one_run import of_one
 
 from runner.metrics import MetricContext, tracking
 from runner.trajectories.circle import Circle
-from runner.trajectories.closed_figure import ClosedFigure
 from runner.trajectories.goal import Goal
-from runner.trajectories.quintic import Quintic
+from runner.trajectories.motion import PathMotion, quintic_motion
 
 evaluate = of_one(tracking)
 
 START, END = np.zeros(3), np.array([1.0, 0.0, 0.0])
 T = np.arange(401) * 0.01
-TRACKED = MetricContext(Quintic(START, END, 3.0), 0.02, 0.01)
+TRACKED = MetricContext(quintic_motion(START, END, 3.0), 0.02, 0.01)
 
 
 def test_largest_error_over_the_motion_of_the_norm_and_by_axis(hand_made_trace):
@@ -48,7 +47,7 @@ def test_the_tick_at_t_f_counts_though_its_time_is_rounded(hand_made_trace):
     t, tip = np.arange(5) * 0.1, np.zeros((5, 3))
     tip[3, 2] = 0.5
     assert t[3] > 0.3
-    found = evaluate(hand_made_trace(t, tip=tip), MetricContext(Quintic(START, END, 0.3), 0.02, 0.1))
+    found = evaluate(hand_made_trace(t, tip=tip), MetricContext(quintic_motion(START, END, 0.3), 0.02, 0.1))
     assert found["max_tracking_error"] == 0.5
 
 
@@ -58,7 +57,7 @@ def test_root_mean_square_of_the_norm(hand_made_trace):
     assert evaluate(hand_made_trace(T, tip=-error), TRACKED)["rms_tracking_error"] == pytest.approx(0.5)
 
 
-ROUNDS = ClosedFigure(Circle(START, 1.0, END, np.array([0.0, 1.0, 0.0]), 1), 1.0, "none")
+ROUNDS = PathMotion(Circle(START, 1.0, END, np.array([0.0, 1.0, 0.0]), 1), 1.0, "none")
 
 
 def test_cross_track_is_the_distance_to_the_path_whatever_the_time(hand_made_trace):

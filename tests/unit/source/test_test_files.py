@@ -85,7 +85,6 @@ SHARED = {
     "simulation/contact": "physics/plants/test_servo_contact_stability.py",
     "simulation/loop": "physics/simulation/test_simulation.py",
     "simulation/provenance": "contract/store/test_store.py",
-    "simulation/results": "contract/store/test_batch_records.py",
     "simulation/calibration": "contract/calibration/test_calibration_job.py",
     "simulation/run": "physics/simulation/test_blocks.py",
     "simulation/tick_time": "contract/sweeps/test_estimates_of_sweeps.py",
@@ -101,6 +100,7 @@ SHARED = {
     "symbolic/program": "physics/symbolic/test_code.py",
     "symbolic/regressor": "physics/symbolic/test_algebra.py",
     "symbolic/structure": "physics/symbolic/test_law.py",
+    "trajectories/splines": "physics/trajectories/test_waypoints.py",
     "trajectories/kinds": "physics/trajectories/test_trajectory_kinds.py",
 }
 """Test file of each module that has none of its name: that of the module to which it belongs."""

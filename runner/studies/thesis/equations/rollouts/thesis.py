@@ -11,7 +11,7 @@ from runner.studies.thesis.equations.truths import thesis_jacobians, thesis_meas
 from runner.studies.thesis.equations.truths.thesis import symbols_at
 from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI, Arm
 from runner.studies.thesis.equations.truths.thesis_kinematics import tip_pose
-from runner.trajectories.quintic import Quintic
+from runner.trajectories.motion import quintic_motion
 
 _GOAL = np.array([0.1679, -0.7571, 0.4255])  # of the Macro, section 3.3.1; the Mini's is a tenth of it
 _DURATION = 3.0  # s
@@ -32,7 +32,7 @@ def _follow(arm: Arm, jacobian: Jacobian) -> tuple[FloatArray, FloatArray, Float
     The joints move at J^+ (dx_d + k (x_d - x)), J as believed and the tip's position as it is, from home.
     """
     model = arm.model
-    path = Quintic(model.tip_position(np.zeros(3)), _GOAL * arm.a[2], _DURATION)
+    path = quintic_motion(model.tip_position(np.zeros(3)), _GOAL * arm.a[2], _DURATION)
     times = np.arange(0.0, _DURATION + _STEP / 2, _STEP)
     motion = path.sample(times)
     q, missed = np.zeros((len(times), 3)), np.zeros(len(times))

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.interpolate import BPoly, PPoly
 
 from runner.audit.truth import Elements, Symbols, Truth
-from runner.trajectories.quintic import Quintic
+from runner.trajectories.motion import quintic_motion
 
 # The loop eps'' + k_v eps' + k_p eps = 0 with natural frequency omega_n and damping ratio xi.
 
@@ -58,7 +58,7 @@ def _by_runner(s: Symbols) -> Elements:
     fit = np.linalg.inv(np.vander(points, 6, increasing=True))
     found = []
     for start, goal, t_f in zip(s["x_0"], s["x_t"], s["t_f"], strict=True):
-        curve = Quintic(np.array([start]), np.array([goal]), float(t_f))
+        curve = quintic_motion(np.array([start]), np.array([goal]), float(t_f))
         found.append(fit @ curve.sample(points * t_f)[:, 0, 0] / t_f ** np.arange(6))
     return {f"c_{k}": values for k, values in enumerate(np.array(found).T)}
 

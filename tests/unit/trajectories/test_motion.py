@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from runner.trajectories.circle import Circle
-from runner.trajectories.closed_figure import ClosedFigure
+from runner.trajectories.motion import PathMotion
 
 CIRCLE = Circle(np.zeros(3), 1.0, np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]), 1)
 T_F = 2.0
 
 
 def test_an_even_motion_has_the_speed_and_acceleration_of_a_turning_point():
-    figure, times = ClosedFigure(CIRCLE, T_F, "none"), np.linspace(0.0, 5.0, 7)
+    figure, times = PathMotion(CIRCLE, T_F, "none"), np.linspace(0.0, 5.0, 7)
     rate, motion = 2.0 * np.pi / T_F, figure.sample(times)
     np.testing.assert_allclose(np.linalg.norm(motion[:, 1], axis=1), rate, rtol=1e-12)
     np.testing.assert_allclose(np.linalg.norm(motion[:, 2], axis=1), rate**2, rtol=1e-12)
@@ -21,7 +21,7 @@ def test_an_even_motion_has_the_speed_and_acceleration_of_a_turning_point():
 
 
 def test_a_quintic_goes_once_from_rest_to_rest():
-    figure = ClosedFigure(CIRCLE, T_F, "quintic")
+    figure = PathMotion(CIRCLE, T_F, "quintic")
     ends = figure.sample(np.array([0.0, T_F, 3.0 * T_F]))
     np.testing.assert_allclose(ends, 0.0, atol=1e-12)
     np.testing.assert_allclose(figure.sample(np.array([0.5 * T_F]))[0, 0], [0.0, 2.0, 0.0], atol=1e-12)
@@ -31,6 +31,6 @@ def test_a_quintic_goes_once_from_rest_to_rest():
 
 @pytest.mark.parametrize("easing", ["none", "quintic"])
 def test_derivatives_are_those_of_the_motion(easing):
-    figure, times, h = ClosedFigure(CIRCLE, T_F, easing), np.linspace(0.2, 1.8, 5), 1e-5
+    figure, times, h = PathMotion(CIRCLE, T_F, easing), np.linspace(0.2, 1.8, 5), 1e-5
     before, now, after = (figure.sample(times + step) for step in (-h, 0.0, h))
     np.testing.assert_allclose(now[:, 1:], (after - before)[:, :2] / (2.0 * h), rtol=1e-7, atol=1e-7)
