@@ -21,12 +21,12 @@ from runner.base.sanitize import quoted
 
 @dataclass(frozen=True)
 class Bounds:
-    """What a YAML text may hold.
+    """Limits of a YAML document.
 
     Attributes:
-        size: Its length.
-        values: Values, keys and collections in it, each alias counted as all that it stands for.
-        depth: Collections within each other.
+        size: Largest size.
+        values: Largest number of values, keys and collections, with each alias expanded.
+        depth: Largest number of nested collections.
     """
 
     size: Limit
@@ -35,48 +35,48 @@ class Bounds:
 
 
 CONFIG = Bounds(Limit(250_000, "bytes"), values=10_000)
-"""Of a config file: some 3,000 way-points; Hydra takes a second for it."""
+"""Limits of a config file, enough for about 3,000 way-points, which take Hydra one second."""
 STORED = Bounds(Limit(2_000_000, "bytes"), values=100_000)
-"""Of what the runner wrote itself, and what a person lists: a reference, a set of inertials."""
+"""Limits of files that the runner wrote and of data files, such as a baseline or a set of inertials."""
 
 
 class YamlError(RunnerError):
-    """A YAML text that cannot be read, is too large, or refers to itself; the message says in which line."""
+    """YAML that cannot be read, is too large, or refers to itself; the message contains the line."""
 
 
 def read_yaml(text: str, name: str | Path, bounds: Bounds = STORED) -> Any:
-    """Return what a YAML text holds, as plain data.
+    """Return the content of a YAML document as plain data.
 
     Args:
-        text: The text.
-        name: Its file, for messages.
-        bounds: What it may hold.
+        text: The document.
+        name: File of the document, for messages.
+        bounds: Limits of the document.
 
     Raises:
-        YamlError: if it cannot be read, or breaks a bound; see check_yaml.
+        YamlError: if the document cannot be read or exceeds a limit; see check_yaml.
     """
     check_yaml(text, name, bounds, once=True)
     try:
         return yaml.load(text, yaml.CSafeLoader)
     except yaml.YAMLError as error:
         raise YamlError(explain_yaml(error, name)) from None
-    except (ValueError, OverflowError) as error:  # dates that are none, numbers of more than 4,300 digits
+    except (ValueError, OverflowError) as error:  # invalid dates, numbers with more than 4,300 digits
         raise YamlError(f"{name}: {error}") from None
 
 
 def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG, once: bool = False) -> None:
-    """Check a YAML text without making anything of it.
+    """Check a YAML document without building any object.
 
     Args:
-        text: The text.
-        name: Its file, for messages.
-        bounds: What it may hold.
-        once: Whether to refuse a key that stands twice, which OmegaConf does and PyYAML does not.
+        text: The document.
+        name: File of the document, for messages.
+        bounds: Limits of the document.
+        once: True to reject duplicate keys, which PyYAML accepts and OmegaConf rejects.
 
     Raises:
-        YamlError: if it is no YAML, too long, too deep or of too many values, an anchor holds itself, a key is no
-            text, a value has a tag, which names how to make it, or holds a ${...} that is no reference to a key, which
-            our configs alone may.
+        YamlError: if the document is not valid YAML or exceeds a limit, if an anchor contains itself, a key is not a
+            string, a value has a tag, or a value has a ${...} that is not a reference to a key. The last is allowed in
+            built-in configs only.
     """
     if excess := bounds.size.excess(len(text.encode(errors="replace"))):
         raise YamlError(f"{name}: {excess}")
@@ -89,7 +89,7 @@ def check_yaml(text: str, name: str | Path, bounds: Bounds = CONFIG, once: bool 
 
 
 def explain_yaml(error: yaml.YAMLError, name: str | Path | None = None) -> str:
-    """Return file, line, column and problem of what is no YAML; `name` is for a text without a file name."""
+    """Return the file, line, column and problem of invalid YAML; `name` replaces the file name of the error."""
     mark = getattr(error, "problem_mark", None)
     where = name or (mark and mark.name) or "a YAML file"
     line = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
@@ -102,7 +102,7 @@ def line_of(event: yaml.Event, name: str) -> str:
 
 
 def line_with(text: str, path: Path) -> str:
-    """Return a YAML file, with the line of an override, or of its key, where it stands there."""
+    """Return the path of a YAML file, with the line that contains an override or its key, if there is one."""
     key = text.partition("=")[0]
     for event in yaml.parse(path.read_text(encoding="utf-8"), Loader=yaml.CSafeLoader):
         value = event.value.removeprefix("override ").lstrip("/") if isinstance(event, yaml.ScalarEvent) else ""
@@ -113,7 +113,7 @@ def line_with(text: str, path: Path) -> str:
 
 @dataclass
 class _Open:
-    """A collection whose end has not come: its anchor, the values in it, whether a key comes next (None in a list)."""
+    """Open collection: anchor, number of values so far, and whether a key comes next (None in a list)."""
 
     anchor: str | None
     values: int

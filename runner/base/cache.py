@@ -6,17 +6,17 @@ from typing import Any, TypeVar, cast
 
 T = TypeVar("T")
 
-_BY_VALUE = frozenset({int, float, bool, str, FunctionType, MethodType})  # the types of what is so compared
+_BY_VALUE = frozenset({int, float, bool, str, FunctionType, MethodType})  # types that are compared by value
 
 
 class Memory:
-    """Results of functions, each for the arguments that it was given; those not asked for lately are forgotten.
+    """Cache of function results by argument; the least recently used results are removed.
 
-    Two arguments are the same where they are one object, or equal numbers, texts or functions. They are held, so that
-    no other object takes their identity, and must not be changed.
+    Two arguments are the same if they are the same object, or equal numbers, strings or functions. The cache keeps
+    references to the arguments, so that their identities stay unique. The arguments must not be changed.
 
     Args:
-        kept: Number of results kept, to a factor of two.
+        kept: Number of stored results, to a factor of two.
     """
 
     def __init__(self, kept: int) -> None:
@@ -25,11 +25,11 @@ class Memory:
         self._older: dict[tuple[object, ...], tuple[tuple[object, ...], object]] = {}
 
     def recall(self, function: Callable[..., T], *parts: Any) -> T:
-        """Return what a function gives for some arguments; one that raises is called again the next time."""
+        """Return the result of a function for the given arguments; an exception is not cached."""
         return self.known((function, *parts), lambda: function(*parts))
 
     def known(self, parts: tuple[object, ...], make: Callable[[], T]) -> T:
-        """Return what follows from some parts alone, as `make` gives it where they are met for the first time."""
+        """Return the cached result for `parts`; `make` computes it at the first call and must depend on them only."""
         key = tuple([(kind, part) if (kind := type(part)) in _BY_VALUE else id(part) for part in parts])
         found = self._recent.get(key)
         if found is None:

@@ -17,10 +17,11 @@ def read_data(path: Path, model: type[T]) -> T:
 
     Args:
         path: The file.
-        model: A pydantic model, or a list of one.
+        model: A pydantic model, or a list of models.
 
     Raises:
-        RunnerError: if the file cannot be read or does not fit; names the file, and the entries and keys.
+        RunnerError: if the file cannot be read or does not match the model; the message contains the file, the entries
+            and the keys.
     """
     try:
         content = read_yaml(read_text(path, STORED.size), path.name)
@@ -37,7 +38,7 @@ def read_data(path: Path, model: type[T]) -> T:
 
 
 def _entry(content: Any, location: tuple[int | str, ...]) -> str:
-    """Return where in a file a problem is; entries of lists with the name or number that they have."""
+    """Return the location of a problem in a file, with the name or number of list entries."""
     words, inside = [], content
     for key in location:
         word = str(key)

@@ -12,12 +12,12 @@ Place = tuple[str | int, ...]
 
 
 def leaves(config: object, place: Place = (), lists: bool = True) -> Iterator[tuple[Place, Any]]:
-    """Yield the place and value of each value; an empty group or list is also a value.
+    """Yield the path and value of each value; an empty group or list is also a value.
 
     Args:
         config: The config.
-        place: The place of the config in a larger one.
-        lists: Whether to yield the items of lists instead of lists.
+        place: Path of the config in a larger one.
+        lists: True to yield the items of lists instead of lists.
     """
     inner = _items(config) if lists or not isinstance(config, list) else ()
     for key, item in inner:
@@ -34,12 +34,12 @@ def _items(config: object) -> Collection[tuple[Any, Any]]:
 
 
 def dotted(place: Place) -> str:
-    """Return the dotted key of a place."""
+    """Return the dotted key of a path."""
     return ".".join(map(str, place))
 
 
 def get(config: object, place: str | Place) -> Any:
-    """Return the value at a place or dotted key of nested groups and lists; None if there is none."""
+    """Return the value at a path or dotted key of nested groups and lists; None if it does not exist."""
     for key in place.split(".") if isinstance(place, str) else place:
         if isinstance(config, list):
             with contextlib.suppress(ValueError, IndexError):
@@ -57,19 +57,19 @@ def put(config: Any, place: Place, value: object) -> None:
 
 
 def split_override(text: str) -> tuple[str, str]:
-    """Return the key and the value of an override KEY=VALUE; the key without Hydra's signs before it."""
+    """Return the key and the value of an override KEY=VALUE, without Hydra's prefixes of the key."""
     key, _, value = text.lstrip("+~").partition("=")
     return key, value
 
 
 _REFERENCE = re.compile(r"\$\{\s*(\.*[^\s.:${}'\"\\][^\s:${}'\"\\]*)\s*\}")
-_SIZE = 2_000_000  # of a config whose references are replaced by their values
-_A_VALUE = 100  # size of a value in addition to its characters: the time to compose it
-_DEPTH = 60  # of collections and references within each other
+_SIZE = 2_000_000  # largest size of a config with expanded references
+_A_VALUE = 100  # size of a value in addition to its characters, for the time to compose it
+_DEPTH = 60  # largest depth of nested collections and references
 
 
 def calls_function(text: str) -> bool:
-    """Return True if a ${...} in a text is not a reference to a key: oc.env would copy secrets into a config."""
+    """Return True if a ${...} in a string is not a reference to a key; oc.env would copy secrets into a config."""
     return "${" in text and "${" in _REFERENCE.sub("", text)
 
 
@@ -77,16 +77,16 @@ def check_references(config: Mapping[str, Any]) -> None:
     """Check the references of a composed config before they are resolved.
 
     Args:
-        config: The config as plain data, references unresolved.
+        config: The config as plain data with unresolved references.
 
     Raises:
-        ConfigError: for a key that refers to itself, or expands to too much.
+        ConfigError: if a key refers to itself or expands to too many values.
     """
     _Sizes(config).of((), config)
 
 
 class _Sizes:
-    """Sizes of values, including what they refer to, by their places; each is computed once."""
+    """Sizes of values by path, including the values to which they refer; each is computed once."""
 
     def __init__(self, config: Mapping[str, Any]) -> None:
         self._config = config
@@ -119,7 +119,7 @@ class _Sizes:
 
 
 def _target(place: Place, reference: str) -> Place:
-    """Return the place that a reference names; each leading dot is a collection, the first the one that contains it."""
+    """Return the path of a reference; one leading dot is the collection that contains it, each more its parent."""
     keys = reference.lstrip(".")
     dots = len(reference) - len(keys)
     path = [key for key in re.split(r"[.\[\]]", keys) if key]

@@ -13,7 +13,7 @@ _C = ctypes.CDLL(None)
 
 @contextmanager
 def quiet_stderr() -> Iterator[None]:
-    """Send file descriptor 2 to nowhere for a while; Python's own messages are flushed before."""
+    """Discard output to file descriptor 2 within the context; Python's own output is flushed before."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
         with _sent_to(nowhere, 2):
@@ -24,14 +24,14 @@ def quiet_stderr() -> Iterator[None]:
 
 @contextmanager
 def caught_output(descriptor: int, engines: str = "") -> Iterator[list[str]]:
-    """Catch what an engine writes to a file descriptor for a while.
+    """Capture the output of an engine to a file descriptor within the context.
 
     Args:
         descriptor: 1 or 2.
-        engines: Pattern that the engine's lines begin with; others, such as what another thread logs, are written on.
+        engines: Pattern at the start of the engine's lines; other lines, such as logs of other threads, are passed on.
 
     Yields:
-        The engine's lines, each once, there when the block has ended.
+        List that contains the distinct lines of the engine after the end of the context.
     """
     said: list[str] = []
     with tempfile.TemporaryFile() as file:
@@ -61,7 +61,7 @@ def _sent_to(target: int, descriptor: int) -> Iterator[None]:
 
 
 def _flush() -> None:
-    """Write out what Python and C still hold back, so that it goes where it was meant to."""
+    """Flush the buffers of Python and C, so that their content goes to its original target."""
     sys.stdout.flush()
     sys.stderr.flush()
     _C.fflush(None)

@@ -7,19 +7,19 @@ import platform
 from collections.abc import Iterable
 from importlib.util import find_spec
 
-_WHEELS = (3, 11)  # the newest Python for which there are wheels of PyBullet
+_WHEELS = (3, 11)  # newest Python version with PyBullet wheels
 STAND_IN = "mujoco_fallback"
-"""Option of the group plant that takes bullet's place where PyBullet is missing."""
+"""Option of the group plant that replaces bullet if PyBullet is missing."""
 
 
 def has_pybullet() -> bool:
-    """Tell whether PyBullet is installed."""
+    """Return True if PyBullet is installed."""
     return find_spec("pybullet") is not None
 
 
 def installed_versions(names: Iterable[str]) -> dict[str, str]:
     """Return the versions of installed libraries by name."""
-    from importlib.metadata import PackageNotFoundError, version  # half of the time in which a word is completed
+    from importlib.metadata import PackageNotFoundError, version  # slow: half of the time of a shell completion
 
     found = {}
     for name in names:
@@ -29,12 +29,12 @@ def installed_versions(names: Iterable[str]) -> dict[str, str]:
 
 
 def default_plant() -> str:
-    """Return the option of the group plant for which `default` stands on this machine."""
+    """Return the option of the group plant that `default` selects on this machine."""
     return "bullet" if has_pybullet() else STAND_IN
 
 
 def bullet_missing() -> str:
-    """Return what to do where bullet is asked for and PyBullet is missing."""
+    """Return the error message for plant=bullet without PyBullet, with a remedy."""
     found = platform.python_version_tuple()[:2]
     built = (
         ""
@@ -49,9 +49,10 @@ def bullet_missing() -> str:
 
 
 def quiet_environment() -> None:
-    """Keep numerical libraries to one thread, and let Hydra's exceptions through; call before importing numpy.
+    """Limit numerical libraries to one thread, and let Hydra raise exceptions unchanged; call before importing numpy.
 
-    Matplotlib says its errors alone: in a home that cannot be written it warns of each folder that it makes elsewhere.
+    Matplotlib logs errors only: if the home folder is not writable, it would warn about each folder that it creates
+    elsewhere.
     """
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
         os.environ.setdefault(name, "1")

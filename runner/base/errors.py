@@ -18,15 +18,15 @@ if TYPE_CHECKING:
     import traceback
 
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""What the system says of a disk that takes no more."""
+"""Error numbers of a full disk."""
 _PROBLEMS_SHOWN = 20
 _LISTED = 1500  # characters of the allowed names in a message
 
 
 class RunnerError(Exception):
-    """Base of all errors that a user can mend: the message says what is wrong, what was found and what is allowed.
+    """Base of all errors that a user can fix; the message contains the problem, the value found and allowed values.
 
-    Whatever stands in it of values and names from outside, it is safe to print and no line is longer than one can read.
+    The message is safe to print, and its lines have a limited length, even if it contains external values and names.
     """
 
     def __init__(self, text: str) -> None:
@@ -34,10 +34,11 @@ class RunnerError(Exception):
 
 
 class ConfigError(RunnerError):
-    """A config that cannot be run; carries one message per problem.
+    """Config that cannot be run, with one message for each problem.
 
     Attributes:
-        problems: One text per problem: dotted key, value found, values allowed; the message shows the first 20.
+        problems: One message for each problem: dotted key, value found, values allowed. The text of the error shows the
+            first 20.
     """
 
     def __init__(self, problems: str | Iterable[str], hint: str = "") -> None:
@@ -50,21 +51,21 @@ class ConfigError(RunnerError):
         super().__init__("\n".join([head, *shown, *more, *([hint] if hint else [])]))
 
     def __reduce__(self) -> tuple[type["ConfigError"], tuple[tuple[str, ...], str]]:
-        """Come out of a worker process as it went in."""
+        """Return the arguments for pickling, so that the error passes unchanged out of a worker process."""
         return ConfigError, (self.problems, self.hint)
 
 
 class StoreError(RunnerError):
-    """A run folder, sweep folder or baseline that cannot be read or written."""
+    """Run folder, sweep folder or baseline that cannot be read or written."""
 
 
 class SimulationError(Exception):
-    """A closed loop that left the domain of its equations: a result to be stored, not a crash.
+    """Closed loop that left the domain of its equations; the runner stores it as a result.
 
     Attributes:
-        reason: What happened.
-        time: When, in s; NaN if unknown.
-        joint: Name of the joint that left first, or None.
+        reason: Reason of the failure.
+        time: Time of the failure, in s; NaN if unknown.
+        joint: Name of the joint that failed first, or None.
     """
 
     def __init__(self, reason: str, time: float = math.nan, joint: str | None = None) -> None:
@@ -74,28 +75,28 @@ class SimulationError(Exception):
 
 
 def describe_write_error(error: OSError, path: Path | None = None) -> str:
-    """Return that a file cannot be written, why, and what to do about it where its disk is full."""
+    """Return a message about a file that cannot be written, with the reason, and a remedy if the disk is full."""
     name = path or error.filename or "the output, or a temporary file where TMPDIR says"
     return f"cannot write {name}: {error.strerror}" + ("; free space on its disk" if error.errno in DISK_FULL else "")
 
 
 def nearest(name: str, allowed: Iterable[str]) -> str:
-    """Return " (did you mean X?)" for the nearest allowed name, or an empty text when none is near."""
+    """Return " (did you mean X?)" for the nearest allowed name, or an empty string if none is near."""
     near = _nearest(name, allowed)
     return f" (did you mean {near}?)" if near else ""
 
 
 def unknown(what: str, name: object, allowed: Iterable[str], place: str = "") -> str:
-    """Return the message on an unknown name: what is allowed, and the nearest name.
+    """Return the message about an unknown name, with the allowed names and the nearest one.
 
         >>> unknown("axis", "rob", ["robot", "seed"], "--by")
         "--by: unknown axis 'rob'. Allowed: robot, seed. Did you mean 'robot'?"
 
     Args:
-        what: Noun for the thing that the name names, such as "axis".
+        what: Noun for the kind of name, such as "axis".
         name: The name as given.
         allowed: The allowed names.
-        place: The option, command or file that has the name; empty for none.
+        place: Option, command or file that contains the name, or an empty string.
     """
     known = list(allowed)
     near = _nearest(str(name), known)
@@ -115,19 +116,19 @@ def _nearest(name: str, allowed: Iterable[str]) -> str:
 
 
 def describe_part_error(error: Exception) -> str:
-    """Return what an error of a user's part says, with the innermost place in the user's own source."""
+    """Return the message of an error in a user-supplied part, with the innermost line of user code."""
     import traceback
 
     text = traceback.format_exception_only(error)[-1].strip()
     if isinstance(error, SyntaxError):
         return f"{text} ({Path(error.filename or '?').name}, line {error.lineno})"
     frames = _frames(error)
-    place = user_place(error) or (_place(frames[0]) if frames else "")  # that of a part which is installed as a package
+    place = user_place(error) or (_place(frames[0]) if frames else "")  # the latter for a part in an installed package
     return f"{text} ({place})" if place else text
 
 
 def user_place(error: BaseException) -> str:
-    """Return the innermost place in the user's own files where an error arose, or an empty text."""
+    """Return the innermost line in user files in the traceback of an error, or an empty string."""
     import sysconfig
 
     libraries = tuple(sysconfig.get_paths()[name] for name in ("purelib", "platlib", "stdlib"))
@@ -136,7 +137,7 @@ def user_place(error: BaseException) -> str:
 
 
 def _frames(error: BaseException) -> "list[traceback.FrameSummary]":
-    """Return where an error passed outside of this package."""
+    """Return the frames of an error that are outside this package."""
     import traceback
 
     ours = str(Path(__file__).resolve().parents[1])

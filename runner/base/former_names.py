@@ -1,6 +1,6 @@
 """Former names of keys, options, commands and presets."""
 
-# This module goes with version 1.0, and so do its tests and the places that import it.
+# Version 1.0 removes this module, its tests and its imports.
 
 KEYS: dict[str, str] = {
     "plant.parts": "plant.segments",
@@ -20,7 +20,7 @@ KEYS: dict[str, str] = {
     "environment.begin": "environment.start_time",
     "environment.travel": "environment.displacement",
 }
-"""Present name of each former key of a config, both with their groups."""
+"""Present name of each former config key, both with their groups."""
 
 VALUES: dict[str, dict[str, str]] = {
     "preset": {"sound": "full_equations"},
@@ -60,7 +60,7 @@ OPTIONS: dict[str, tuple[str, ...]] = {
     "--reference": ("--baseline",),
     "--write": ("--output",),
 }
-"""Present spellings of each former option of commands; a command has one of them."""
+"""Present spellings of each former option; a command has one of them."""
 
 
 def explain_key(key: str) -> str:

@@ -1,4 +1,4 @@
-"""Pinocchio and parts of SciPy, imported on first use: checks of a config do not need them."""
+"""Pinocchio and parts of SciPy, imported on first use, because checks of a config do not need them."""
 
 from collections.abc import Callable
 from types import ModuleType
@@ -11,10 +11,10 @@ if TYPE_CHECKING:
 else:
 
     class _Loaded:
-        """The names of a module."""
+        """Names of a module."""
 
     class _LazyModule(_Loaded):
-        """The names of a module that is imported when one of them is first used."""
+        """Names of a module that is imported on the first use of one of them."""
 
         def __init__(self, load: Callable[[], ModuleType]) -> None:
             self._load = load
@@ -24,7 +24,7 @@ else:
                 raise AttributeError(name)
             module = self._load()
             self.__dict__.update(vars(module))
-            self.__class__ = _Loaded  # without this method, a name is found as fast as in a module
+            self.__class__ = _Loaded  # a lookup without this method is as fast as in a module
             return getattr(module, name)
 
     def _pinocchio() -> ModuleType:

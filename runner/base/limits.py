@@ -9,51 +9,51 @@ from typing import Any, NamedTuple
 
 
 class Limit(NamedTuple):
-    """A largest number of something, such as `Limit(40_000, "numbers")`."""
+    """Upper limit with its unit, such as `Limit(40_000, "numbers")`."""
 
     most: int
     of: str
 
     def excess(self, found: float) -> str:
-        """Return "has 50,000 numbers; allowed: up to 40,000", or an empty text where no more than allowed are found."""
+        """Return a message, "has 50,000 numbers; allowed: up to 40,000"; empty if `found` is within the limit."""
         return f"has {found:,.0f} {self.of}; allowed: up to {self.most:,}" if found > self.most else ""
 
 
 class ExcessError(ValueError):
-    """Something from outside that is larger than a limit allows; the message is that of the limit."""
+    """External input that exceeds a limit; the message is that of the limit."""
 
 
-# Ten times and more what is known to be needed; what is within all of them takes less than 300 MB and some seconds.
-XML = Limit(5_000_000, "bytes")  # a URDF or MJCF with all that it includes; that of a humanoid has 100 kB
+# At least ten times the known needs; input within all limits takes less than 300 MB and a few seconds.
+XML = Limit(5_000_000, "bytes")  # a URDF or MJCF with its included files; a humanoid has 100 kB
 XML_ELEMENTS = Limit(20_000, "elements")  # of a URDF
-XML_ATTRIBUTES = Limit(200, "attributes in an element")  # engines look through them pair by pair
-MJCF_ELEMENTS = Limit(2500, "elements")  # an MJCF with all that it includes; MuJoCo takes up to 50 kB for one
+XML_ATTRIBUTES = Limit(200, "attributes in an element")  # engines compare them in pairs
+MJCF_ELEMENTS = Limit(2500, "elements")  # an MJCF with its included files; MuJoCo takes up to 50 kB for one element
 ARM_PARTS = Limit(2000, "links and joints")
-MESH = Limit(20_000_000, "bytes")  # a mesh for people to look at has 10 MB, one for collisions 1 MB
-FACES = Limit(200_000, "faces")  # of an OBJ; PyBullet takes 1 kB and more for one
+MESH = Limit(20_000_000, "bytes")  # a visual mesh has 10 MB, a collision mesh 1 MB
+FACES = Limit(200_000, "faces")  # of an OBJ; PyBullet takes at least 1 kB for one
 HEIGHTS = Limit(1_000_000, "heights")  # of a height field, 4 bytes each in every copy
 SAMPLES = Limit(500_000, "samples")  # of a motion of the joints, 500 bytes each
 READINGS = Limit(1_000_000, "readings")  # of a sensor in a calibration; 1 s of Python
 CELLS = Limit(10_000_000, "cells")  # of a sweep, 40 bytes each
 TRIALS = Limit(100_000, "trials")  # of a tuning; the sampler takes longer with each
-GRID = Limit(10_000, "runs")  # of a grid of a study, each with its texts
-CHAPTER = Limit(1_000_000, "bytes")  # a chapter of a study; ours have 20 kB
+GRID = Limit(10_000, "runs")  # of a grid of a study, each with its strings
+CHAPTER = Limit(1_000_000, "bytes")  # a chapter of a study; built-in ones have 20 kB
 TABLE = Limit(5_000_000, "bytes")  # the data file of a trajectory
-TABLE_NUMBERS = Limit(40_000, "numbers")  # of one, which becomes part of the config
+TABLE_NUMBERS = Limit(40_000, "numbers")  # of a data file, which become part of the config
 RECORDING = Limit(100_000_000, "bytes")
-RECORDING_ROWS = Limit(1_000_000, "rows")  # a quarter of an hour at 1 kHz; 8 bytes for each column that is read
+RECORDING_ROWS = Limit(1_000_000, "rows")  # 15 minutes at 1 kHz; 8 bytes for each column read
 RECORDING_ROW = Limit(100_000, "characters in a row")  # 10^4 columns
-BAG_MEMORY = Limit(1_000_000_000, "bytes")  # of memory, and of a file, that a ROS bag may unpack to
-RECORD = Limit(50_000_000, "bytes")  # JSON that the runner wrote; 10^5 listed runs have 20 MB
-RECORD_VALUES = Limit(2_000_000, "values")  # of one, 100 bytes each
+BAG_MEMORY = Limit(1_000_000_000, "bytes")  # of memory, and of a file, for an unpacked ROS bag
+RECORD = Limit(50_000_000, "bytes")  # JSON written by the runner; 10^5 listed runs have 20 MB
+RECORD_VALUES = Limit(2_000_000, "values")  # of a record, 100 bytes each
 
 
 def read_text(path: Path, limit: Limit) -> str:
     """Return the content of a text file.
 
     Raises:
-        OSError: if it cannot be read.
-        ValueError: ExcessError if it is larger than allowed, or without end; UnicodeDecodeError if it is no UTF-8.
+        OSError: if the file cannot be read.
+        ValueError: ExcessError if the file is too large or endless; UnicodeDecodeError if it is not UTF-8.
     """
     if path.is_fifo() or path.is_char_device():
         raise ExcessError("is a pipe or a device; allowed: files")
@@ -64,7 +64,7 @@ def read_text(path: Path, limit: Limit) -> str:
 
 @contextlib.contextmanager
 def bounded_memory(limit: Limit) -> Iterator[None]:
-    """Let the process take so many more bytes, and write no larger file: MemoryError and OSError tell of more."""
+    """Limit additional memory and file size of the process; beyond it, MemoryError or OSError is raised."""
     held = int(Path("/proc/self/statm").read_text().split()[0]) * os.sysconf("SC_PAGE_SIZE")
     with contextlib.ExitStack() as stack:
         for kind, most in ((resource.RLIMIT_AS, held + limit.most), (resource.RLIMIT_FSIZE, limit.most)):
@@ -76,7 +76,7 @@ def bounded_memory(limit: Limit) -> Iterator[None]:
 
 
 def half_of_memory() -> float:
-    """Return half of the memory that this machine, or its control group, has for the program, in bytes."""
+    """Return half of the memory available to the process on this machine or in its control group, in bytes."""
     whole = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     for place in ("memory.max", "memory/memory.limit_in_bytes"):  # cgroup version 2, version 1
         with contextlib.suppress(OSError, ValueError):
@@ -85,10 +85,11 @@ def half_of_memory() -> float:
 
 
 def open_parquet(source: Any, limit: Limit | None = None) -> Any:
-    """Return a pyarrow.parquet.ParquetFile; `limit` is of its bytes when unpacked, None half of the machine's memory.
+    """Return a pyarrow.parquet.ParquetFile; `limit` is for its unpacked bytes, None is half of the machine's memory.
 
     Raises:
-        ExcessError: if it takes more, by what it says of itself; pyarrow's own and OSError if it cannot be read.
+        ExcessError: if the unpacked size in its metadata exceeds the limit.
+        OSError: if the file cannot be read; pyarrow also raises its own exceptions.
     """
     import pyarrow.parquet
 

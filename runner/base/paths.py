@@ -8,7 +8,7 @@ from pathlib import Path
 from runner.base.errors import ConfigError
 
 STUDY_FILE = "study.yaml"
-"""The file that makes a folder a study."""
+"""File that marks a folder as a study."""
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -20,7 +20,7 @@ def _root() -> Path:
 
 
 def package_dir() -> Path:
-    """Return the folder of this package's source."""
+    """Return the source folder of this package."""
     return _PACKAGE
 
 
@@ -30,32 +30,32 @@ def conf_dir() -> Path:
 
 
 def ships(path: Path) -> bool:
-    """Tell whether a file is one of our configs, which may set what no file from outside may."""
+    """Return True if a file is a built-in config, which has more rights than external files."""
     return conf_dir() in path.resolve().parents
 
 
 def robots_dir() -> Path:
-    """Return the folder of our own URDFs."""
+    """Return the folder of the built-in URDFs."""
     return _root() / "robots"
 
 
 def studies_dir() -> Path:
-    """Return the folder of the built-in studies, one folder each."""
+    """Return the folder of the built-in studies, with one folder for each."""
     return _PACKAGE / "studies"
 
 
 def studies_with(file: str) -> list[str]:
-    """Return the names of our studies that have a file, such as "claims.yaml", sorted."""
+    """Return the sorted names of the built-in studies that have a file, such as "claims.yaml"."""
     return sorted(folder.name for folder in studies_dir().iterdir() if (folder / file).is_file())
 
 
 def examples_dir() -> Path:
-    """Return the folder of the examples, which `runner example` copies."""
+    """Return the folder of the examples that `runner example` copies."""
     return _root() / "examples"
 
 
 def example_study_dir() -> Path:
-    """Return the folder of the study that `runner study new` starts from."""
+    """Return the folder of the template of `runner study new`."""
     return examples_dir() / "own_paper"
 
 
@@ -65,13 +65,13 @@ def templates_dir() -> Path:
 
 
 def check_inside(path: Path, folders: Sequence[Path]) -> None:
-    """Check that a file found in a config folder lies there, whatever links lead to it; nothing is read before.
+    """Check that a file found in a config folder is really inside it, after resolving links; nothing is read before.
 
-    A file that is found elsewhere, by its whole path, may lie anywhere, unless one of the folders is that of a study:
-    the files of its runs are its own, or ours.
+    A file with an absolute path outside the folders can be anywhere. However, if one of the folders is a study, all
+    files must be inside the folders or built-in.
 
     Raises:
-        ConfigError: if the file lies elsewhere.
+        ConfigError: if the file is elsewhere.
     """
     own = [folder for folder in folders if path.is_relative_to(folder)]
     if not own and any((folder / STUDY_FILE).is_file() for folder in folders):

@@ -19,7 +19,7 @@ _COLUMNS, _LINES = 80, 24  # of a terminal that reports no size
 
 @dataclass
 class _Stage:
-    """The current stage: its name, and how much of it is done in which unit; `began` is a time in s."""
+    """Current stage with its name and progress; `began` is a time in s."""
 
     name: str
     total: float | None = None
@@ -116,17 +116,17 @@ def begin(name: str, total: float | None = None, unit: str = "", count: Callable
     """Begin the next stage.
 
     Args:
-        name: What is done.
-        total: How much there is to do; None if unknown.
-        unit: What is counted.
-        count: Returns from any thread how much is done, if `step` is not called.
+        name: Name of the stage.
+        total: Total amount; None if unknown.
+        unit: Unit of the amount.
+        count: Function that returns the completed amount from any thread, if `step` is not called.
     """
     if _display is not None:
         _display.stage = _Stage(name, total, unit, count)
 
 
 def step(done: float = 1.0) -> None:
-    """Add to what is done of the stage, in its unit."""
+    """Add to the completed amount of the stage, in its unit."""
     if _display is not None:
         _display.stage.reached += done
 
@@ -141,7 +141,7 @@ def set_title(title: str) -> None:
 def show_progress() -> Iterator[None]:
     """Show the stages begun within, after the first second, if standard error is a terminal or a notebook."""
     global _display
-    if _display is not None:  # the caller shows them
+    if _display is not None:  # the caller shows the progress
         yield
         return
     with _terminal() as stream, contextlib.nullcontext() if stream is None else _Display(stream) as _display:
@@ -166,7 +166,7 @@ def _terminal() -> Iterator[TextIO | None]:
 
 
 def _in_notebook() -> bool:
-    """Return True if a Jupyter kernel shows what is printed; it handles a carriage return as a terminal does."""
+    """Return True in a Jupyter kernel, which handles a carriage return as a terminal does."""
     known: Any = sys.modules.get("IPython")
     shell = known.get_ipython() if known is not None else None
     return shell is not None and "IPKernelApp" in shell.config
@@ -189,7 +189,7 @@ def _bar(stream: TextIO, stage: _Stage, name: str) -> Any:
 
 
 def _has_size(stream: TextIO) -> bool:
-    """Return True if a terminal reports its size; one that another program opened may have no columns or lines."""
+    """Return True if a terminal reports its size; a pseudo-terminal of another program can have no columns or lines."""
     try:
         return min(os.get_terminal_size(stream.fileno())) > 0
     except (OSError, ValueError):  # not a file

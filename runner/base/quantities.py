@@ -10,13 +10,13 @@ import re
 from collections.abc import Iterable, Sequence
 
 ROUNDING = 1e-12
-"""What double precision leaves of zero after some operations on lengths, angles and torques of this size."""
+"""Size of rounding errors in double precision, after several operations on lengths, angles and torques near 1."""
 
 SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 ROUNDED = "0 (rounding)"
 _EXPONENT = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e[+-]?\d+(?!\w)")
 _UNITS = {"1": "", "N^2 m^2 s": "N² m² s", "N^2 s": "N² s", "m/s^2": "m/s²"}
-# From which size on a unit is taken, with its factor; below the last one the unit itself, with a power of ten.
+# Smallest size, factor and name of each unit; below the last size, the base unit is used with a power of ten.
 _SMALLER = {
     "m": ((0.1, 1.0, "m"), (1e-5, 1e3, "mm"), (1e-8, 1e6, "µm")),
     "s": ((0.1, 1.0, "s"), (1e-5, 1e3, "ms"), (1e-8, 1e6, "µs")),
@@ -24,11 +24,11 @@ _SMALLER = {
 
 
 class Shown(str):
-    """A number as text that remembers what it shows, so that a column of a table can be given one unit.
+    """Formatted number that stores its value, so that a table column can be converted to one unit.
 
     Attributes:
         value: The number.
-        digits: How many digits it has.
+        digits: Number of significant digits.
     """
 
     __slots__ = ("digits", "value")
@@ -36,7 +36,7 @@ class Shown(str):
     digits: int
 
     def __new__(cls, text: str, value: float, digits: int) -> Shown:
-        """Return the text with its number."""
+        """Return the formatted number with its value."""
         shown = super().__new__(cls, text)
         shown.value, shown.digits = value, digits
         return shown
@@ -45,14 +45,14 @@ class Shown(str):
 def number(
     value: float | None, digits: int = 3, rounding: float = 0.0, zeros: bool = False, plain: float = 1e-2
 ) -> str:
-    """Return a number with so many significant digits, such as 0.0735 or 8.73·10⁻³; a dash for a missing one.
+    """Return a number with significant digits, such as 0.0735 or 8.73·10⁻³; a dash for a missing value.
 
     Args:
         value: The number.
-        digits: How many digits.
-        rounding: What is smaller is rounding of the arithmetic, and said to be that.
-        zeros: Whether zeros at the end stay, as in 0.110, which a range needs: 0.101 to 0.110.
-        plain: What is smaller has a power of ten; 1e-4 or more.
+        digits: Number of significant digits.
+        rounding: Smaller absolute values are formatted as rounding errors.
+        zeros: True to keep trailing zeros, as in 0.110, for ranges: 0.101 to 0.110.
+        plain: Smaller absolute values are formatted with a power of ten; at least 1e-4.
     """
     if value is None or math.isnan(value):
         return "–"
@@ -66,7 +66,7 @@ def number(
 
 
 def plain_number(value: float | None) -> str:
-    """Return a number with five digits for a terminal, or "-" if there is none."""
+    """Return a number with five digits for a terminal, or "-" for a missing value."""
     return "-" if value is None else f"{value:.5g}"
 
 
@@ -76,36 +76,36 @@ def _text(value: float, digits: int, zeros: bool, plain: float) -> str:
         return f"{value:.0f}" if "e" in text else text
     mantissa, _, exponent = f"{value:.{digits - 1}e}".partition("e")
     if value == float(f"{value:.0e}") and not zeros:
-        mantissa = mantissa.partition(".")[0]  # a printed 6·10⁻⁵ claims no more digits than it has
+        mantissa = mantissa.partition(".")[0]  # 6·10⁻⁵ must not suggest more digits
     return f"{mantissa}·10{str(int(exponent)).translate(SUPERSCRIPT)}"
 
 
 def with_powers(text: str) -> str:
-    """Return a text, such as an error message, with its numbers as a report writes them: 3.04·10⁻⁴ for 3.04e-04."""
+    """Return a string, such as an error message, with numbers in the format of reports: 3.04·10⁻⁴ for 3.04e-04."""
     return _EXPONENT.sub(lambda found: number(float(found[0]), len(found[1].replace(".", "")), ROUNDING), text)
 
 
 def unit_text(unit: str) -> str:
-    """Return a unit as it is set: m/s² for m/s^2, nothing for 1."""
+    """Return a unit as printed: m/s² for m/s^2, an empty string for 1."""
     return _UNITS.get(unit, unit)
 
 
 def smaller_units(unit: str) -> list[tuple[float, str]]:
-    """Return the smaller units of a unit with their factors, mm and µm for m; none where there are none."""
+    """Return the smaller units of a unit with their factors, such as mm and µm for m; the list can be empty."""
     return [(factor, name) for _, factor, name in _SMALLER.get(unit, ())][1:]
 
 
 def choose_unit(value: float | None, unit: str) -> tuple[float, str]:
-    """Return the factor and the unit in which a value is shown: mm below 0.1 m, µm below 0.01 mm; ms and µs alike."""
+    """Return the factor and the unit of a value: mm below 0.1 m and µm below 0.01 mm; ms and µs for times."""
     size = 0.0 if value is None else abs(value)
     fits = ((factor, name) for least, factor, name in _SMALLER.get(unit, ()) if size >= least and math.isfinite(size))
     return next(fits, (1.0, unit_text(unit)))
 
 
 def quantity(value: float | None, unit: str, digits: int = 3, rounding: float = 0.0) -> str:
-    """Return a number with its unit, such as "8.73 mm"; what is rounding has none."""
+    """Return a number with its unit, such as "8.73 mm"; a rounding error has no unit."""
     factor, name = choose_unit(value, unit)
-    plain = 1e-4 if unit == "%" else 1e-2  # per cent have no smaller unit that spares a power of ten
+    plain = 1e-4 if unit == "%" else 1e-2  # percent has no smaller unit to avoid powers of ten
     text = number(value if value is None else factor * value, digits, factor * rounding, plain=plain)
     if text == ROUNDED or unit == "°":
         return text if text == ROUNDED else f"{text}°"
@@ -113,12 +113,12 @@ def quantity(value: float | None, unit: str, digits: int = 3, rounding: float = 
 
 
 def above_rounding(value: float | None, unit: str = "1", digits: int = 3) -> str:
-    """Return a number with its unit, "0 (rounding)" for one that is of the size of rounding errors, in SI units."""
+    """Return a number with its unit, or "0 (rounding)" for a value of the size of rounding errors in SI units."""
     return quantity(value, unit, digits, ROUNDING) if unit != "1" else number(value, digits, ROUNDING)
 
 
 def format_duration(seconds: float) -> str:
-    """Return a duration for people, such as "89 s", "2 min" or "2.5 h"."""
+    """Return a rounded duration, such as "89 s", "2 min" or "2.5 h"."""
     if seconds < 90.0:
         return f"{max(1, round(seconds))} s"
     if seconds < 5400.0:
@@ -132,26 +132,26 @@ def label_with_unit(name: str, unit: str) -> str:
 
 
 def digits_between(low: float, high: float) -> int:
-    """Return how many digits tell numbers apart that lie between two: three, and more where these are close."""
+    """Return the number of digits that distinguishes values in a range: three, or more for a narrow range."""
     largest = max(abs(low), abs(high))
     return 3 if high <= low else min(12, max(3, 2 - math.floor(math.log10((high - low) / largest))))
 
 
 def format_range(low: float | None, high: float | None, unit: str, beside: float | None = None) -> str:
-    """Return a range with its unit, both ends in the same one, such as "7 to 44 mm".
+    """Return a range with one unit for both ends, such as "7 to 44 mm".
 
     Args:
         low: The lower end.
-        high: The upper end, which decides about the unit.
+        high: The upper end, which determines the unit by default.
         unit: The SI unit.
-        beside: A value that it is compared with; its unit is taken where no end needs a power of ten in it.
+        beside: A value for comparison; its unit is used unless another one needs fewer powers of ten.
     """
     factor, name = _shared((low, high), unit, beside)
     return f"{_scaled(low, factor)} to {_scaled(high, factor)} {name}".strip()
 
 
 def with_interval(value: float, half: float) -> tuple[str, str]:
-    """Return an estimate and the half width of its interval, both to the second digit of that: 300.0 and ± 1.1."""
+    """Return an estimate and the half width of its interval, both to two digits of the latter: 300.0 and ± 1.1."""
     decimals = max(0, 1 - math.floor(math.log10(half))) if half > 0.0 else 3
     return f"{value:.{decimals}f}", f"± {half:.{decimals}f}"
 
@@ -163,11 +163,11 @@ def spread(
 
     Args:
         unit: The SI unit.
-        median: The median; None if it is beyond every number.
+        median: The median; None if it is infinite.
         low: The smallest value; None if there is none.
         high: The largest value; None if a value is missing.
         count: Number of repetitions.
-        beside: A printed value next to which the text stands; its unit is used. See `ranged`.
+        beside: A value for comparison; see `format_range`.
     """
     if count < 2 or low == high is not None:
         factor, name = _shared((median,), unit, median if beside is None else beside)
@@ -182,11 +182,11 @@ def with_ends(
     """Return a value with its unit, a range around it in the same unit, and that unit: "1.56 s", "1.53 to 2.80", "s".
 
     Args:
-        middle: The value; an infinite one is "never".
-        low: The lower end of the range, likewise.
-        high: The upper end, likewise.
+        middle: The value; an infinite value becomes "never".
+        low: The lower end of the range; an infinite value becomes "never".
+        high: The upper end of the range; an infinite value becomes "never".
         unit: The SI unit.
-        beside: A value that they are compared with, of which they take the unit; see `ranged`.
+        beside: A value for comparison; see `format_range`.
     """
     known = [value for value in (middle, low, high) if value is not None and math.isfinite(value)]
     chosen = beside if beside is not None else middle if middle is not None and math.isfinite(middle) else None
@@ -199,12 +199,12 @@ def with_ends(
 def fewest_powers(
     values: Iterable[float], units: Sequence[tuple[float, str]], plain: float = 1e-2
 ) -> tuple[float, str]:
-    """Return the unit, of some with their factors, in which the fewest values need a power of ten; the first such.
+    """Return the first of the units in which the fewest values need a power of ten.
 
     Args:
         values: The values, in the unit whose factor is 1.
-        units: The units.
-        plain: From where on values in one of the other units need none.
+        units: Factors and names of the units.
+        plain: Smallest value that needs no power of ten in a unit with another factor.
     """
     numbers = [value for value in values if abs(value) >= ROUNDING]
 
@@ -216,7 +216,7 @@ def fewest_powers(
 
 
 def _shared(values: Sequence[float | None], unit: str, beside: float | None) -> tuple[float, str]:
-    """Return the unit of a value that some others are compared with, or another one in which these need no powers."""
+    """Return the unit of a value for comparison, or another unit in which fewer values need powers of ten."""
     known = [value for value in values if value is not None]
     largest = choose_unit(max(map(abs, known), default=None), unit)
     wanted = [choose_unit(beside, unit)] if beside else []

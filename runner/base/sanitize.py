@@ -5,25 +5,25 @@ import unicodedata
 from collections.abc import Sequence
 
 VALUE = 200
-"""Longest text quoted of a value, in characters."""
+"""Largest length of a quoted value, in characters."""
 LINE = 2000
-"""Longest line of a message, in characters."""
+"""Largest length of a line of a message, in characters."""
 LINES = 50
-"""Most lines of a message."""
+"""Largest number of lines of a message."""
 _NAMES = 8
 _OVERRIDES = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 _SPACE = re.compile(r"\s+")
 
 
 def escaped(text: str) -> str:
-    r"""Return text on one line, in which line breaks, terminal escapes and invisible characters read \n or \x1b."""
+    r"""Return text on one line, with line breaks, terminal escapes and invisible characters escaped as \n or \x1b."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def one_line(text: str, longest: int = LINE) -> str:
-    """Return text escaped, and cut with a word on how long it was where it has more characters than `longest`."""
+    """Return escaped text; if it is longer than `longest`, it is cut and ends with its original length."""
     shown = escaped(text[: longest + 1])
     if len(shown) <= longest:
         return shown
@@ -32,7 +32,7 @@ def one_line(text: str, longest: int = LINE) -> str:
 
 
 def lines(text: str) -> str:
-    """Return text in which each line is safe to show; its line breaks stay, of the first fifty lines."""
+    """Return text with each line sanitized; line breaks stay, and lines beyond the first fifty are cut."""
     found = text.split("\n")
     if len(found) > LINES:
         found = [*found[: LINES - 1], f"and {len(found) - LINES + 1} more lines"]
@@ -40,15 +40,15 @@ def lines(text: str) -> str:
 
 
 def quoted(value: object) -> str:
-    """Return a value as a message quotes it: at most a line."""
+    """Return the quoted value for a message, at most one line."""
     try:
         return one_line(repr(value), VALUE)
-    except (ValueError, RecursionError):  # Python prints no whole number of more than some 4,300 digits
+    except (ValueError, RecursionError):  # Python does not print integers with more than about 4,300 digits
         return f"a value too large to show ({type(value).__name__})"
 
 
 def few(names: Sequence[str]) -> str:
-    """Return names as a list, of which the first eight stand for many."""
+    """Return names as a list, with at most the first eight."""
     more = f" and {len(names) - _NAMES} more" if len(names) > _NAMES else ""
     return ", ".join(names[:_NAMES]) + more
 
@@ -62,7 +62,7 @@ def align_columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
 
 
 def table_cell(text: str) -> str:
-    """Return text as a cell of a CSV table that no spreadsheet takes for a formula; a number stays as it is."""
+    """Return text as a cell of a CSV table that spreadsheets do not read as a formula; a number does not change."""
     try:
         float(text)
     except ValueError:
@@ -71,10 +71,10 @@ def table_cell(text: str) -> str:
 
 
 def plain(text: str) -> str:
-    """Return the text on one line, without the characters that no XML, PDF or UTF-8 file can hold.
+    """Return the text on one line, without characters that XML, PDF or UTF-8 files cannot contain.
 
-    Control characters, lone surrogates, noncharacters and direction overrides become U+FFFD: they could hide or
-    reorder what stands beside them.
+    Control characters, lone surrogates, noncharacters and direction overrides become U+FFFD, because they could hide or
+    reorder other text.
     """
     if text.isprintable() and "  " not in text:
         return text

@@ -11,7 +11,7 @@ _EVERY = 1.0  # s between two reports of the count
 
 
 class _Count:
-    """Ticks of what has ended, and the clock of the repetition under way: when each row began, 0 before."""
+    """Ticks of finished repetitions, and the clock of the current one: start time of each row, 0 before its start."""
 
     def __init__(self) -> None:
         self.ended = 0
@@ -24,7 +24,7 @@ _adding = threading.Lock()
 
 @contextmanager
 def track_ticks(clock: NDArray[np.int64], ticks: int) -> Iterator[None]:
-    """Count the ticks of a repetition while it goes on, by its clock: when each row began, in ns, 0 before it did."""
+    """Count the ticks of a running repetition by its clock: start time of each row in ns, 0 before its start."""
     _count.clock = clock
     try:
         yield
@@ -34,7 +34,7 @@ def track_ticks(clock: NDArray[np.int64], ticks: int) -> Iterator[None]:
 
 
 def add_ticks(ticks: int) -> None:
-    """Count ticks that were simulated at once, in any thread."""
+    """Count ticks that were simulated together, in any thread."""
     with _adding:
         _count.ended += ticks
 
@@ -53,7 +53,7 @@ def counter() -> Callable[[], int]:
 
 @contextmanager
 def report_ticks(tell: Callable[[int], None] | None) -> Iterator[None]:
-    """Report each second, from a thread, how many ticks have been simulated within; do nothing for None."""
+    """Report the number of ticks simulated within the context each second, from a thread; do nothing for None."""
     if tell is None:
         yield
         return

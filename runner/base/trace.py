@@ -11,12 +11,12 @@ from runner.base.arrays import FloatArray
 
 @dataclass(frozen=True)
 class Failure:
-    """Why and where a closed loop left the domain of its equations.
+    """Failure of a closed loop that left the domain of its equations.
 
     Attributes:
-        reason: What happened.
-        time: When, in s.
-        joint: Name of the joint that left first, or None where no single one did.
+        reason: Reason of the failure.
+        time: Time of the failure, in s.
+        joint: Name of the joint that failed first, or None if no single joint failed.
     """
 
     reason: str
@@ -26,14 +26,14 @@ class Failure:
 
 @dataclass(frozen=True)
 class ContactSignals:
-    """Wrenches of one run, a row of force in N and moment in N m for each control tick, shapes (T, 6).
+    """Wrenches of one run, with a row of force in N and moment in N m for each control tick, shapes (T, 6).
 
     Attributes:
-        external: Of the world on the tip, moment about the tip, along the base's axes.
-        felt: The same as the controller believes it; zero where none feels.
-        reading: Of the wrist's sensor, about its origin, along its axes.
-        load: Of world and tool on the flange, about its origin, along its axes: what the sensor is to read.
-        reaction: The same as PyBullet computes it in the joint, for comparison; zero on other plants.
+        external: Wrench of the environment on the tip, moment about the tip, along the axes of the base.
+        felt: The same wrench as used by the controller; zero if no controller uses it.
+        reading: Reading of the wrist sensor, about the sensor's origin, along the sensor's axes.
+        load: Wrench of environment and tool on the flange, about its origin, along its axes; the ideal reading.
+        reaction: The same load as computed by PyBullet in the joint, for comparison; zero on other plants.
     """
 
     external: FloatArray
@@ -45,24 +45,26 @@ class ContactSignals:
 
 @dataclass(frozen=True)
 class Signals:
-    """Signals of one or several runs, true values unless said; shapes are those of one run, see Traces for several.
+    """Signals of one or several runs, as true values; shapes are for one run, see Traces for several runs.
 
     Attributes:
         t: Times, shape (T,), in s.
         q: Joint positions, shape (T, nq), in rad.
         dq: Joint velocities, shape (T, nq), in rad/s.
-        tau: Torques after the limit, held until the next row, shape (T, nq), in N m.
+        tau: Limited torques, constant until the next row, shape (T, nq), in N m.
         end_points: End point of each stage in the base frame, shape (stages, T, 3), in m; the last is the tip.
-        offsets: Offset of the tip at home from each stage's end point, shape (stages, 3), in m; the last is zero.
+        offsets: Offset of the tip from the end point of each stage at the home configuration, shape (stages, 3), in m;
+            the last is zero.
         stage_names: Names of the stages.
-        desired: Desired tip position, velocity, acceleration, shape (T, 3, 3): rows in m, m/s, m/s^2.
-        limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
+        desired: Desired tip position, velocity and acceleration, shape (T, 3, 3), in m, m/s and m/s^2.
+        limits: Torque limit of each joint, shape (nq,), in N m; infinite without a limit.
         joint_names: Names of the joints.
-        joint_units: Unit of each joint's position: rad where it turns, m where it slides. There speeds are in m/s and
-            torques are forces, in N.
-        tick_seconds: Wall-clock time that each tick took, shape (T - 1,), in s.
-        q_command: Joint positions commanded, held until the next row, shape (T, nq), in rad; None under torques.
-        contact: What the tip felt, by what is meant; None where there was nothing to feel.
+        joint_units: Unit of the position of each joint: rad for revolute joints, m for prismatic joints. The speed of a
+            prismatic joint is in m/s and its torque is a force, in N.
+        tick_seconds: Wall-clock time of each tick, shape (T - 1,), in s.
+        q_command: Commanded joint positions, constant until the next row, shape (T, nq), in rad; None if the controller
+            commands torques.
+        contact: Wrenches of the run; None without an external wrench.
     """
 
     t: FloatArray
@@ -81,7 +83,7 @@ class Signals:
     contact: ContactSignals | None = None
 
     def at_stage(self, index: int) -> Self:
-        """Return the signals with a stage's end point in the tip's place; its home offset is taken off x_d."""
+        """Return the signals with the end point of a stage as the tip; x_d is reduced by its home offset."""
         desired = self.desired.copy()
         desired[..., 0, :] -= self.offsets[index]
         return replace(self, end_points=self.end_points[index : index + 1], desired=desired)
@@ -89,12 +91,12 @@ class Signals:
 
 @dataclass(frozen=True)
 class Trace(Signals):
-    """Signals of one run, a row for each control tick from t = 0 to the end.
+    """Signals of one run, with a row for each control tick from t = 0 to the end.
 
     Attributes:
-        failure: Why the run ended early, or None.
-        law_seconds: Wall-clock time that all control loops took in each tick, shape (T,), in s, encoders included; None
-            where plant and loops are one piece of code.
+        failure: Failure that ended the run early, or None.
+        law_seconds: Wall-clock time of all control loops in each tick, including encoders, shape (T,), in s; None if
+            plant and loops are compiled together.
     """
 
     failure: Failure | None = None
@@ -107,7 +109,7 @@ class Trace(Signals):
         return tip
 
     def ended(self, failure: Failure) -> "Trace":
-        """Return the trace of a run under torques up to the time of a failure."""
+        """Return the trace of a torque-controlled run up to the time of a failure."""
         rows = int(np.searchsorted(self.t, failure.time)) + 1
         return replace(
             self,
@@ -130,16 +132,17 @@ class Trace(Signals):
 
 @dataclass(frozen=True)
 class Traces(Signals):
-    """Signals of several runs, none of which failed, that have ticks, path, arm and band in common.
+    """Signals of several runs without failures that have ticks, path, arm and settling band in common.
 
-    A run's results are the same to the last bit in whatever company, so that what looks at several runs reduces by rows
-    that lie in one piece. The runs are an axis of q, dq, tau, limits and q_command before the others, and of end_points
-    after the stages; desired has it where the runs differ. The contact is that of a single run, tick_seconds of one.
+    Results of a run must not depend on the other runs, not even by rounding. Code for several runs therefore reduces
+    along contiguous rows. The axis of the runs is the first axis of q, dq, tau, limits and q_command, and the second
+    one of end_points, after the stages. desired has it if the desired motions differ. contact and tick_seconds are of
+    one run.
     """
 
     @classmethod
     def of(cls, trace: Trace) -> "Traces":
-        """Return one run that did not fail as a batch of one."""
+        """Return a run without a failure as a batch of one run."""
         return cls(
             **_in_common(trace),
             q=trace.q[None],
@@ -165,7 +168,7 @@ class Traces(Signals):
         return replace(self, **self._own(own))
 
     def _own(self, runs: int | slice | list[int]) -> "_Own":
-        """Return the signals of one run or some that are not common to all."""
+        """Return the signals of some runs that are not common to all runs."""
         return {
             "q": self.q[runs],
             "dq": self.dq[runs],
@@ -178,12 +181,12 @@ class Traces(Signals):
 
     @cached_property
     def tip(self) -> FloatArray:
-        """Tip positions by axes, shape (runs, 3, T), in m; rows of ticks in one piece."""
+        """Tip positions by axes, shape (runs, 3, T), in m, with contiguous rows."""
         return by_rows(self.end_points[-1])
 
     @cached_property
     def target(self) -> FloatArray:
-        """Desired tip positions by axes, shape (3, T) for all alike or (runs, 3, T), in m."""
+        """Desired tip positions by axes, shape (3, T) if common to all runs or (runs, 3, T), in m."""
         return by_rows(self.desired[..., 0, :])
 
     @cached_property
@@ -227,8 +230,8 @@ def _in_common(signals: Signals) -> _Common:
 
 
 def by_rows(values: FloatArray) -> FloatArray:
-    """Return signals of several runs with the ticks last, in one piece, shapes (..., T, n) to (..., n, T).
+    """Return contiguous signals of several runs with the ticks last, shapes (..., T, n) to (..., n, T).
 
-    Sums and largest values over ticks are then quick, and rounded by the number of ticks alone.
+    Sums and maxima over ticks are then fast, and their rounding depends on the number of ticks only.
     """
     return np.ascontiguousarray(values.swapaxes(-1, -2))

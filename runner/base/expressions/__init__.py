@@ -1,4 +1,4 @@
-"""Arithmetic expressions in text: grammar, evaluator, parser, comparison and Typst typesetting.
+"""Arithmetic expressions in strings: grammar, evaluator, parser, comparison and Typst typesetting.
 
 The parser returns a tree; expressions never run as Python code.
 """

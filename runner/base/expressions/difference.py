@@ -6,20 +6,20 @@ from dataclasses import dataclass
 
 from runner.base.expressions.tree import Call, Name, Node, Number, Power, Product, Sum, symbols
 
-_ALIKE = 0.3  # share of symbols that two terms have in common where one stands for the other
+_ALIKE = 0.3  # fraction of common symbols above which two terms are compared as a pair
 
 _Part = tuple[bool, Node]
 
 
 @dataclass(frozen=True)
 class Difference:
-    """What two expressions do not share.
+    """Differences between two expressions.
 
     Attributes:
-        first: The parts of the first that the second lacks; empty where they are equal.
-        second: The parts of the second that the first lacks.
-        exchanged: Symbols of the first with those that stand in their places in the second, and how often.
-        symbols_alone: Whether they are the same but for exchanged symbols.
+        first: Parts of the first expression that are missing in the second; empty if they are equal.
+        second: Parts of the second expression that are missing in the first.
+        exchanged: Number of exchanges by pairs of a symbol of the first and the symbol in its place in the second.
+        symbols_alone: True if the expressions differ in exchanged symbols only.
     """
 
     first: frozenset[Node]
@@ -29,7 +29,7 @@ class Difference:
 
 
 def difference(first: Node, second: Node) -> Difference:
-    """Return where two expressions differ; terms and factors may stand in another order."""
+    """Return the differences between two expressions; the order of terms and factors does not matter."""
     found = _Finder()
     found.compare(first, second)
     return Difference(
@@ -41,7 +41,7 @@ def difference(first: Node, second: Node) -> Difference:
 
 
 class _Finder:
-    """Walks through two expressions side by side, and takes down what differs."""
+    """Recursive comparison of two expressions that collects the differences."""
 
     def __init__(self) -> None:
         self.first: set[Node] = set()
@@ -71,7 +71,7 @@ class _Finder:
                 self._differ(first, second)
 
     def _compare_arcs(self, first: Call, second: Call) -> None:
-        """Compare an arc tangent of a quotient with one of two arguments; they differ as a whole if in that alone."""
+        """Compare atan of a quotient with atan2; with equal arguments, the two calls differ as a whole."""
         before = len(self.first), len(self.second)
         for one, other in zip(_arc(first), _arc(second), strict=True):
             self.compare(one, other)
@@ -83,7 +83,7 @@ class _Finder:
         self.second.add(second)
 
     def _align(self, first: Node, ours: Sequence[_Part], second: Node, theirs: Sequence[_Part]) -> None:
-        """Pair terms, or factors: the equal ones first, then those that have most symbols in common."""
+        """Pair terms or factors: equal ones first, then those with the most common symbols."""
         left, right = _without_common(ours, theirs)
         pairs: list[tuple[Node, Node]] = []
         alone = []
@@ -105,7 +105,7 @@ class _Finder:
 
 
 def _arc(node: Call) -> Sequence[Node]:
-    """Return the two lengths whose angle an arc tangent is; nothing for another function, or another argument."""
+    """Return the two arguments of atan2, or of a quotient in atan; empty for any other call."""
     if node.function == "atan2":
         return node.arguments
     argument = node.arguments[0]
@@ -137,7 +137,7 @@ def _without_common(ours: Sequence[_Part], theirs: Sequence[_Part]) -> tuple[lis
 
 
 def _alike(first: Node, second: Node) -> float:
-    """Return the share of symbols that two expressions have in common, from 0 to 1."""
+    """Return the fraction of symbols that two expressions have in common, from 0 to 1."""
     if isinstance(first, Name) and isinstance(second, Name):
         return 1.0
     one, other = Counter(symbols(first)), Counter(symbols(second))
@@ -145,7 +145,7 @@ def _alike(first: Node, second: Node) -> float:
 
 
 def _shape(node: Node) -> tuple[object, ...]:
-    """Return an expression without the places of its parts."""
+    """Return an expression without the positions of its parts."""
     match node:
         case Number():
             return (float(node.text),)

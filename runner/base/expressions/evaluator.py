@@ -26,7 +26,7 @@ from runner.base.expressions.grammar import EXCERPT, LONGEST, ExpressionError, c
 _BITS = 63  # of a whole number
 _WHOLE = 2**_BITS
 _LISTED = 40  # names
-_FEW = 20  # numbers of a list that a text shows
+_FEW = 20  # most numbers of a list in a formatted string
 _FORM = re.compile(r"%(?:%|[-+]?\d{0,2}(?:\.\d{1,2})?([sdfge]))")
 _ARITHMETIC: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -46,20 +46,20 @@ _COMPARISONS: Mapping[type[ast.AST], Callable[[Any, Any], Any]] = {
 
 
 class Budget:
-    """The operations that are left to the expressions of a file; counted, so that all machines read a file alike.
+    """Remaining operations for the expressions of a file; unlike time, the count is the same on all machines.
 
     Args:
-        operations: How many there are.
+        operations: Number of allowed operations.
     """
 
     def __init__(self, operations: int = 100_000) -> None:
         self._allowed = self._left = operations
 
     def spend(self, operations: int) -> None:
-        """Take some.
+        """Subtract operations from the remaining ones.
 
         Raises:
-            OverflowError: if fewer are left.
+            OverflowError: if fewer operations remain.
         """
         self._left -= operations
         if self._left < 0:
@@ -68,14 +68,14 @@ class Budget:
 
 @dataclass(frozen=True)
 class Scope:
-    """What an expression reaches.
+    """Names and classes that an expression can access.
 
     Attributes:
-        functions: What it calls, and hands on as a measure, by name.
-        values: What it reads, by name; a name may have dots, as "robot.mass".
-        members: Fields that are read and methods that are called, by class; values of these take part in arithmetic.
-        handed: Further classes whose values are handed on as they are.
-        number: Gives the value that a number as written stands for.
+        functions: Functions by name, which an expression can call or pass on as a measure.
+        values: Values by name; a name can have dots, as in "robot.mass".
+        members: Accessible fields and methods by class; instances of these classes support arithmetic.
+        handed: Other classes whose instances an expression can only pass on.
+        number: Function that returns the value of a number in the expression.
     """
 
     functions: Mapping[str, Callable[..., Any]]
@@ -89,18 +89,18 @@ class Scope:
 
         Args:
             text: The expression.
-            budget: What it may spend.
+            budget: Allowed operations.
 
         Raises:
-            ExpressionError: for what is no expression, a name that is not there, a value that is of the wrong kind or
-                too large, and where the budget is spent.
-            RunnerError: as a function raises it.
+            ExpressionError: if the text is not an expression, a name does not exist, a value has the wrong type or is
+                too large, or the budget is exhausted.
+            RunnerError: if a function raises it.
         """
         return _Evaluation(self, text, budget).of(parse(text))
 
 
 class _Evaluation:
-    """One expression at work: `of` gives the value of a part of it."""
+    """Evaluation of one expression; `of` returns the value of a node."""
 
     def __init__(self, scope: Scope, text: str, budget: Budget) -> None:
         self._scope, self._text, self._budget = scope, text, budget
@@ -239,7 +239,7 @@ class _Evaluation:
         return owner[key]
 
     def _worked_out(self, node: ast.BinOp, left: Any, right: Any) -> Any:
-        """Return the value of one operation of a row."""
+        """Return the value of one operation in a chain."""
         work = _ARITHMETIC.get(type(node.op))
         if isinstance(node.op, ast.Mod) and isinstance(left, str):
             return self._formatted(left, right if isinstance(right, tuple) else (right,), node.right)
@@ -281,7 +281,7 @@ class _Evaluation:
         return value
 
     def _formatted(self, form: str, values: tuple[Any, ...], node: ast.expr) -> str:
-        """Return a text with values in place of %s, %d, %.3f and the like."""
+        """Return a string with values instead of %s, %d, %.3f and so on."""
         kinds = [kind for kind in _FORM.findall(form) if kind]
         if "%" in _FORM.sub("", form) or len(kinds) != len(values):
             self._refuse(node, f"{len(kinds)} of the forms %s, %d, %.3f, %g, %e for {len(values)} value(s); %% is a %")
@@ -308,7 +308,7 @@ class _Evaluation:
         return value
 
     def _sized(self, value: Any, node: ast.expr) -> int:
-        """Return how many items a value has in all, after a look at each: none may be of a class that is not listed."""
+        """Return the total number of items of a value after checking the class of each item."""
         left, count = [value], 0
         while left:
             each = left.pop()

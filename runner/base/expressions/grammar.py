@@ -11,7 +11,7 @@ from runner.base.errors import RunnerError
 LONGEST = 10_000  # characters of an expression and of a string, items of a list and of the lists in it
 EXCERPT = 30  # characters that a message shows
 _DEEPEST = 60
-_LONGEST_ROW = 1000  # operations; Python's own parser ends at some 3000
+_LONGEST_ROW = 1000  # operations; Python's own parser fails at about 3000
 _TOO_DEEP = f"is nested more than {_DEEPEST} deep, or has more than {_LONGEST_ROW} operations in a row"
 _ONE_LINE = str.maketrans("\n\r\f\t", "    ")
 _WORDS: Mapping[type[ast.AST], str] = {
@@ -27,16 +27,16 @@ _WORDS: Mapping[type[ast.AST], str] = {
 
 
 class ExpressionError(RunnerError):
-    """An expression that cannot be read or evaluated.
+    """Expression that cannot be read or evaluated.
 
     Args:
         text: The expression.
-        index: Where it is wrong, counted from 0.
-        reason: What is wrong.
+        index: Position of the error, counted from 0.
+        reason: Description of the error.
 
     Attributes:
-        reason: What is wrong.
-        position: Where, counted from 1.
+        reason: Description of the error.
+        position: Position of the error, counted from 1.
     """
 
     def __init__(self, text: str, index: int, reason: str) -> None:
@@ -48,27 +48,27 @@ class ExpressionError(RunnerError):
         super().__init__(f"position {self.position}: {reason}\n    {excerpt}\n    {mark}")
 
 
-@lru_cache(maxsize=32)  # a long one takes megabytes
+@lru_cache(maxsize=32)  # a long expression takes megabytes
 def parse(text: str) -> ast.expr:
-    """Return the syntax tree of an expression, which must not be changed; its lines are one.
+    """Return the syntax tree of an expression, with line breaks read as spaces; the tree must not be changed.
 
     Raises:
-        ExpressionError: for what is no expression, too long or nested too deep.
+        ExpressionError: if the text is not an expression, is too long or is nested too deeply.
     """
     if len(text) > LONGEST:
         raise ExpressionError(text, LONGEST, f"has {len(text)} characters; allowed: up to {LONGEST}")
     text = text.translate(_ONE_LINE)
-    if "\0" in text:  # which Python refuses in several ways
+    if "\0" in text:  # Python has several errors for it
         raise ExpressionError(text, text.index("\0"), "contains a null byte")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # what Python would rather have otherwise
+            warnings.simplefilter("ignore")  # Python's warnings about style
             tree = ast.parse(text, mode="eval").body
     except SyntaxError as error:
         early = error.msg == "invalid syntax" and not error.offset
         told = "it ends too early" if early else re.split(r"[.;] ", error.msg)[0]
         raise ExpressionError(text, (error.offset or len(text) + 1) - 1, f"is not an expression: {told}") from None
-    except ValueError:  # a half of a surrogate pair
+    except ValueError:  # a lone surrogate
         raise ExpressionError(text, 0, "contains a character that is not allowed") from None
     except (MemoryError, RecursionError):
         raise ExpressionError(text, 0, _TOO_DEEP) from None
@@ -79,12 +79,12 @@ def parse(text: str) -> ast.expr:
 
 
 def index_of(node: ast.expr, text: str) -> int:
-    """Return where in an expression a part of it begins; Python counts bytes of UTF-8."""
+    """Return the index of the first character of a node in an expression; Python's offsets are in bytes of UTF-8."""
     return len(text.encode()[: node.col_offset].decode(errors="ignore"))
 
 
 def dotted(node: ast.expr) -> str:
-    """Return the name that a node is, dots included, or an empty text."""
+    """Return the name of a node, including dots, or an empty string."""
     if isinstance(node, ast.Attribute):
         owner = dotted(node.value)
         return f"{owner}.{node.attr}" if owner else ""
@@ -92,9 +92,10 @@ def dotted(node: ast.expr) -> str:
 
 
 def chain(node: ast.expr, *signs: type[ast.operator]) -> tuple[ast.expr, list[ast.BinOp]]:
-    """Return the first operand of a row of operations such as a + b - c, and these from left to right.
+    """Return the first operand of a chain of operations such as a + b - c, and the operations from left to right.
 
-    The operations are of the signs given, or of all. What is in brackets begins later than its row: it is an operand.
+    Only the given operators count; without any, all count. An expression in brackets starts after its chain and is
+    therefore an operand.
     """
     row: list[ast.BinOp] = []
     start = node.col_offset
@@ -105,7 +106,7 @@ def chain(node: ast.expr, *signs: type[ast.operator]) -> tuple[ast.expr, list[as
 
 
 def _check(tree: ast.expr, text: str) -> None:
-    """Refuse what is nested too deep, and loops and the like; a row of operations has a limit of its own."""
+    """Check the nesting depth, the length of chains of operations, and for loops, functions and so on."""
     left: list[tuple[ast.AST, int]] = [(tree, 0)]
     while left:
         node, depth = left.pop()

@@ -11,10 +11,10 @@ _PIECE = re.compile(r""""(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*'|[{}]|[^"'{}]+|.""", 
 
 
 def insertions(text: str) -> Iterator[tuple[int, int]]:
-    """Yield begin and end of each expression in a text, braces included; braces within one are its own.
+    """Yield the start and end of each expression in a string, including its braces; it can contain braces itself.
 
     Raises:
-        ExpressionError: if one is not closed.
+        ExpressionError: if an expression is not closed.
     """
     stop = 0
     while (start := text.find("{{", stop)) >= 0:
@@ -25,16 +25,16 @@ def insertions(text: str) -> Iterator[tuple[int, int]]:
 
 
 def fill(text: str, scope: Scope, budget: Budget, shown: Callable[[Any], str] = str) -> str:
-    """Return a text with the value of each expression in its place.
+    """Return a string in which the value of each expression replaces the expression.
 
     Args:
-        text: The text.
-        scope: What its expressions reach.
-        budget: What they may spend.
-        shown: Gives the text of a value.
+        text: The string.
+        scope: Names that the expressions can access.
+        budget: Operations that the expressions can use.
+        shown: Function that formats a value.
 
     Raises:
-        ExpressionError: if one is not closed, or has no value; see Scope.evaluate.
+        ExpressionError: if an expression is not closed or has no value; see Scope.evaluate.
     """
     parts, end = [], 0
     for start, stop in insertions(text):
@@ -44,7 +44,7 @@ def fill(text: str, scope: Scope, budget: Budget, shown: Callable[[Any], str] = 
 
 
 def _closed(text: str, start: int) -> int:
-    """Return where an expression ends that begins behind its braces, -1 where it does not."""
+    """Return the end of an expression after its closing braces, from its start; -1 if it is not closed."""
     depth = 0
     for piece in _PIECE.finditer(text, start):
         if depth == 0 and piece[0] == "}" and text.startswith("}}", piece.start()):

@@ -26,7 +26,7 @@ FUNCTIONS = {
 """The functions that an expression may call, with their number of arguments."""
 
 PRIME = "\N{MODIFIER LETTER PRIME}"
-"""A prime as Python takes it for a letter."""
+"""Prime character that Python accepts as a letter."""
 _TO_PYTHON = {"^": "**", "'": PRIME}
 _FAULT = re.compile(r"(?P<lost>…|\.{3})|(?<=[\w')])\s+(?P<apart>\w+)|(?P<sign>[^\w\s'.+\-*/^(),]|(?<![\w'])')")
 _TOLD = {
@@ -39,13 +39,13 @@ _NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(?![\w.])")
 
 @dataclass(frozen=True)
 class Expression:
-    """An expression as read.
+    """Parsed expression.
 
     Attributes:
-        text: As it is written.
-        root: Its structure.
-        python: As the evaluator reads it.
-        places: Where each byte of that, in UTF-8, is in the text; and the text's end.
+        text: The expression as written.
+        root: Root of the expression tree.
+        python: The expression in the syntax of the evaluator.
+        places: Position in `text` of each UTF-8 byte of `python`, and the end of `text`.
     """
 
     text: str
@@ -55,10 +55,10 @@ class Expression:
 
 
 def parse(text: str) -> Expression:
-    """Read an expression.
+    """Return the parsed expression.
 
     Raises:
-        ExpressionError: With the position of what cannot be read.
+        ExpressionError: if it cannot be parsed; the message contains the position.
     """
     if fault := _FAULT.search(text):
         kind = fault.lastgroup or ""
@@ -73,7 +73,7 @@ def parse(text: str) -> Expression:
 
 @contextmanager
 def as_written(text: str, python: str, places: Sequence[int]) -> Iterator[None]:
-    """Raise the evaluator's errors with their place in an expression as it is written; see Expression."""
+    """Raise errors of the evaluator with their position in the expression as written; see Expression."""
     try:
         yield
     except ExpressionError as error:
@@ -82,11 +82,11 @@ def as_written(text: str, python: str, places: Sequence[int]) -> Iterator[None]:
 
 
 class _Reader:
-    """Makes our tree of Python's, which has no brackets: what stands in some begins right behind one.
+    """Conversion of Python's syntax tree, which has no brackets: a bracketed node starts right after a bracket.
 
     Args:
-        python: The expression.
-        places: Where each byte of it is in the text.
+        python: The expression in Python's syntax.
+        places: Position in the original text of each byte.
     """
 
     def __init__(self, python: str, places: Sequence[int]) -> None:
@@ -94,7 +94,7 @@ class _Reader:
         self._inside = {match.end() for match in re.finditer(rb"\( *", self._bytes)}
 
     def sum(self, node: ast.expr) -> Node:
-        """Return what stands alone, in brackets or as an argument; the sign before its first factor is its own."""
+        """Return a whole expression, a bracket or an argument; a sign before the first factor applies to the term."""
         first, row = grammar.chain(node, ast.Add, ast.Sub)
         factor, _ = grammar.chain(first, ast.Mult, ast.Div)
         sign = factor.op if isinstance(factor, ast.UnaryOp) and factor.col_offset == node.col_offset else None

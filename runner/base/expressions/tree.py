@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Number:
-    """A number as it is written."""
+    """Number as written."""
 
     text: str
     index: int
@@ -14,7 +14,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Name:
-    """A symbol, bound to values when the expression is evaluated."""
+    """Symbol, which has a value when the expression is evaluated."""
 
     name: str
     index: int
@@ -22,7 +22,7 @@ class Name:
 
 @dataclass(frozen=True)
 class Call:
-    """A function of the list with its arguments."""
+    """Call of an allowed function."""
 
     function: str
     arguments: tuple["Node", ...]
@@ -31,7 +31,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Power:
-    """A base raised to an exponent."""
+    """Base raised to an exponent."""
 
     base: "Node"
     exponent: "Node"
@@ -40,7 +40,7 @@ class Power:
 
 @dataclass(frozen=True)
 class Product:
-    """Factors; each is divided by where its flag says so, from left to right."""
+    """Factors from left to right; True marks a divisor."""
 
     factors: tuple[tuple[bool, "Node"], ...]
     index: int
@@ -48,7 +48,7 @@ class Product:
 
 @dataclass(frozen=True)
 class Sum:
-    """Terms; each is subtracted where its flag says so."""
+    """Terms; True marks a subtracted term."""
 
     terms: tuple[tuple[bool, "Node"], ...]
     index: int
@@ -58,7 +58,7 @@ Node = Number | Name | Call | Power | Product | Sum
 
 
 def parts(node: Node) -> Sequence[Node]:
-    """Return what an expression is made of directly."""
+    """Return the direct operands of an expression."""
     match node:
         case Number() | Name():
             return ()
@@ -73,7 +73,7 @@ def parts(node: Node) -> Sequence[Node]:
 
 
 def symbols(node: Node) -> Iterator[str]:
-    """Yield the names, numbers and functions of an expression, in the order in which they stand."""
+    """Yield the names, numbers and functions of an expression, each function before its arguments."""
     match node:
         case Number():
             yield node.text
@@ -86,19 +86,19 @@ def symbols(node: Node) -> Iterator[str]:
 
 
 def size(node: Node) -> int:
-    """Return how many symbols an expression has."""
+    """Return the number of symbols in an expression."""
     return sum(1 for _ in symbols(node))
 
 
 ELLIPSIS = "…"
-_SHORT = 6  # symbols of a part that is shown though nothing in it is marked
-_MOST = 3  # marked terms in a row that are shown
+_SHORT = 6  # most symbols of an unmarked part that is shown
+_MOST = 3  # most consecutive marked terms that are shown
 
 _Term = tuple[bool, Node]
 
 
 def shorten_expression(node: Node, marked: Set[Node]) -> Node:
-    """Return an expression in which dots stand for what is not marked, and for most of many marked terms in a row."""
+    """Return an expression with dots for unmarked parts, and for the rest of a long run of marked terms."""
     if node in marked or size(node) <= _SHORT:
         return node
     match node:
@@ -115,7 +115,7 @@ def shorten_expression(node: Node, marked: Set[Node]) -> Node:
 
 
 def holds(node: Node, marked: Set[Node]) -> bool:
-    """Return whether something in an expression is marked."""
+    """Return True if any part of an expression is marked."""
     return node in marked or any(holds(part, marked) for part in parts(node))
 
 
@@ -126,7 +126,7 @@ def _inner(node: Node, marked: Set[Node]) -> Node:
 
 
 def _few(terms: Sequence[_Term], marked: Set[Node]) -> Iterator[_Term]:
-    """Yield the terms in which something is marked, and dots once for each run of others."""
+    """Yield the terms that contain a marked part, and dots once for each run of other terms."""
     run, dotted = 0, False
     for minus, term in terms:
         run = run + 1 if term in marked else 0

@@ -31,14 +31,14 @@ _DIFFERENCE = re.compile(r"\d(_\d)+")
 _WORD = re.compile(r"[^\W\d]\w*'*")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
-_SHORT = 160  # characters of Typst code that still make a readable fraction
+_SHORT = 160  # most characters of Typst code in a readable fraction
 
 
 def symbol(name: str) -> tuple[str, str]:
-    """Return a symbol's letters, Greek where it is spelt so, with its primes; and its subscript, or an empty text.
+    """Return the letters of a symbol with its primes, and its subscript or an empty string.
 
-    Digits at the end are a subscript, as in s12 and theta1, and so is what follows an underscore; s1_2 is the sine of
-    a difference.
+    The names of Greek letters become Greek letters. Digits at the end are a subscript, as in s12 and theta1, and so is
+    the part after an underscore. s1_2 is the sine of a difference.
     """
     match = _NAME.fullmatch(name)
     if match is None:
@@ -51,7 +51,7 @@ def symbol(name: str) -> tuple[str, str]:
 
 
 def linear(text: str) -> str:
-    """Return the text of an expression with Greek letters, digits as subscripts, and products without signs."""
+    """Return an expression as plain text with Greek letters, digits as subscripts, and products without signs."""
     return _WORD.sub(_lowered, text).replace("*", " ")
 
 
@@ -62,28 +62,28 @@ def _lowered(match: re.Match[str]) -> str:
 
 
 def matrix(rows: Sequence[Sequence[Node]], marked: Set[Node] = frozenset()) -> str:
-    """Return expressions in rows and columns as a matrix in Typst mathematics."""
+    """Return the Typst code of a matrix of expressions."""
     lines = [", ".join(f"display({typeset(cell, marked)})" for cell in row) for row in rows]
     return f'mat(delim: "[", {"; ".join(lines)})'
 
 
 def typeset(node: Node, marked: Set[Node] = frozenset()) -> str:
-    """Return an expression in Typst mathematics.
+    """Return the Typst code of an expression.
 
-    Brackets are plain characters, which a long line can break between, and do not grow with what they hold.
+    Brackets are plain characters: a long line can break inside them, and they do not grow with their content.
 
     Args:
         node: The expression.
-        marked: What of it is set in `differs(...)`.
+        marked: Parts of the expression that are set in `differs(...)`.
     """
     return _Typesetter(marked).written(node)
 
 
 class _Typesetter:
-    """Writes one expression.
+    """Typesetter of one expression.
 
     Args:
-        marked: What of it is marked.
+        marked: Marked parts of the expression.
     """
 
     def __init__(self, marked: Set[Node]) -> None:
@@ -142,5 +142,5 @@ class _Typesetter:
 
 
 def _bracketed(text: str) -> str:
-    space = " " if text.startswith("(") else ""  # or Typst takes both brackets for one
+    space = " " if text.startswith("(") else ""  # otherwise Typst reads both brackets as one
     return f"\\({space}{text}\\)"
