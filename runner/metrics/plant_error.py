@@ -101,7 +101,7 @@ def compare(trace: Trace, metrics: Metrics, other: Trace, others: Metrics, band:
     rows = min(len(trace.t), len(other.t))
     distance = np.linalg.norm(trace.tip[:rows] - other.tip[:rows], axis=1)
     parted = _parting(trace, other, distance, band)
-    finite = np.flatnonzero(np.isfinite(distance))  # the last positions of a diverging run may not be finite
+    finite = np.flatnonzero(np.isfinite(distance))  # the last positions of a diverging run can be infinite or NaN
     farthest = finite[distance[finite].argmax()]
     return PlantError(
         step=step,

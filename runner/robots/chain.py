@@ -1,4 +1,4 @@
-"""Flexible links as beams, divided into chains of rigid segments and springs."""
+"""Flexible links as beams, modelled by chains of rigid segments and springs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,11 +14,11 @@ from runner.robots.robot import Robot, with_models
 
 @dataclass(frozen=True)
 class Beam:
-    """A link that bends across its length.
+    """Link with bending flexibility.
 
     Attributes:
-        EI: Bending stiffness, in N m^2, the same in both planes along it.
-        mass: Spread evenly along it beside what the robot's file gives, in kg.
+        EI: Bending stiffness, in N m^2, the same in both planes.
+        mass: Mass uniformly distributed along the link, in addition to that in the robot's file, in kg.
     """
 
     EI: float
@@ -26,7 +26,7 @@ class Beam:
 
 
 def moving_links(arm: RobotModel) -> dict[str, int]:
-    """Return the links that joints move, by name, with the number of that joint in Pinocchio's model."""
+    """Return the index of the moving joint in Pinocchio's model by the name of its link."""
     model = arm.pin_model
     return {
         frame.name: frame.parentJoint
@@ -38,7 +38,7 @@ def moving_links(arm: RobotModel) -> dict[str, int]:
 def span(arm: RobotModel, joint: int, flange: str) -> FloatArray:
     """Return the end of the link that a joint moves, in its frame, shape (3,), in m.
 
-    That is where the next joint stands; of the last link it is the flange.
+    The end is the position of the next joint, or the flange for the last link.
     """
     model = arm.pin_model
     children = [model.jointPlacements[j] for j in range(joint + 1, model.njoints) if model.parents[j] == joint]
@@ -48,18 +48,18 @@ def span(arm: RobotModel, joint: int, flange: str) -> FloatArray:
 
 @dataclass(frozen=True)
 class Part:
-    """A rigid part of a link.
+    """Rigid segment of a link.
 
     Attributes:
-        begin: Where it begins along the link, in m.
-        end: Where it ends, in m.
+        begin: Start of the segment along the link, in m.
+        end: End of the segment along the link, in m.
     """
 
     begin: float
     end: float
 
     def rod(self, beam: Beam, length: float, along: FloatArray) -> "pin.Inertia":
-        """Return the inertia of a part of a beam, a thin rod, about where it begins."""
+        """Return the inertia of a segment of a beam, as a thin rod, about its start."""
         own = self.end - self.begin
         mass = beam.mass * own / length
         across = np.eye(3) - np.outer(along, along)
@@ -67,13 +67,13 @@ class Part:
 
 
 def parts_of(length: float, count: int) -> list[Part]:
-    """Return the rigid parts of a link with springs in the middles of `count` equal lengths: one more than these."""
+    """Return the `count` + 1 rigid segments of a link with springs in the middle of `count` equal lengths."""
     cuts = (np.arange(count) + 0.5) * length / count
     return [Part(*ends) for ends in zip([0.0, *cuts], [*cuts, length], strict=True)]
 
 
 def stiffen_robot(robot: Robot, beams: Mapping[str, Beam]) -> Robot:
-    """Return a robot whose links have the masses of beams along them, and do not bend."""
+    """Return a robot whose rigid links have the masses of beams along them."""
     links = moving_links(robot.model)
     rods = [
         (joint, Part(0.0, length).rod(beam, length, end / length))
@@ -95,13 +95,13 @@ def stiffen_robot(robot: Robot, beams: Mapping[str, Beam]) -> Robot:
 
 @dataclass(frozen=True)
 class Chain:
-    """An arm with springs in its links.
+    """Arm with springs in its links.
 
     Attributes:
-        pin_model: Its rigid bodies; frames have the names that they have in the rigid arm.
-        motors: Which coordinates are the arm's joints, shape (nq,).
-        springs: Which ones are springs, shape (k,).
-        stiffness: Of the springs, shape (k,), in N m/rad.
+        pin_model: Model of the rigid bodies; its frames have the same names as in the rigid arm.
+        motors: Indices of the coordinates of the arm's joints, shape (nq,).
+        springs: Indices of the coordinates of the springs, shape (k,).
+        stiffness: Stiffness of the springs, shape (k,), in N m/rad.
     """
 
     pin_model: "pin.Model"
@@ -110,7 +110,7 @@ class Chain:
     stiffness: FloatArray
 
     def mass_matrix(self, q: FloatArray) -> FloatArray:
-        """Return M of motors and springs with straight links, shape (nq + k, nq + k), in kg m^2.
+        """Return the mass matrix M of motors and springs with straight links, shape (nq + k, nq + k), in kg m^2.
 
         Args:
             q: Joint positions, shape (nq,), in rad.
@@ -123,17 +123,17 @@ class Chain:
 
 
 def cut(arm: RobotModel, flange: str, beams: Mapping[str, Beam], parts: int) -> Chain:
-    """Return an arm with links that bend.
+    """Return an arm with flexible links.
 
-    Each is cut into equal lengths, with springs n EI/L in the middle of each, one for each plane: static deflections
-    under a force at its end fall short by 1/(4 n^2), and frequencies converge from above as 1/n^2. What the robot's
-    file gives of the link stays in one piece, on the part that holds its centre of mass.
+    Each flexible link has n equal lengths with two springs n EI/L in the middle of each, one for each plane. Static
+    deflections under a force at the end are too small by 1/(4 n^2), and frequencies converge from above as 1/n^2. The
+    link's inertia from the robot's file stays together, on the segment that contains its centre of mass.
 
     Args:
         arm: The rigid arm.
-        flange: Frame at which its last link ends.
-        beams: The links that bend, by name; they have a length.
-        parts: Springs along each, n.
+        flange: Frame at the end of the last link.
+        beams: Flexible links by name; their lengths must not be zero.
+        parts: Number n of equal lengths in each flexible link.
     """
     old, made = arm.pin_model, _Making(pin.Model())
     new, names = made.model, {joint: name for name, joint in moving_links(arm).items()}
@@ -161,31 +161,31 @@ def cut(arm: RobotModel, flange: str, beams: Mapping[str, Beam], parts: int) -> 
 
 @dataclass(frozen=True)
 class _Link:
-    """The parts of a link: the number of the joint that moves each, where all but the first begin, and a direction."""
+    """Segments of a link: joint index of each, starts of all except the first, and direction of the link."""
 
     joints: tuple[int, ...]
     cuts: FloatArray
     along: FloatArray
 
     def place(self, placement: "pin.SE3") -> "tuple[int, pin.SE3]":
-        """Return the part on which a place of the rigid link stands, and the place in that part's frame."""
+        """Return the joint of the segment that contains a placement of the rigid link, and its placement there."""
         part, begin = self.part(placement.translation)
         return part, pin.SE3(placement.rotation, placement.translation - begin)
 
     def part(self, point: FloatArray) -> tuple[int, FloatArray]:
-        """Return the part that holds a point of the link, and where it begins, shape (3,), in m."""
+        """Return the joint of the segment that contains a point of the link, and its start, shape (3,), in m."""
         number = int(np.searchsorted(self.cuts, self.along @ point))
         return self.joints[number], (self.cuts[number - 1] if number else 0.0) * self.along
 
 
 @dataclass
 class _Making:
-    """A chain that is being made.
+    """Chain under construction.
 
     Attributes:
-        model: Its bodies so far.
-        springs: The coordinates of its springs so far.
-        stiffness: Of these, in N m/rad.
+        model: The bodies so far.
+        springs: The coordinates of the springs so far.
+        stiffness: The stiffness of the springs so far, in N m/rad.
     """
 
     model: "pin.Model"
@@ -193,7 +193,7 @@ class _Making:
     stiffness: list[float] = field(default_factory=list)
 
     def beam(self, beam: Beam, first: int, end: FloatArray, axes: tuple[FloatArray, FloatArray], count: int) -> _Link:
-        """Add the parts of a link that bends about two axes, of which a joint moves the first; it ends at a place."""
+        """Add the segments of a link that bends about two axes, from a first segment that a joint moves to an end."""
         length = float(np.linalg.norm(end))
         along, pieces, joints = end / length, parts_of(length, count), [first]
         for before, piece in pairwise(pieces):
@@ -211,7 +211,7 @@ class _Making:
 
 
 def _planes(model: "pin.Model", joint: int, along: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the axes about which a link bends: the nearest to its joint's axis across it, and the other."""
+    """Return the bending axes of a link: the projection of its joint axis perpendicular to the link, and the other."""
     data = model.joints[joint].createData()
     model.joints[joint].calc(data, np.zeros(1))
     S = np.asarray(data.S).ravel()

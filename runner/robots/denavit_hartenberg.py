@@ -14,12 +14,12 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.robots.model import RobotModel
 
-_TOLERANCE = 1e-9  # of a sine (axes that are parallel) and of the arm's size (points that coincide)
+_TOLERANCE = 1e-9  # of a sine (parallel axes) and of the arm's size (coincident points)
 
 
 @dataclass(frozen=True)
 class DenavitHartenbergRow:
-    """One row of a standard (distal) D-H table: joint i turns about z_{i-1}, and frame i lies at the far end of link i.
+    """Row of a standard (distal) D-H table: joint i turns about z_{i-1}, and frame i is at the distal end of link i.
 
     Attributes:
         theta: Angle from x_{i-1} to x_i about z_{i-1} at q_i = 0, in rad; the joint position is added to it.
@@ -59,7 +59,7 @@ def _chained(transforms: Iterable[FloatArray]) -> FloatArray:
 
 @dataclass(frozen=True)
 class ModifiedRow:
-    """One row of a modified (proximal, Craig's) D-H table: joint i turns about z_i, and frame i lies at its own axis.
+    """Row of a modified (proximal, Craig's) D-H table: joint i turns about z_i, and frame i is on the axis of joint i.
 
     Attributes:
         alpha: Angle from z_{i-1} to z_i about x_{i-1}, in rad.
@@ -96,19 +96,19 @@ def modified_frames(rows: Sequence[ModifiedRow], q: FloatArray) -> FloatArray:
 def denavit_hartenberg(model: RobotModel) -> tuple[DenavitHartenbergRow, ...]:
     """Return the standard D-H table of an arm, so that the product of its transforms is the pose of the tip.
 
-    Frame 0 is the base frame. z_i lies along the axis of joint i+1; x_i is directed along z_{i-1} x z_i where the
-    two axes intersect or are skew (so a_i is negative where the common normal points the other way), and along the
-    common normal with d_i = 0 where they are parallel. The last frame is the tip frame.
+    Frame 0 is the base frame. z_i is along the axis of joint i+1. If the axes z_{i-1} and z_i intersect or are skew,
+    x_i is along z_{i-1} x z_i, so a_i is negative if the common normal has the opposite direction. If they are
+    parallel, x_i is along the common normal with d_i = 0. The last frame is the tip frame.
 
     Args:
         model: The robot; every joint must move the tip.
 
     Returns:
-        One row per joint.
+        One row for each joint.
 
     Raises:
-        ConfigError: if joint 1 does not turn about the z axis of the base, a joint does not move the tip, or the tip
-            frame lies where no single D-H step leads.
+        ConfigError: if joint 1 does not turn about the z axis of the base, a joint does not move the tip, or a single
+            D-H row cannot reach the tip frame.
     """
     home = np.zeros(model.nq)
     axes = model.tip_jacobian(home)[3:].T
@@ -137,16 +137,16 @@ def denavit_hartenberg(model: RobotModel) -> tuple[DenavitHartenbergRow, ...]:
 
 
 def _next_frame(before: FloatArray, axis: FloatArray, point: FloatArray) -> FloatArray:
-    """Return the frame on a joint axis (through a point, base frame) that follows the D-H frame before it."""
+    """Return the D-H frame on a joint axis, through a point in the base frame, that follows the given frame."""
     z, origin = before[:3, 2], before[:3, 3]
     normal = np.cross(z, axis)
     sine = float(np.linalg.norm(normal))
     if sine > _TOLERANCE:
         x = normal / sine
-        # Where the common normal meets the new axis: origin + d z + a x = point + s axis, solved for s.
+        # The common normal meets the new axis at origin + d z + a x = point + s axis, solved for s.
         new_origin = point + axis * (np.cross(origin - point, z) @ normal) / -(sine**2)
     else:
-        new_origin = point + axis * ((origin - point) @ axis)  # beside the last origin, so that d = 0
+        new_origin = point + axis * ((origin - point) @ axis)  # nearest to the last origin, so that d = 0
         offset = new_origin - origin
         length = float(np.linalg.norm(offset))
         x = offset / length if length > _TOLERANCE * max(1.0, float(np.linalg.norm(point))) else before[:3, 0]
@@ -167,5 +167,5 @@ def _row(before: FloatArray, after: FloatArray) -> DenavitHartenbergRow:
 
 
 def _positive(angle: float) -> float:
-    """Return half a turn as pi, whichever sign rounding gave it."""
+    """Return an angle, with -pi replaced by pi, because rounding can change its sign."""
     return angle + 2.0 * np.pi if angle < _TOLERANCE - np.pi else angle

@@ -1,4 +1,4 @@
-"""URDF text of a robot: file lookup, checks, and changes from the config."""
+"""URDF of a robot: file lookup, checks, and changes from the config."""
 
 import contextlib
 import math
@@ -38,20 +38,20 @@ if TYPE_CHECKING:
 
 
 def find_urdf(name: str, config_dirs: Sequence[Path] = ()) -> Path:
-    """Return the file of a URDF, the value of `robot.urdf`; see find_file."""
+    """Return the path of a URDF from the value of `robot.urdf`; see find_file."""
     return find_file("robot.urdf", name, config_dirs)
 
 
 def find_file(key: str, name: str, config_dirs: Sequence[Path] = ()) -> Path:
-    """Return the file of an arm: an absolute path, or a name in a config folder of the user's or among our robots.
+    """Return the path of the file of an arm.
 
     Args:
-        key: The key that names it, `robot.urdf` or `robot.mjcf`.
-        name: Its value.
-        config_dirs: Config folders of the user's; each is searched itself and in its sub-folder `robots`.
+        key: The config key, `robot.urdf` or `robot.mjcf`.
+        name: Value of the key: an absolute path, or a file in a user-supplied config folder or of a built-in robot.
+        config_dirs: User-supplied config folders; each is searched itself and in its subfolder `robots`.
 
     Raises:
-        ConfigError: if no such file exists, which names the places searched, or a name or link leads out of these.
+        ConfigError: if the file does not exist, with the folders searched, or if it is outside these folders.
     """
     if ".." in Path(name).parts:
         raise ConfigError(f"{key}: '{name}' leads out of its folder; put the file there, or give its whole path")
@@ -70,10 +70,10 @@ def find_file(key: str, name: str, config_dirs: Sequence[Path] = ()) -> Path:
 
 
 def read_arm(path: Path) -> UrdfTree:
-    """Read an arm's file, a URDF or an MJCF, as the tree of links of a URDF.
+    """Read the file of an arm, a URDF or an MJCF, as the tree of links of a URDF.
 
     Raises:
-        ConfigError: if it is neither; see read_tree and read_mjcf.
+        ConfigError: if the file is neither; see read_tree and read_mjcf.
     """
     if is_mjcf(path):
         mjcf = mjcf_of(path)
@@ -82,7 +82,7 @@ def read_arm(path: Path) -> UrdfTree:
 
 
 def mjcf_of(path: Path) -> "Mjcf":
-    """Read an MJCF; see read_mjcf. MuJoCo, which takes a quarter of a second to import, comes with the first one."""
+    """Read an MJCF; see read_mjcf. The first call imports MuJoCo, which takes 0.25 s."""
     from runner.robots.mjcf import read_mjcf
 
     return read_mjcf(path)
@@ -95,20 +95,20 @@ def read_urdf(
     inertials: str | None = None,
     velocity_limits: Mapping[str, float] | None = None,
 ) -> str:
-    """Return an arm as the text of a URDF with the given changes, and without meshes, which no part of a run reads.
+    """Return the URDF of an arm with the given changes, and without meshes, which runs do not need.
 
     Args:
-        path: Its file, a URDF or an MJCF.
-        masses: Mass of links by name, in kg, inertias scaled along (a uniform change of density); links not named keep
-            theirs.
-        armature: Reflected inertia of motor and gear, in kg m^2, which adds to the diagonal of the mass matrix alone.
-            One for all joints, a list with one for each, or the name of a set; see armature_by_joint.
-        inertials: Set of inertials that comes in place of the file's own, before `masses`; see replace_inertials.
-        velocity_limits: Largest speed of joints by name, in rad/s; joints not named keep theirs.
+        path: File of the arm, a URDF or an MJCF.
+        masses: Mass of links by name, in kg. The inertia is scaled with the mass (a uniform change of density). Other
+            links do not change.
+        armature: Reflected inertia of motor and gear, in kg m^2, which is added to the diagonal of the mass matrix
+            only. One value for all joints, a list with one for each, or the name of a set; see armature_by_joint.
+        inertials: Set of inertials that replaces those of the file, before `masses`; see replace_inertials.
+        velocity_limits: Largest speed of joints by name, in rad/s; other joints do not change.
 
     Raises:
-        ConfigError: if the file is none of one serial arm, a set, link or joint named does not exist, a link named
-            has no mass to change, or a mass, inertia, place or limit is none that an arm can have.
+        ConfigError: if the file does not describe one serial arm, if a set, link or joint does not exist, if a link in
+            `masses` has no mass, or if a mass, inertia, position or limit is impossible for an arm.
     """
     tree = read_arm(path)
     links = tree.links
@@ -138,7 +138,7 @@ def read_urdf(
 
 
 def with_payloads(urdf: str, payloads: Sequence[Payload]) -> str:
-    """Return the text of a URDF with point masses that links carry.
+    """Return a URDF with point masses fixed on links.
 
     Raises:
         ConfigError: if a payload is on a frame that is not a link.
@@ -154,7 +154,7 @@ def with_payloads(urdf: str, payloads: Sequence[Payload]) -> str:
 
 
 def drop_shapes(links: Mapping[str, ET.Element]) -> None:
-    """Take shapes out of links that no run needs: meshes, whose files it does not keep, and those without a size."""
+    """Remove shapes that runs do not need: meshes, whose files are not stored, and shapes without a size."""
     for link in links.values():
         for shape in (*link.findall("visual"), *link.findall("collision")):
             if shape.find("geometry/mesh") is not None or _is_flat(shape):
@@ -162,14 +162,14 @@ def drop_shapes(links: Mapping[str, ET.Element]) -> None:
 
 
 def _is_flat(shape: ET.Element) -> bool:
-    """Tell whether a shape has a size of zero or less, which MuJoCo refuses."""
+    """Return True if a shape has a size of zero or less, which MuJoCo rejects."""
     solids = shape.findall("geometry/*")
     words = [word for solid in solids for key in ("size", "radius", "length") for word in solid.get(key, "").split()]
     return any(number(ET.Element("size", value=word), "value") <= 0.0 for word in words)
 
 
 def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
-    """Return joints that move with another, or beside it: a robot is a serial arm, or several, each with its file."""
+    """Return messages about coupled joints and branches, because each file must describe one serial arm."""
     chain = tree.chain
     beside = sorted(name for name, joint in tree.joints.items() if moves(joint) and name not in chain)
     held = "`runner doctor FILE --tip FRAME --output DIR` holds fixed what does not move the tip"
@@ -186,7 +186,7 @@ def _check_joints(path: Path, tree: UrdfTree) -> list[str]:
 
 
 def _check_numbers(path: Path, tree: UrdfTree, from_set: Mapping[str, str]) -> list[str]:
-    """Return numbers that no arm has; `from_set` tells whence a link has its inertial, if not from the file."""
+    """Return messages about impossible numbers; `from_set` is the source of inertials that are not from the file."""
     problems = []
     for name, link in tree.links.items():
         places = [f"{text}; {remedy}" for text, remedy in wrong_places(link)]
@@ -205,7 +205,7 @@ def _mass(link: ET.Element) -> float:
 
 def _bad_inertial(link: ET.Element) -> list[str]:
     if link.find("inertial") is None:
-        return []  # a frame without mass
+        return []  # a massless frame
     if link.find("inertial/mass") is None:
         return ["an <inertial> without <mass>: write its mass, in kg"]
     mass = [] if 0.0 <= _mass(link) < math.inf else [f"mass {_mass(link):g} kg; allowed: 0 or more"]

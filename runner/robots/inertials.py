@@ -23,12 +23,12 @@ from runner.schema.values import expand
 
 @dataclass(frozen=True)
 class Payload:
-    """A point mass fixed on a link.
+    """Point mass fixed on a link.
 
     Attributes:
-        link: Name of the link, the tip's.
-        mass: Its mass, in kg.
-        position: Its place in the link's frame, (3,), in m.
+        link: Name of the link at the tip.
+        mass: The mass, in kg.
+        position: Position in the link's frame, shape (3,), in m.
     """
 
     link: str
@@ -37,7 +37,7 @@ class Payload:
 
 
 class _Tensor(StrictModel):
-    """Inertia about the centre of mass, in axes of the link's frame, in kg m^2."""
+    """Inertia about the centre of mass, in the axes of the link's frame, in kg m^2."""
 
     ixx: NonNegativeFloat
     ixy: float
@@ -62,12 +62,12 @@ T = TypeVar("T", bound=StrictModel)
 
 
 def set_file(urdf: Path) -> Path:
-    """Return the file of a URDF's other inertial sets: `arm.inertials.yaml` beside `arm.urdf`."""
+    """Return the file with the inertial sets of a URDF: `arm.inertials.yaml` next to `arm.urdf`."""
     return urdf.with_suffix(".inertials.yaml")
 
 
 def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) -> dict[str, str]:
-    """Give links the inertials of a named set; links that it leaves out keep theirs.
+    """Replace the inertials of links by those of a named set; links that are not in the set do not change.
 
     Args:
         links: The URDF's links by name, changed in place.
@@ -75,10 +75,10 @@ def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) ->
         name: Name of the set.
 
     Returns:
-        Where each link's inertial comes from that is no more the file's own, for messages about it.
+        Source of each replaced inertial, for messages about it, by link.
 
     Raises:
-        ConfigError: if there is no such set, its file cannot be read, or it names a link that the URDF does not have.
+        ConfigError: if the set does not exist, its file cannot be read, or it has a link that the URDF does not have.
     """
     sets = read_sets("robot.inertials", set_file(urdf), _InertialSet)
     if name not in sets:
@@ -97,10 +97,10 @@ def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) ->
 
 
 def read_sets(key: str, path: Path, kind: type[T]) -> dict[str, T]:
-    """Return the sets in a file by name, each of a kind; none where it is not there.
+    """Return the sets in a file by name, as instances of `kind`; empty if the file does not exist.
 
     Raises:
-        ConfigError: if it cannot be read, or holds something else; names the key, the file and the place.
+        ConfigError: if the file cannot be read or does not match; the message contains key, file and location.
     """
     if not path.is_file():
         return {}
@@ -116,7 +116,7 @@ def read_sets(key: str, path: Path, kind: type[T]) -> dict[str, T]:
 
 
 def scale_inertial(link: ET.Element, mass: float) -> None:
-    """Give a link another mass, in kg, and scale its inertia along (a uniform change of density)."""
+    """Set the mass of a link, in kg, and scale its inertia by the same factor (a uniform change of density)."""
     element, inertia = link.find("inertial/mass"), link.find("inertial/inertia")
     if element is None:
         return
@@ -128,10 +128,10 @@ def scale_inertial(link: ET.Element, mass: float) -> None:
 
 
 def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
-    """Merge a payload with the inertial of the link that carries it, so that every engine reads the same body.
+    """Merge a payload with the inertial of its link, so that all engines read the same body.
 
     Raises:
-        ConfigError: if the tip is no link of the URDF, but another frame.
+        ConfigError: if the tip is a frame that is not a link of the URDF.
     """
     if payload.link not in links:
         raise ConfigError(
@@ -145,7 +145,7 @@ def add_payload(links: Mapping[str, ET.Element], payload: Payload) -> None:
 
 
 def impossible_inertia(link: ET.Element) -> list[str]:
-    """Return what is wrong with a link's inertia that no rigid body has; PyBullet takes zero in its place."""
+    """Return messages about an inertia that is impossible for a rigid body; PyBullet would replace it by zero."""
     moments = principal_moments(link)
     listed = ", ".join(f"{moment:.3g}" for moment in moments)
     if moments[0] < -_ROUNDING * moments[2]:
@@ -164,10 +164,10 @@ def principal_moments(link: ET.Element) -> np.ndarray:
 
 
 def fix_inertia(link: ET.Element) -> None:
-    """Give a link the nearest inertia that a rigid body can have.
+    """Replace the inertia of a link by the nearest one that is possible for a rigid body.
 
-    What a body's mass is spread by along its axes, sum m x x^T = tr(I)/2 - I, cannot be negative; such spreads become a
-    thousandth of the largest one.
+    The second moments of the mass along the principal axes, sum m x x^T = tr(I)/2 - I, cannot be negative. Each one
+    below a thousandth of the largest is set to this value.
     """
     tensor = _tensor(link)
     spread, axes = np.linalg.eigh(0.5 * np.trace(tensor) * np.eye(3) - tensor)
@@ -180,11 +180,11 @@ def fix_inertia(link: ET.Element) -> None:
 
 
 def make_massless(link: ET.Element) -> None:
-    """Give a link zero mass and zero inertia."""
+    """Set the mass and inertia of a link to zero."""
     write_inertial(link, 0.0, np.zeros(3), np.zeros((3, 3)))
 
 
-_ROUNDING = 1e-6  # of the largest moment: files print few digits
+_ROUNDING = 1e-6  # of the largest moment, because files have few digits
 _UPPER = tuple(itertools.combinations_with_replacement(range(3), 2))
 
 
@@ -204,26 +204,26 @@ def _tensor(link: ET.Element) -> np.ndarray:
 
 
 def place_of(element: ET.Element | None) -> "pin.SE3":
-    """Return the frame that the `<origin>` of a joint or an inertial gives, in that of the link that bears it."""
+    """Return the frame in the `<origin>` of a joint or an inertial, relative to its parent link."""
     origin = None if element is None else element.find("origin")
     xyz, rpy = ("0 0 0", "0 0 0") if origin is None else (origin.get("xyz", "0 0 0"), origin.get("rpy", "0 0 0"))
     return pin.SE3(pin.rpy.rpyToMatrix(_vector(rpy)), _vector(xyz))
 
 
 def write_inertial(link: ET.Element, mass: float, centre_of_mass: np.ndarray, tensor: np.ndarray) -> None:
-    """Give a link an inertial in axes of its frame.
+    """Write the inertial of a link in the axes of its frame.
 
     Args:
         link: The link, changed in place.
-        mass: In kg.
-        centre_of_mass: Shape (3,), in m.
-        tensor: Inertia about it, shape (3, 3), in kg m^2.
+        mass: Mass, in kg.
+        centre_of_mass: Centre of mass, shape (3,), in m.
+        tensor: Inertia about the centre of mass, shape (3, 3), in kg m^2.
     """
     _write(link, mass, centre_of_mass.tolist(), {f"i{'xyz'[row]}{'xyz'[col]}": tensor[row, col] for row, col in _UPPER})
 
 
 def _write(link: ET.Element, mass: float, centre_of_mass: Sequence[float], tensor: Mapping[str, float]) -> None:
-    """Give a link an inertial in axes of its frame."""
+    """Write the inertial of a link in the axes of its frame; see write_inertial."""
     old = link.find("inertial")
     if old is not None:
         link.remove(old)
@@ -239,25 +239,25 @@ def _vector(text: str) -> np.ndarray:
 
 class _ArmatureSet(StrictModel):
     source: str
-    joints: dict[str, NonNegativeFloat]  # kg m^2, after the gear; kg where a joint slides
+    joints: dict[str, NonNegativeFloat]  # kg m^2, after the gear; kg for prismatic joints
 
 
 def armature_file(urdf: Path) -> Path:
-    """Return the file of a robot's sets of armatures: `arm.armature.yaml` beside `arm.urdf`."""
+    """Return the file with the armature sets of a robot: `arm.armature.yaml` next to `arm.urdf`."""
     return urdf.with_suffix(".armature.yaml")
 
 
 def armature_by_joint(tree: UrdfTree, path: Path, given: float | Sequence[float] | str) -> dict[str, float]:
-    """Return the armature of each joint that moves, in kg m^2; kg where it slides.
+    """Return the armature of each moving joint by name, in kg m^2; kg for prismatic joints.
 
     Args:
         tree: The arm.
-        path: Its file.
+        path: File of the arm.
         given: One value for all joints, a list with one for each from the base outwards, or the name of a set.
 
     Raises:
-        ConfigError: for a list of another length, a set that there is not, one that cannot be read, or one that names a
-            joint that the arm does not have.
+        ConfigError: if the length of a list differs from the number of joints, if the set does not exist or cannot be
+            read, or if it has a joint that the arm does not have.
     """
     joints = tree.chain
     if isinstance(given, str):
@@ -267,20 +267,20 @@ def armature_by_joint(tree: UrdfTree, path: Path, given: float | Sequence[float]
 
 
 def write_armature(tree: UrdfTree, values: dict[str, float]) -> None:
-    """Write the armature of joints into an arm: `<dynamics armature="...">`, which RobotModel reads; 0 is not written.
+    """Write the armature of joints into an arm, as `<dynamics armature="...">`, which RobotModel reads.
 
-    What the file itself says there is taken out.
+    The values replace those of the file; zeros are not written.
 
     Args:
         tree: The arm, changed in place.
-        values: By joint, in kg m^2.
+        values: Armature by joint, in kg m^2.
     """
     for name, joint in tree.joints.items():
         dynamics = joint.find("dynamics")
         if dynamics is not None:
             dynamics.attrib.pop("armature", None)
         if values.get(name, 0.0):
-            if dynamics is None:  # readers of URDFs demand these two
+            if dynamics is None:  # readers of URDFs require these two
                 dynamics = ET.SubElement(joint, "dynamics", damping="0.0", friction="0.0")
             dynamics.set("armature", repr(values[name]))
 

@@ -12,12 +12,12 @@ from runner.base.lazy_modules import lapack, pin
 from runner.robots.model import RobotModel
 from runner.robots.task_space import task_basis
 
-TOLERANCE = 1e-12  # m; Newton's last step squares it, so that an arm starts at its trajectory's start to rounding
+TOLERANCE = 1e-12  # m; Newton's last step squares the error, so that the arm starts on its trajectory to rounding
 _STEPS = 200  # way-points from home to the target; each needs a few Newton steps
 _MAX_NEWTON = 60
 _REACHED = 1e-9  # m, or rad
-_SEARCHES = 40  # random postures tried where no way leads from home
-_KEPT = 1024  # postures found that a process keeps
+_SEARCHES = 40  # random start configurations if no path from home reaches the target
+_KEPT = 1024  # solutions in the cache of a process
 
 # Error of the tip at joint positions, and the Jacobian of its velocity: shapes (k,) and (k, nq).
 Task = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
@@ -25,7 +25,7 @@ Solve = Callable[[RobotModel, FloatArray, FloatArray], FloatArray]
 
 
 def _once(solve: Solve) -> Solve:
-    """Return a function that finds a posture once in a process: runs of a sweep each ask for the same one."""
+    """Return a solver with a cache, because the runs of a sweep need the same solution."""
     found: dict[tuple[bytes, ...], FloatArray] = {}
 
     @wraps(solve)
@@ -42,12 +42,12 @@ def _once(solve: Solve) -> Solve:
 
 @_once
 def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) -> FloatArray:
-    """Return joint positions that bring the tip to a target, on the branch of the home posture.
+    """Return joint positions for a tip position, on the branch of the home configuration.
 
-    The tip is led from home to the target by Newton steps from way-point to way-point: along the straight line, or,
-    where that passes a singular posture and leaves the branch, around the shoulder. A branch is known by the sign of
-    det J, which only a singular posture changes. An arm with more joints than it needs moves them as little as it can,
-    and one whose tip stays in a plane is asked for the target's place in that plane. Where joint limits bar both ways,
+    Newton steps move the tip from home to the target through way-points along the straight line. If this line passes a
+    singular configuration and leaves the branch, the path around the shoulder is used. The sign of det J identifies a
+    branch, because it changes in singular configurations only. A redundant arm moves its joints as little as possible.
+    For an arm whose tip stays in a plane, the target is projected on this plane. If joint limits block both paths,
     other branches are searched.
 
     Args:
@@ -56,10 +56,10 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
         home: Joint positions at home, shape (nq,), in rad.
 
     Returns:
-        Joint positions within the limits, shape (nq,), in rad; `home` itself when the target is the home tip.
+        Joint positions within the limits, shape (nq,), in rad; `home` itself if the target is the tip at home.
 
     Raises:
-        ConfigError: if no joint positions are found; gives the distance that is left at the nearest found.
+        ConfigError: if no joint positions are found; the message contains the smallest remaining distance.
     """
     start = model.tip_position(np.asarray(home, dtype=float))
     if np.array_equal(start, target):
@@ -89,11 +89,11 @@ def solve_tip_position(model: RobotModel, target: FloatArray, home: FloatArray) 
 
 @_once
 def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> FloatArray:
-    """Return joint positions that bring the tip to a position and an orientation, on the branch of the home posture.
+    """Return joint positions for a tip position and orientation, on the branch of the home configuration.
 
-    The tip is led from home to the pose by Newton steps from way-point to way-point, along the straight line and the
-    shortest turn (the logarithm of the rotation that is left, which has no singular orientation below half a turn).
-    Where a joint limit or a singular posture bars that way, other branches are searched.
+    Newton steps move the tip from home to the pose through way-points along the straight line and the shortest
+    rotation (the logarithm of the remaining rotation, which has no singularity below half a turn). If a joint limit or
+    a singular configuration blocks this path, other branches are searched.
 
     Args:
         model: The robot.
@@ -101,10 +101,10 @@ def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> Flo
         home: Joint positions at home, shape (nq,), in rad.
 
     Returns:
-        Joint positions within the limits, shape (nq,), in rad; `home` itself when the pose is that of the home tip.
+        Joint positions within the limits, shape (nq,), in rad; `home` itself if the pose is that of the tip at home.
 
     Raises:
-        ConfigError: if no joint positions are found; gives the distance and the angle left at the nearest found.
+        ConfigError: if no joint positions are found; the message contains the smallest remaining distance and angle.
     """
     start = model.tip_pose(np.asarray(home, dtype=float))
     if np.array_equal(start, pose):
@@ -129,12 +129,12 @@ def solve_tip_pose(model: RobotModel, pose: FloatArray, home: FloatArray) -> Flo
 
 
 class _Tip:
-    """The tip of an arm at joint positions; at those that it was asked for last, which nobody changes, it knows it."""
+    """Tip of an arm at joint positions, with a cache of the last ones, which must not be changed."""
 
     def __init__(self, model: RobotModel) -> None:
         self._model, self._data, self._frame = model.pin_model, model.pin_model.createData(), model.tip_frame
         placement = self._data.oMf[self._frame]
-        self._x: FloatArray = placement.translation  # views, which each update refreshes
+        self._x: FloatArray = placement.translation  # views that each update refreshes
         self._R: FloatArray = placement.rotation
         self._q: FloatArray | None = None
         self._J: FloatArray = np.empty(0)
@@ -150,7 +150,7 @@ class _Tip:
 
 
 def _position_task(tip: _Tip, target: FloatArray, directions: FloatArray) -> Task:
-    everywhere = len(directions) == 3  # their product changes nothing
+    everywhere = len(directions) == 3  # the product with them has no effect
 
     def task(q: FloatArray) -> tuple[FloatArray, FloatArray]:
         x, _, J = tip.at(q)
@@ -171,12 +171,12 @@ def _pose_task(tip: _Tip, position: FloatArray, rotation: FloatArray, directions
 
 
 def _pose_error(x: FloatArray, R: FloatArray, position: FloatArray, rotation: FloatArray) -> FloatArray:
-    turn = pin.log3(rotation.dot(R.T))  # of the base frame's axes, as the Jacobian's angular rows
+    turn = pin.log3(rotation.dot(R.T))  # along the axes of the base frame, as the angular rows of the Jacobian
     return np.concatenate([position - x, turn])
 
 
 def _branch(model: RobotModel, q: FloatArray) -> float:
-    """Return the sign of det J; zero for an arm whose Jacobian of the tip position is not square."""
+    """Return the sign of det J; zero if the Jacobian of the tip position is not square."""
     J = model.tip_jacobian(q)[:3]
     return float(np.sign(np.linalg.det(J))) if J.shape == (3, 3) else 0.0
 
@@ -197,7 +197,7 @@ def _straight(start: FloatArray, target: FloatArray) -> FloatArray:
 
 
 def _around(centre: FloatArray, start: FloatArray, target: FloatArray) -> FloatArray:
-    """Return way-points straight in radius and direction about a centre, shape (N, 3)."""
+    """Return way-points with linear radius about a centre, in the directions of a straight line, shape (N, 3)."""
     straight = _straight(start, target) - centre
     share = np.linspace(0.0, 1.0, _STEPS + 1)[1:]
     radius = (1.0 - share) * np.linalg.norm(start - centre) + share * np.linalg.norm(target - centre)
@@ -214,7 +214,7 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
         left = float(error.dot(error))
         if math.sqrt(left) < TOLERANCE:
             break
-        # The damping vanishes with the error: Newton's speed near the solution, no leaps near a singular posture.
+        # The damping vanishes with the error: fast convergence, and no large steps near a singular configuration.
         square, added = J.dot(J.T), 1e-3 * left
         square.flat[:: len(error) + 1] += added
         _, _, solution, singular = lapack.dgesv(square, error)
@@ -228,7 +228,7 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
         damping = added * np.eye(len(error))
         blocked = np.zeros(len(q), dtype=bool)
         while (outside := ~blocked & ((q + step < lower) | (q + step > upper))).any():
-            blocked |= outside  # these joints stop at their limits, and the others do without them
+            blocked |= outside  # these joints stop at their limits, and only the others move
             held = np.clip(q + step, lower, upper) - q
             free = np.where(blocked, 0.0, J)
             rest = error - J @ np.where(blocked, held, 0.0)
@@ -238,8 +238,8 @@ def _newton(task: Task, q: FloatArray, limits: FloatArray) -> FloatArray:
 
 
 def _search(model: RobotModel, task: Task, guesses: Sequence[FloatArray]) -> FloatArray:
-    """Return the joint positions within the limits that leave the least error, sought from guesses and at random."""
-    from scipy.optimize import least_squares  # takes longer to import than most arms to find their posture
+    """Return the joint positions within the limits with the smallest error, from guesses and random starts."""
+    from scipy.optimize import least_squares  # the import takes longer than most solutions
 
     lower, upper = model.position_limits
     least_usual, most_usual = model.usual_range
@@ -254,13 +254,13 @@ def _search(model: RobotModel, task: Task, guesses: Sequence[FloatArray]) -> Flo
         error = float(np.linalg.norm(task(q)[0]))
         if error <= _REACHED:
             return q
-        if error < 0.999 * least:  # the first of equally good ones: a later one may have turned without use
+        if error < 0.999 * least:  # the first of equally good ones, because a later one may have useless turns
             best, least = q, error
     return best
 
 
 def _where(model: RobotModel, target: FloatArray, nearest: FloatArray) -> str:
-    """Return how far a target and the nearest tip position lie from the shoulder, and the joints that hold it back."""
+    """Return a message with the distances of target and nearest tip from the shoulder, and the joints at limits."""
     there, here = (float(np.linalg.norm(point - model.shoulder)) for point in (target, model.tip_position(nearest)))
     text = f"; it lies {there:.4g} m from the shoulder, the nearest found {here:.4g} m"
     margins = model.limit_margins(nearest)

@@ -12,19 +12,19 @@ from runner.base.sanitize import few
 from runner.robots.inertials import place_of
 from runner.robots.tree import UrdfTree, number, wrong_places
 
-_LONGEST = 300  # characters, of what a file says is left out
+_LONGEST = 300  # characters of a message about omitted content
 
 
 @dataclass(frozen=True)
 class FileDynamics:
-    """What an arm's file says of its motion beside masses, of joints from the base outwards; 0 where it says nothing.
+    """Joint dynamics in the file of an arm, for joints from the base outwards; 0 if the file has no value.
 
     Attributes:
-        file: The file's name.
-        damping: Torque per speed, shape (nq,), in N m s/rad; N s/m where a joint slides.
-        friction: Torque against any motion, shape (nq,), in N m; N where it slides.
-        armature: Reflected inertia of motors and gears, shape (nq,), in kg m^2; kg where it slides.
-        left_out: All else, in words; see write_urdf.
+        file: Name of the file.
+        damping: Viscous damping, shape (nq,), in N m s/rad; N s/m for prismatic joints.
+        friction: Coulomb friction, shape (nq,), in N m; N for prismatic joints.
+        armature: Reflected inertia of motors and gears, shape (nq,), in kg m^2; kg for prismatic joints.
+        left_out: Messages about other content that affects the motion; see write_urdf.
     """
 
     file: str
@@ -34,7 +34,7 @@ class FileDynamics:
     left_out: tuple[str, ...]
 
     def by_key(self) -> list[tuple[str, str, FloatArray]]:
-        """Return what it gives the joints: its name, the key that gives it to a run, and the values."""
+        """Return the name, the config key and the values of each joint property."""
         return [
             ("damping", "robot.friction.viscous", self.damping),
             ("friction", "robot.friction.coulomb", self.friction),
@@ -43,14 +43,14 @@ class FileDynamics:
 
 
 def dynamics_of(tree: UrdfTree, file: str, gravity: float) -> FileDynamics:
-    """Return what an arm's file says of its motion beside masses.
+    """Return the joint dynamics in the file of an arm.
 
-    A value below 0 or that is no number counts as 0.
+    A value that is negative or not a number counts as 0.
 
     Args:
         tree: The arm.
-        file: The file's name.
-        gravity: That of the run, in m/s^2: what says the same is not left out.
+        file: Name of the file.
+        gravity: Gravity of the run, in m/s^2; the same gravity in the file does not count as omitted.
     """
     said = [each for each in tree.robot.findall("left_out") if each.get("gravity") != repr(gravity)]
     elements = [tree.joints[name].find("dynamics") for name in tree.chain]
@@ -61,7 +61,7 @@ def dynamics_of(tree: UrdfTree, file: str, gravity: float) -> FileDynamics:
 
 
 def by_value(values: FloatArray, names: Sequence[str]) -> str:
-    """Return values other than 0 with their names, in SI units, those of equal value together."""
+    """Return the nonzero values with their names as a string, in SI units, grouped by value."""
     told: dict[str, list[str]] = {}
     for value, name in zip(values.tolist(), names, strict=True):
         if value:
@@ -70,10 +70,10 @@ def by_value(values: FloatArray, names: Sequence[str]) -> str:
 
 
 def hold(tree: UrdfTree, name: str) -> float:
-    """Fix a joint in place where the file's keyframe `home` has it, else at 0, or at the limit that is nearest to it.
+    """Fix a joint at its position in the file's keyframe `home`, or at 0, clipped to its limits.
 
     Returns:
-        Its position, in rad; m where it slides.
+        The position, in rad; m for a prismatic joint.
     """
     joint = tree.joints[name]
     limit, position = joint.find("limit"), tree.home.get(name, 0.0)
@@ -90,7 +90,7 @@ def hold(tree: UrdfTree, name: str) -> float:
 
 
 def _move(joint: ET.Element, position: float) -> None:
-    """Move the place of a joint as far as the joint goes to a position."""
+    """Move the origin of a joint by the motion of the joint to a position."""
     axis, origin = joint.find("axis"), joint.find("origin")
     along = np.array(("1 0 0" if axis is None else axis.get("xyz", "1 0 0")).split(), dtype=float)
     step = along / np.linalg.norm(along) * position

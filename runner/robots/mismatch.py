@@ -17,17 +17,17 @@ from runner.schema.units import Kilograms
 
 
 class MismatchConfig(StrictModel):
-    """How what controllers believe differs from the truth; all factors 1 and the rest 0 is no difference.
+    """Error of the controllers' nominal model; with all factors 1 and all other values 0, the model is exact.
 
     Attributes:
-        mass: Factor on every moving link's mass and inertia, what it carries included.
+        mass: Factor on the mass and inertia of every moving link, including its load.
         centre_of_mass: Factor on the distance of every link's centre of mass from its joint.
-        length: Factor on every length from the base to the tip, and so on the tip's position.
+        length: Factor on every length from the base to the tip, and therefore on the tip position.
         gravity: Factor on gravity.
-        payload: Point mass that is believed to be where the payload is, beyond the true one, in kg; below 0 for a
-            payload that is not known of.
-        spread: Largest relative error, beyond the factors, of each link's mass and centre of mass: drawn evenly for
-            each, again in each repetition.
+        payload: Additional point mass in the nominal model at the position of the payload, in kg; below 0 for a payload
+            that is missing in the nominal model.
+        spread: Largest random relative error of the mass and the centre of mass of each link, in addition to the
+            factors. It is uniformly distributed and drawn again for each link in each repetition.
     """
 
     mass: PositiveFloat
@@ -42,11 +42,11 @@ NONE = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.0, gravity=1.0, pay
 
 
 def _check_nominal(nominal: Any, _: object, robot: Robot, *__: object) -> Robot:
-    """Return the nominal robot of a mismatch plug-in.
+    """Return the checked nominal robot of a mismatch plug-in.
 
     Raises:
-        ConfigError: if it is no robot with the stages and joints of the true one, or its masses and lengths are not
-            finite.
+        ConfigError: if it is not a robot with the stages and joints of the simulated one, or if its masses or lengths
+            are not finite.
     """
     if not isinstance(nominal, Robot):
         raise ConfigError(f"mismatch.kind: build gave {nominal!r:.200}; it must give a Robot")
@@ -63,7 +63,7 @@ def _check_nominal(nominal: Any, _: object, robot: Robot, *__: object) -> Robot:
 
 
 MISMATCHES = Registry[KindConfig, [Robot, np.random.Generator], Robot]("mismatch", {}, _check_nominal)
-"""Mismatches of plug-ins: `build` gets the true robot and a generator, and returns the nominal robot."""
+"""Mismatch plug-ins: `build` takes the simulated robot and a random generator, and returns the nominal robot."""
 
 
 def nominal_robot(
@@ -73,14 +73,14 @@ def nominal_robot(
     generator: np.random.Generator,
     plugged: KindConfig | None = None,
 ) -> Robot:
-    """Return a robot with every model changed by a mismatch, the whole's and each stage's alike.
+    """Return the nominal robot, with the mismatch applied to the model of the robot and of each stage.
 
     Args:
-        robot: The robot.
-        mismatch: Difference of the nominal model.
-        payload_position: Where the payload is, in the tip's frame, shape (3,), in m.
-        generator: Source of the draws.
-        plugged: The mismatch of a plug-in in place of ours.
+        robot: The simulated robot.
+        mismatch: Error of the nominal model.
+        payload_position: Position of the payload in the tip's frame, shape (3,), in m.
+        generator: Random generator.
+        plugged: Config of a mismatch plug-in, which replaces `mismatch`.
     """
     if plugged is not None:
         return MISMATCHES.build(plugged, robot, generator)
@@ -99,14 +99,13 @@ def nominal_robot(
 def scale_model(
     model: RobotModel, masses: FloatArray, centres: FloatArray, lengths: FloatArray, gravity: float = 1.0
 ) -> RobotModel:
-    """Return a model with its numbers scaled.
+    """Return a model with scaled masses, lengths and gravity.
 
     Args:
         model: The model.
-        masses: Factor on mass and inertia of each moving link, what it carries included, shape (nq,).
+        masses: Factor on the mass and inertia of each moving link, including its load, shape (nq,).
         centres: Factor on the distance of each link's centre of mass from its joint, shape (nq,).
-        lengths: Factor on all lengths of the base and of each link, from its joint to what it carries, shape
-            (nq + 1,).
+        lengths: Factor on all lengths of the base and of each link, from its joint to its frames, shape (nq + 1,).
         gravity: Factor on gravity.
     """
     changed_model = pin.Model(model.pin_model)
@@ -114,14 +113,14 @@ def scale_model(
         changed_model.inertias[joint] = _scale(changed_model.inertias[joint], mass, centre)
         changed_model.jointPlacements[joint].translation *= lengths[changed_model.parents[joint]]
     for frame in changed_model.frames:
-        if frame.parentJoint:  # the inertia of what is fixed on a link, such as a tool, is part of the link's
+        if frame.parentJoint:  # the inertia of a fixed body, such as a tool, is part of the link's inertia
             place = frame.placement
             inertia = _scale(place.act(frame.inertia), masses[frame.parentJoint - 1], centres[frame.parentJoint - 1])
             frame.inertia = place.actInv(inertia)
         frame.placement.translation *= lengths[frame.parentJoint]
     changed_model.gravity.linear = gravity * model.gravity
     changed = copy.copy(model)
-    for remembered in ("reach", "shoulder", "kinematics"):  # of the true lengths
+    for remembered in ("reach", "shoulder", "kinematics"):  # cached values of the original lengths
         changed.__dict__.pop(remembered, None)
     changed.pin_model = changed_model
     changed._data = changed_model.createData()

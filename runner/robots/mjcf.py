@@ -16,21 +16,21 @@ from runner.robots.mjcf_joints import dynamics_of, efforts_of, home_of, other_ti
 from runner.robots.mjcf_losses import LeftOut, left_out, refused_model, refused_parts, refused_shapes
 from runner.robots.mjcf_urdf import joint_name, write_urdf
 
-_LOCK = threading.Lock()  # MuJoCo has one place for warnings
+_LOCK = threading.Lock()  # MuJoCo has one global warning handler
 _KEPT = 8
 _read: dict[Path, tuple[list[tuple[int, int]], "Mjcf"]] = {}
 
 
 @dataclass(frozen=True)
 class Mjcf:
-    """An MJCF that was read.
+    """Converted MJCF.
 
     Attributes:
-        urdf: The text of a URDF of its bodies, joints and sites.
-        ties: Joints that do not move freely, with what ties them; see UrdfTree.
-        home: Joint positions of its keyframe `home`, in rad or m; empty where it has none.
-        left_out: What it holds beside.
-        files: Itself, the files that it includes, and its meshes that are there.
+        urdf: URDF of the bodies, joints and sites.
+        ties: Constrained joints with their constraints; see UrdfTree.
+        home: Joint positions of the keyframe `home`, in rad or m; empty without this keyframe.
+        left_out: Omitted content.
+        files: The MJCF itself, its included files, and its existing meshes.
     """
 
     urdf: str
@@ -41,13 +41,13 @@ class Mjcf:
 
 
 def read_mjcf(path: Path) -> Mjcf:
-    """Read an MJCF, as MuJoCo compiles it: its defaults, includes, frames, angles, and inertias from shapes.
+    """Read an MJCF as compiled by MuJoCo, with its defaults, includes, frames, angles, and inertias from shapes.
 
-    What was read last is kept until its files change.
+    Recent results are cached until their files change.
 
     Raises:
-        ConfigError: if it is none, MuJoCo does not take it, it leads out of its folder, a mesh that weighs is missing,
-            or it holds what no arm of ours has.
+        ConfigError: if the file is not an MJCF, MuJoCo rejects it, it refers to files outside its folder, a mesh with
+            mass is missing, or it has unsupported elements.
     """
     if path in _read and _read[path][0] == _stamps(_read[path][1].files):
         return _read[path][1]
@@ -59,7 +59,7 @@ def read_mjcf(path: Path) -> Mjcf:
 
 
 def _stamps(files: Iterable[Path]) -> list[tuple[int, int]]:
-    """Return what changes with files: when they were written, and how long they are; zeros of one that is gone."""
+    """Return the modification time and the size of each file; zeros for a missing file."""
     stats = [file.stat() if file.exists() else None for file in files]
     return [(0, 0) if stat is None else (stat.st_mtime_ns, stat.st_size) for stat in stats]
 
@@ -98,7 +98,7 @@ def _convert(path: Path) -> Mjcf:
 
 
 def _asset_names(spec: Any) -> list[str]:
-    """Return the files that the meshes and height fields of a specification name."""
+    """Return the file names of the meshes and height fields of a specification."""
     names = [asset.file for asset in (*spec.meshes, *spec.hfields)]
     return [Path(name).name for name in names] if spec.strippath else names
 
@@ -114,7 +114,7 @@ def _refused(path: Path, error: Exception) -> ConfigError:
 
 
 def _leave_shapes_that_weigh(spec: Any) -> None:
-    """Take out of a specification all that has no part in bodies and joints, so that its files are not read."""
+    """Remove from a specification everything without effect on bodies and joints, so that its files are not read."""
     spec.compiler.fusestatic = False
     lowest, highest = spec.compiler.inertiagrouprange
     by_shape = spec.compiler.inertiafromgeom == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
@@ -133,7 +133,7 @@ def _leave_shapes_that_weigh(spec: Any) -> None:
     for mesh in (*spec.meshes, *spec.hfields):
         if (mesh.name or Path(mesh.file).stem) not in used:
             spec.delete(mesh)
-    spec.memory = spec.nstack = spec.njmax = spec.nconmax = -1  # what it takes memory for
+    spec.memory = spec.nstack = spec.njmax = spec.nconmax = -1  # sizes of memory
     spec.nkey = spec.nuserdata = 0
     for name in ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor"):
         setattr(spec, f"nuser_{name}", -1)
@@ -143,7 +143,7 @@ def _leave_shapes_that_weigh(spec: Any) -> None:
 
 @contextmanager
 def _caught_warnings() -> Iterator[list[str]]:
-    """Catch MuJoCo's warnings for a while, which it would write to a file in the working directory."""
+    """Capture MuJoCo's warnings within the context; otherwise it would write them to a file in the working folder."""
     said: list[str] = []
     with _LOCK:
         before = mujoco.get_mju_user_warning()

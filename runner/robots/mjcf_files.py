@@ -10,7 +10,7 @@ from runner.base.sanitize import few, quoted
 from runner.robots.tree import parse_xml
 
 _DEPTH = 200
-_MAKES_MORE = {  # elements that stand for many bodies, or for code; `model` brings another file's
+_MAKES_MORE = {  # elements that generate many bodies or load code; `model` loads another file
     "attach": "copy its bodies in",
     "composite": "write its bodies, or take it out",
     "extension": "take it out, and the plugins",
@@ -24,11 +24,11 @@ _MAKES_MORE = {  # elements that stand for many bodies, or for code; `model` bri
 
 
 def follow_includes(path: Path) -> list[Path]:
-    """Return an MJCF file and those that it includes, each of which MuJoCo may read.
+    """Return an MJCF file and its included files, after checking that MuJoCo can safely read them.
 
     Raises:
-        ConfigError: if the file is no MJCF, one that it includes is missing, lies outside its folder or is no XML, or
-            an element stands for more than itself.
+        ConfigError: if the file is not an MJCF, if an included file is missing, outside its folder or not XML, or if an
+            element generates many bodies or loads code.
     """
     root, folder = parse_xml(path, "robot.mjcf"), path.resolve().parent
     if root.tag != "mujoco":
@@ -52,16 +52,16 @@ def follow_includes(path: Path) -> list[Path]:
 
 
 def asset_files(path: Path, folder: str, files: Iterable[str], read: Collection[str]) -> tuple[list[Path], list[str]]:
-    """Return the files of an MJCF's meshes or height fields, and in words those that are not there and need not be.
+    """Return the files of an MJCF's meshes or height fields, and messages about missing files that are not needed.
 
     Args:
         path: The MJCF file.
-        folder: Where they lie, from its folder: `meshdir`.
-        files: Their names.
-        read: Those of them that are read, because they weigh.
+        folder: Folder of the files, relative to that of the MJCF: `meshdir`.
+        files: Names of the files.
+        read: Names of the files that are needed, because their shapes have mass.
 
     Raises:
-        ConfigError: with all of these that are missing or lie outside the file's folder.
+        ConfigError: if needed files are missing or outside the folder of the MJCF; the message lists all of them.
     """
     home = path.resolve().parent
     found = {file: (home / folder / file).resolve() for file in files if file}
@@ -77,7 +77,7 @@ def asset_files(path: Path, folder: str, files: Iterable[str], read: Collection[
 
 
 def _excess(files: list[Path], roots: list[ET.Element]) -> Iterator[str]:
-    """Yield what MuJoCo would take much memory for, of an MJCF with all that it includes."""
+    """Yield messages about sizes of an MJCF, with its included files, for which MuJoCo would need much memory."""
     elements = [element for root in roots for element in root.iter()]
     fields = [(_whole(element, "nrow"), _whole(element, "ncol")) for element in elements if element.tag == "hfield"]
     for limit, count in (
@@ -91,7 +91,7 @@ def _excess(files: list[Path], roots: list[ET.Element]) -> Iterator[str]:
 
 
 def _whole(element: ET.Element, key: str) -> int:
-    """Return the size of a whole number in an XML element; 0 where there is none, which MuJoCo refuses."""
+    """Return the absolute integer value of an XML attribute; 0 if it is not an integer, which MuJoCo rejects."""
     try:
         return abs(int(element.get(key, "0")))
     except ValueError:
@@ -99,7 +99,7 @@ def _whole(element: ET.Element, key: str) -> int:
 
 
 def _places(name: str, folders: Iterable[Path]) -> list[Path]:
-    """Return where MuJoCo looks for a file that is included: from the first file's folder, and from its own."""
+    """Return the paths at which MuJoCo looks for an included file: relative to the main file and to its own."""
     return list(dict.fromkeys((folder / name).resolve() for folder in folders))
 
 

@@ -10,14 +10,14 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.robots.mjcf_urdf import joint_name
 
-HOME = "home"  # the keyframe that is taken
+HOME = "home"  # name of the keyframe that is used
 ON_JOINTS = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
 
 
 def dynamics_of(model: Any) -> Mapping[str, FloatArray]:
-    """Return damping, friction and armature of each joint, shapes (njnt,), in SI units; those of its actuators count.
+    """Return damping, friction and armature of each joint, shapes (njnt,), in SI units, including its actuators.
 
-    An actuator turns as fast as its joint times its gear, and so counts by the square of it.
+    The speed of an actuator is that of its joint times the gear, so its values are multiplied by the squared gear.
     """
     gear = np.zeros((model.nactuator, model.njnt))
     for joint, actuators in _acting(model).items():
@@ -30,7 +30,7 @@ def dynamics_of(model: Any) -> Mapping[str, FloatArray]:
 
 
 def home_of(spec: Any, model: Any) -> dict[str, float]:
-    """Return where a specification's keyframe `home` has the model's joints, in rad or m; empty without one."""
+    """Return the joint positions of the keyframe `home` by joint, in rad or m; empty without this keyframe."""
     for key in spec.keys:
         if key.name == HOME and len(key.qpos) == model.nq:
             return {joint_name(model, joint): float(key.qpos[joint]) for joint in range(model.njnt)}
@@ -38,10 +38,11 @@ def home_of(spec: Any, model: Any) -> dict[str, float]:
 
 
 def efforts_of(model: Any) -> tuple[dict[int, float], list[str]]:
-    """Return the largest torque of joints by index, in N m (N where they slide), and what is told of it.
+    """Return the effort limit of joints by index, in N m (N for prismatic joints), and messages about them.
 
-    It is the least of the joint's actuatorfrcrange and of what its one actuator can give: its force range, and where it
-    is a plain motor that of its control, times gain and gear. Of unequal limits to both sides it is the smaller.
+    The limit is the smallest of the joint's actuatorfrcrange and the ranges of its only actuator: the force range, and
+    for a plain motor the control range times gain and gear. If the limits of both directions differ, the smaller one
+    counts.
     """
     efforts: dict[int, float] = {}
     told: list[str] = []
@@ -64,7 +65,7 @@ def efforts_of(model: Any) -> tuple[dict[int, float], list[str]]:
 
 
 def _acting(model: Any) -> dict[int, list[int]]:
-    """Return the actuators on each joint that has some, by index."""
+    """Return the indices of the actuators on each joint, by index of the joint; joints without actuators are absent."""
     acting: dict[int, list[int]] = {}
     on_joints = [int(kind) for kind in ON_JOINTS]
     for actuator in range(model.nactuator):
@@ -74,7 +75,7 @@ def _acting(model: Any) -> dict[int, list[int]]:
 
 
 def _forces(model: Any, actuator: int) -> list[FloatArray]:
-    """Return the ranges of what an actuator puts on its joint."""
+    """Return the ranges of the torque of an actuator on its joint."""
     gear, ranges = model.actuator_gear[actuator, 0], []
     if model.actuator_forcelimited[actuator]:
         ranges.append(gear * model.actuator_forcerange[actuator])
@@ -84,7 +85,7 @@ def _forces(model: Any, actuator: int) -> list[FloatArray]:
 
 
 def is_motor(model: Any, actuator: int) -> bool:
-    """Tell whether an actuator puts a force on its joint that is its control, times gain and gear."""
+    """Return True if the force of an actuator on its joint is its control times gain and gear."""
     return bool(
         model.actuator_gaintype[actuator] == mujoco.mjtGain.mjGAIN_FIXED
         and model.actuator_biastype[actuator] == mujoco.mjtBias.mjBIAS_NONE
@@ -94,7 +95,7 @@ def is_motor(model: Any, actuator: int) -> bool:
 
 
 def actuator_name(model: Any, actuator: int) -> str:
-    """Return the name of an actuator, or one made of its number."""
+    """Return the name of an actuator, or one made from its index."""
     return model.actuator(actuator).name or f"actuator{actuator}"
 
 
@@ -102,10 +103,10 @@ _MUSCLE, _FREE = mujoco.mjtDyn.mjDYN_MUSCLE, mujoco.mjtJoint.mjJNT_FREE
 
 
 def take_out_ties(spec: Any) -> list[tuple[Any, str]]:
-    """Take out of a specification its equality constraints, tendons, muscles, free joints, and what acts on no joint.
+    """Remove equality constraints, tendons, muscles, free joints and actuators without a joint from a specification.
 
     Returns:
-        Each joint that one of them acts on, as an element of the specification, with its words.
+        Each constrained joint, as an element of the specification, with a message.
     """
     found = (*_of_equalities(spec), *_of_tendons(spec), *_of_muscles(spec))
     ties = [(joint, text) for text, joints in found for joint in joints if joint.type != _FREE]
@@ -122,12 +123,12 @@ def take_out_ties(spec: Any) -> list[tuple[Any, str]]:
 
 
 def free_joints(spec: Any) -> list[Any]:
-    """Return the joints that let a body of a specification go anywhere."""
+    """Return the free joints of a specification."""
     return [joint for joint in spec.joints if joint.type == _FREE]
 
 
 def other_ties(model: Any) -> Iterator[tuple[int, str]]:
-    """Yield joints of a compiled model, by index, that a spring moves or that slide without end, with its words."""
+    """Yield the joints of a compiled model, by index, with a spring or with unlimited sliding, with a message."""
     sprung = (model.jnt_stiffness != 0.0) | model.jnt_stiffnesspoly.any(axis=1)
     endless = (model.jnt_type == mujoco.mjtJoint.mjJNT_SLIDE) & (model.jnt_limited == 0)
     for which, text in ((sprung, "has a spring (stiffness, springdamper)"), (endless, "slides without a range")):
@@ -135,7 +136,7 @@ def other_ties(model: Any) -> Iterator[tuple[int, str]]:
 
 
 def _of_equalities(spec: Any) -> Iterator[tuple[str, Sequence[Any]]]:
-    """Yield what each constraint that is active is called, and the joints that it acts on."""
+    """Yield a message about each active constraint, and the joints on which it acts."""
     for equality in spec.equalities:
         names = [name for name in (equality.name1, equality.name2) if name]
         joints: Sequence[Any]
@@ -162,7 +163,7 @@ def _of_muscles(spec: Any) -> Iterator[tuple[str, Sequence[Any]]]:
 
 
 def _pulled(tendon: Any) -> Sequence[Any]:
-    """Return the joints that a tendon pulls on: those that it names, or those between the bodies that it runs over."""
+    """Return the joints of a fixed tendon, or the joints between the bodies along the path of a spatial tendon."""
     ends = [wrap.target for wrap in tendon.path if wrap.type != mujoco.mjtWrap.mjWRAP_PULLEY]
     if tendon.path[0].type == mujoco.mjtWrap.mjWRAP_JOINT:
         return ends
@@ -170,7 +171,7 @@ def _pulled(tendon: Any) -> Sequence[Any]:
 
 
 def _between(bodies: Sequence[Any]) -> Sequence[Any]:
-    """Return the joints that move some of the bodies and not all."""
+    """Return the joints that move some of the bodies but not all."""
     ways = [_way(body) for body in bodies]
     return [joint for joint in dict.fromkeys(chain(*ways)) if not all(joint in way for way in ways)]
 

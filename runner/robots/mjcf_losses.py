@@ -17,11 +17,12 @@ from runner.robots.model import STANDARD_GRAVITY
 
 @dataclass(frozen=True)
 class LeftOut:
-    """What is left out of an MJCF.
+    """Omitted content of an MJCF.
 
     Attributes:
-        motion: What would change the arm's motion, in words, with the value of the key `gravity` that gives it, or "".
-        rest: All else, in words.
+        motion: Messages about content that would change the motion, each with an equivalent value of the key `gravity`,
+            or "" if there is none.
+        rest: Messages about other content.
     """
 
     motion: Mapping[str, str]
@@ -29,26 +30,26 @@ class LeftOut:
 
 
 def refused_parts(spec: Any) -> Iterator[str]:
-    """Yield what no arm of ours has, of MuJoCo's specification of a file, with its names and what to do about it."""
+    """Yield a message about each kind of unsupported element in a specification, with names and a remedy."""
     yield from _listed("mocap bodies", [b for b in spec.bodies if b.mocap], "take them out")
     balls = [joint for joint in spec.joints if joint.type == mujoco.mjtJoint.mjJNT_BALL]
     yield from _listed("ball joints", balls, "the joints of an arm are hinges and slides")
 
 
 def refused_shapes(spec: Any) -> Iterator[str]:
-    """Yield shapes that cannot weigh, of a specification in which only those are left that do."""
+    """Yield a message about unsupported shapes with mass, of a specification without other shapes."""
     yield from _listed("height fields that weigh", spec.hfields, "give their body an <inertial>, or take them out")
 
 
 def refused_model(model: Any) -> Iterator[str]:
-    """Yield what no arm of ours has, of a compiled model, with its names and what to do about it."""
+    """Yield a message about each unsupported property of a compiled model, with names and a remedy."""
     if not model.njnt:
         yield "has no joint: it is no arm"
     yield from _joints(model, ~np.isfinite(model.qpos0), "a ref that is no finite number:", "give a number")
 
 
 def left_out(spec: Any, model: Any) -> LeftOut:
-    """Return what is left out of a file, of its specification and the model compiled of it."""
+    """Return the omitted content of a file, from its specification and its compiled model."""
     return LeftOut({**_of_gravity(spec), **dict.fromkeys(_of_motion(spec, model), "")}, tuple(_of_rest(spec, model)))
 
 
@@ -112,7 +113,7 @@ def _listed(text: str, elements: Sequence[Any], remedy: str) -> Iterator[str]:
 
 
 def _called(element: Any) -> str:
-    """Return how an element is spoken of: by its name, or by the body that it is on."""
+    """Return the label of an element in messages: its name, or that of its body."""
     if element.name:
         return f"'{element.name}'"
     on = getattr(getattr(element, "parent", None), "name", "")

@@ -11,13 +11,13 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.robots.inertials import make_massless, write_inertial
 
-_NO_LIMIT = 1e6  # what the runner takes for none, in SI units
+_NO_LIMIT = 1e6  # value that the runner reads as no limit, in SI units
 _LINKS = (mujoco.mjtObj.mjOBJ_BODY, mujoco.mjtObj.mjOBJ_SITE)
 _HINGE = mujoco.mjtJoint.mjJNT_HINGE
 
 
 def joint_name(model: Any, joint: int) -> str:
-    """Return the name of a joint in the URDF: its own, or one made of its body's; never that of a body or a site."""
+    """Return the name of a joint in the URDF: its own or one made from its body's; never that of a body or a site."""
     own: str = model.joint(joint).name
     body = int(model.jnt_bodyid[joint])
     name = own or f"{body_name(model, body)}_joint{joint - model.body_jntadr[body] + 1}"
@@ -27,7 +27,7 @@ def joint_name(model: Any, joint: int) -> str:
 
 
 def body_name(model: Any, body: int) -> str:
-    """Return the name of a body's link in the URDF: its own, or its number."""
+    """Return the name of a body's link in the URDF: the name of the body, or one made from its index."""
     own: str = model.body(body).name
     return own or f"body{body}"
 
@@ -39,20 +39,20 @@ def write_urdf(
     dynamics: Mapping[str, FloatArray],
     left_out: Mapping[str, str],
 ) -> tuple[str, list[str]]:
-    """Return the URDF text of a model of bodies with hinges and slides, on a fixed base.
+    """Return the URDF of a model of bodies with hinges and slides on a fixed base.
 
-    A link is a body's, in its frame; sites are links without mass. Where a body has several joints, or one beside its
-    origin, links without mass stand between.
+    Each body becomes a link with the same frame, and each site a massless link. Massless links also separate the joints
+    of a body with several joints, or a joint that is not at the origin of its body.
 
     Args:
-        name: The robot's name.
+        name: Name of the robot.
         model: MuJoCo's compiled model.
-        efforts: Largest torque or force of joints, by index, in N m or N; others have no limit.
+        efforts: Effort limits of joints by index, in N m or N; other joints have no limit.
         dynamics: Damping, friction and armature of each joint, shapes (njnt,), by these names, in SI units.
-        left_out: What else would change the motion, and the gravity that gives it; see LeftOut.
+        left_out: Omitted content that would change the motion, and the equivalent gravity; see LeftOut.
 
     Returns:
-        The text; and what is named otherwise than in the model, for the reader.
+        The URDF, and messages about changed names.
     """
     robot = ET.Element("robot", name=name)
     names = _Names(body_name(model, body) for body in range(model.nbody))
@@ -76,19 +76,19 @@ def write_urdf(
 
 
 class _Names:
-    """Names of links, each given once.
+    """Unique names of links.
 
     Args:
-        taken: Those of the bodies.
+        taken: Names of the bodies.
     """
 
     def __init__(self, taken: Iterator[str]) -> None:
         self._taken = set(taken)
         self.told: list[str] = []
-        """What got another name than its own, in words."""
+        """Messages about changed names."""
 
     def claim(self, name: str, ending: str) -> str:
-        """Return a name that no other link has: this one, or one with an ending."""
+        """Return a name that no other link has: the given name, with an ending if necessary."""
         new = name
         while new in self._taken:
             new += ending
@@ -102,7 +102,7 @@ def _write_joints(
     robot: ET.Element, model: Any, body: int, efforts: Mapping[int, float], dynamics: Mapping[str, FloatArray],
     names: _Names,
 ) -> None:  # fmt: skip
-    """Write the joints between a body and its parent, with links without mass between them."""
+    """Write the joints between a body and its parent, with massless links between them."""
     parent, name = body_name(model, int(model.body_parentid[body])), body_name(model, body)
     place = _frame(model.body_pos, model.body_quat, body)
     first, offset = int(model.body_jntadr[body]), np.zeros(3)
@@ -130,7 +130,7 @@ def _write_joints(
 
 
 def _back_by_ref(model: Any, joint: int) -> "pin.SE3":
-    """Return the motion back from where MuJoCo draws a joint, at its `ref`, to zero."""
+    """Return the motion of a joint from its `ref`, the position in MuJoCo's model, back to zero."""
     axis, ref = model.jnt_axis[joint], float(model.qpos0[model.jnt_qposadr[joint]])
     if model.jnt_type[joint] == _HINGE:
         return pin.SE3(pin.exp3(-ref * axis), np.zeros(3))
@@ -155,7 +155,7 @@ def _write_massless(robot: ET.Element, name: str) -> None:
 
 
 def _write_body(link: ET.Element, model: Any, body: int) -> None:
-    """Write mass and inertia about the centre of mass, in axes of the body's frame."""
+    """Write the mass and the inertia about the centre of mass, in the axes of the body's frame."""
     frame, mass = _frame(model.body_ipos, model.body_iquat, body), float(model.body_mass[body])
     tensor = frame.rotation @ np.diag(model.body_inertia[body]) @ frame.rotation.T * (mass > 0.0)
     write_inertial(link, mass, frame.translation, tensor)

@@ -1,4 +1,4 @@
-"""Rigid-body model of a robot arm: kinematics and dynamics of joints and tip, by Pinocchio."""
+"""Rigid-body model of a robot arm: kinematics and dynamics of joints and tip, with Pinocchio."""
 
 import copy
 import xml.etree.ElementTree as ET
@@ -16,27 +16,25 @@ from runner.robots.tree import NO_LIMIT, check_tip
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
 _MOST_JOINTS = 64
-_SAID = (
-    r"\s*(Error|Warning|Info|Debug):|\s+at line \d+ in "  # how the reader of URDFs that Pinocchio uses begins a line
-)
+_SAID = r"\s*(Error|Warning|Info|Debug):|\s+at line \d+ in "  # start of a line from the URDF reader of Pinocchio
 
 
 class RobotModel:
-    """Rigid-body model of a fixed-base serial arm with joints that turn (revolute) or slide (prismatic).
+    """Rigid-body model of a fixed-base serial arm with revolute and prismatic joints.
 
-    The armature of its joints, reflected inertia of motors and gears, is on the diagonal of the mass matrix and nowhere
-    else; it is read from `<dynamics armature="...">`. Every result is a new array; positions and Jacobians are
-    given in the base frame. Where a unit of a joint is given, it is that of one that turns: rad, rad/s and N m stand
-    for m, m/s and N where a joint slides.
+    The armature of the joints, the reflected inertia of motors and gears, is read from `<dynamics armature="...">` and
+    acts on the diagonal of the mass matrix only. Every result is a new array. Positions and Jacobians are in the base
+    frame. Units of joints are those of revolute joints; for prismatic joints, read m, m/s and N instead of rad, rad/s
+    and N m.
 
     Args:
-        urdf: The URDF's text.
-        tip: Name of the frame that is controlled, the tool centre point.
+        urdf: The URDF as a string.
+        tip: Name of the controlled frame, the tool centre point.
         gravity: Magnitude of gravity along -z of the base, in m/s^2.
 
     Raises:
-        ConfigError: if the URDF cannot be built without complaint, has no joint that moves or too many, holds a joint
-            of another kind, lets a joint slide without end, or has no such frame.
+        ConfigError: if Pinocchio reports a problem in the URDF, if it has no moving joint, too many, a joint of another
+            type, or a prismatic joint without limits, or if the frame does not exist.
     """
 
     def __init__(self, urdf: str, tip: str, gravity: float = STANDARD_GRAVITY) -> None:
@@ -51,7 +49,7 @@ class RobotModel:
         self.tip_frame: int = self.pin_model.getFrameId(tip)
         self.nq: int = self.pin_model.nq
         self.prismatic = np.array([_is_prismatic(joint) for joint in joints], dtype=bool)
-        """Which joints slide instead of turning, shape (nq,)."""
+        """True for each prismatic joint, shape (nq,)."""
         endless = self.prismatic & ~np.isfinite(self.position_limits).all(axis=0)
         if endless.any():
             raise ConfigError(
@@ -62,7 +60,7 @@ class RobotModel:
         self._data = self.pin_model.createData()
 
     def tip_position(self, q: FloatArray) -> FloatArray:
-        """Return the tip's position in the base frame, shape (3,), in m."""
+        """Return the tip position in the base frame, shape (3,), in m."""
         return self.tip_pose(q)[:3, 3].copy()
 
     def tip_pose(self, q: FloatArray) -> FloatArray:
@@ -72,7 +70,7 @@ class RobotModel:
         return pose
 
     def tip_positions(self, q: FloatArray) -> FloatArray:
-        """Return the tip's positions for rows of joint positions, shapes (T, nq) to (T, 3)."""
+        """Return the tip positions for rows of joint positions, shapes (T, nq) to (T, 3), in m."""
         positions = np.empty((len(q), 3))
         tip = self._data.oMf[self.tip_frame].translation  # a view that each update refreshes
         for row, configuration in zip(positions, q, strict=True):
@@ -92,7 +90,7 @@ class RobotModel:
         jacobian: FloatArray = pin.computeFrameJacobian(
             self.pin_model, self._data, q, self.tip_frame, pin.LOCAL_WORLD_ALIGNED
         )
-        return jacobian.reshape(6, self.nq)  # of one joint Pinocchio gives a vector
+        return jacobian.reshape(6, self.nq)  # for one joint, Pinocchio returns a vector
 
     def tip_bias_acceleration(self, q: FloatArray, dq: FloatArray) -> FloatArray:
         """Return the tip's linear acceleration at zero joint acceleration, dJ/dt dq, shape (3,), in m/s^2."""
@@ -111,7 +109,7 @@ class RobotModel:
 
     @property
     def inertial_parameters(self) -> FloatArray:
-        """Ten of each moving body, shape (10 nq,), as Arm.regressor orders them."""
+        """Ten parameters of each moving body, shape (10 nq,), in the order of Arm.regressor."""
         return np.concatenate([inertia.toDynamicParameters() for inertia in list(self.pin_model.inertias)[1:]])
 
     def gravity_torque(self, q: FloatArray) -> FloatArray:
@@ -146,7 +144,7 @@ class RobotModel:
 
     @property
     def armature(self) -> FloatArray:
-        """Reflected inertia of each joint's motor and gear, shape (nq,), in kg m^2."""
+        """Reflected inertia of the motor and gear of each joint, shape (nq,), in kg m^2."""
         armature: FloatArray = self.pin_model.armature.copy()
         return armature
 
@@ -158,7 +156,7 @@ class RobotModel:
         return own
 
     def copy(self) -> "RobotModel":
-        """Return this arm with a Pinocchio model of its own, so that no change of this one reaches it."""
+        """Return a copy of this arm with a separate Pinocchio model."""
         own = copy.copy(self)
         own.pin_model = pin.Model(self.pin_model)
         own._data = own.pin_model.createData()
@@ -168,8 +166,8 @@ class RobotModel:
         """Return this arm with a point mass fixed at its tip.
 
         Args:
-            mass: In kg; below 0 it takes off what is there.
-            position: Its place in the tip's frame, shape (3,), in m; None is the tip itself.
+            mass: The mass, in kg; a negative value removes mass.
+            position: Position of the mass in the tip's frame, shape (3,), in m; None is the tip itself.
         """
         loaded = self.copy()
         frame = loaded.pin_model.frames[self.tip_frame]
@@ -179,7 +177,7 @@ class RobotModel:
         return loaded
 
     def with_tip(self, frame: str) -> "RobotModel":
-        """Return this arm with another of its frames, by name, as its tip."""
+        """Return this arm with another frame, given by name, as its tip."""
         other = self.copy()
         other.tip_name, other.tip_frame = frame, self.pin_model.getFrameId(frame)
         for counted_to_tip in ("reach", "kinematics"):
@@ -188,41 +186,41 @@ class RobotModel:
 
     @property
     def position_limits(self) -> FloatArray:
-        """The URDF's lower and upper position limits, shape (2, nq), in rad; -inf and inf where it sets none."""
+        """Lower and upper position limits in the URDF, shape (2, nq), in rad; -inf and inf without a limit."""
         model = self.pin_model
         return np.array([-_limits(-model.lowerPositionLimit), _limits(model.upperPositionLimit)])
 
     @property
     def usual_range(self) -> FloatArray:
-        """The position limits, of joints that turn within one turn about zero where that is possible, shape (2, nq)."""
+        """Position limits, for revolute joints clipped to one turn about zero if possible, shape (2, nq)."""
         limits = self.position_limits
         turn = np.clip(limits, -np.pi, np.pi)
         return np.where(self.prismatic | (turn[0] == turn[1]), limits, turn)
 
     @property
     def joint_units(self) -> tuple[str, ...]:
-        """Unit of each joint's position: rad, or m where it slides."""
+        """Unit of the position of each joint: rad, or m for prismatic joints."""
         return tuple("m" if prismatic else "rad" for prismatic in self.prismatic)
 
     @property
     def velocity_limits(self) -> FloatArray:
-        """The URDF's speed limits, shape (nq,), in rad/s; inf where it sets none."""
+        """Speed limits in the URDF, shape (nq,), in rad/s; inf without a limit."""
         return _limits(self.pin_model.upperVelocityLimit)
 
     @property
     def effort_limits(self) -> FloatArray:
-        """The URDF's effort limits, shape (nq,), in N m; inf where it sets none."""
+        """Effort limits in the URDF, shape (nq,), in N m; inf without a limit."""
         return _limits(self.pin_model.upperEffortLimit)
 
     def limit_margins(self, q: FloatArray) -> FloatArray:
-        """Return how far joint positions lie inside the nearer limit, shapes (..., nq), in rad; below 0 outside it."""
+        """Return the distance of joint positions to the nearer limit, shapes (..., nq), in rad; negative outside."""
         lower, upper = self.position_limits
         margins: FloatArray = np.minimum(q - lower, upper - q)
         return margins
 
     @cached_property
     def reach(self) -> float:
-        """Largest distance of the tip from the first joint's axis origin that link lengths and slides admit, in m."""
+        """Largest possible distance of the tip from the first joint's origin, from link lengths and travels, in m."""
         placements = list(self.pin_model.jointPlacements)[2:]
         last = self.pin_model.frames[self.tip_frame].placement
         travel = float(np.abs(self.position_limits[:, self.prismatic]).max(axis=0).sum())
@@ -230,7 +228,7 @@ class RobotModel:
 
     @cached_property
     def kinematics(self) -> bytes:
-        """What is the same for two arms whose joints bring the tip to the same places within the same limits."""
+        """Bytes that are equal for two arms with the same kinematics of the tip and the same position limits."""
         model = self.pin_model
         tip = model.frames[self.tip_frame]
         parts = [self.position_limits, list(model.parents), tip.parentJoint, tip.placement.homogeneous]
@@ -249,7 +247,7 @@ class RobotModel:
 
 def _build(urdf: str) -> "pin.Model":
     model, said = _read(urdf)
-    if said:  # of a shape that is unknown to Pinocchio: none is part of a model
+    if said:  # about a shape that Pinocchio does not support; models have no shapes
         model, said = _read(_without_shapes(urdf))
     if said:
         raise ConfigError(f"robot.urdf: Pinocchio does not take it as it is: {' '.join(said)}")
@@ -257,7 +255,7 @@ def _build(urdf: str) -> "pin.Model":
 
 
 def _armature(urdf: str, joints: Sequence[str]) -> FloatArray:
-    """Return what a URDF's text says of the armature of joints, shape (nq,), in kg m^2."""
+    """Return the armature of joints in a URDF, shape (nq,), in kg m^2."""
     if "armature" not in urdf:
         return np.zeros(len(joints))
     robot = ET.fromstring(urdf)  # noqa: S314 - Pinocchio has read it
@@ -267,7 +265,7 @@ def _armature(urdf: str, joints: Sequence[str]) -> FloatArray:
 
 
 def _read(urdf: str) -> "tuple[pin.Model, list[str]]":
-    """Return the model of a URDF's text, and what was said while it was made."""
+    """Return the model of a URDF, and the messages of the URDF reader."""
     said: list[str] = []
     try:
         with caught_output(2, _SAID) as said:
@@ -301,6 +299,6 @@ def _check_joints(model: "pin.Model", names: Sequence[str]) -> None:
 
 
 def _limits(values: FloatArray) -> FloatArray:
-    """Return limits with inf where they only say that there is none."""
+    """Return limits, with inf for values that mean no limit."""
     limits: FloatArray = np.where(values < NO_LIMIT, values, np.inf)
     return limits

@@ -9,25 +9,25 @@ from runner.base.arrays import FloatArray
 
 
 class Mode(NamedTuple):
-    """A natural vibration.
+    """Natural vibration mode.
 
     Attributes:
-        frequency: Undamped, in Hz.
-        damping_ratio: From 0 to below 1.
+        frequency: Undamped frequency, in Hz.
+        damping_ratio: Damping ratio, from 0 to below 1.
     """
 
     frequency: float
     damping_ratio: float
 
     def amplitude(self, times: FloatArray, signal: FloatArray, after: float) -> float:
-        """Return how much of this vibration is in a signal, at a time from which on the mode rings freely.
+        """Return the amplitude of this mode in a signal at the start of its free vibration.
 
-        It is fitted from there to the signal's end, with a constant beside it.
+        The mode and a constant are fitted to the signal from this time to the end.
 
         Args:
-            times: Ascending, shape (T,), in s.
-            signal: Shape (T,).
-            after: That time, in s.
+            times: Times of the samples, ascending, shape (T,), in s.
+            signal: Samples of the signal, shape (T,).
+            after: Start of the free vibration, in s.
         """
         on, omega = times >= after - 1e-9, 2.0 * np.pi * self.frequency
         since = times[on] - after
@@ -38,14 +38,14 @@ class Mode(NamedTuple):
 
 
 def find_modes(M: FloatArray, D: FloatArray, K: FloatArray) -> list[Mode]:
-    r"""Return the vibrations of a system by frequency; what creeps back without ringing is none.
+    r"""Return the vibration modes of a system in order of frequency; overdamped motions are left out.
 
     .. math:: M \ddot x + D \dot x + K x = 0, \qquad s = -\zeta \omega \pm j \omega \sqrt{1 - \zeta^2}
 
     Args:
-        M: Inertia, shape (n, n), positive definite.
-        D: Damping, likewise.
-        K: Stiffness, likewise.
+        M: Mass matrix, shape (n, n), positive definite.
+        D: Damping matrix, shape (n, n).
+        K: Stiffness matrix, shape (n, n).
     """
     roots = _roots(M, D, K)
     rates = np.abs(roots)
@@ -56,7 +56,7 @@ def find_modes(M: FloatArray, D: FloatArray, K: FloatArray) -> list[Mode]:
 
 
 def largest_rate(M: FloatArray, D: FloatArray, K: FloatArray) -> float:
-    """Return the largest magnitude of s of such a system, in 1/s; K and D may be singular."""
+    """Return the largest magnitude of s in find_modes, in 1/s; K and D can be singular."""
     return float(np.abs(_roots(M, D, K)).max())
 
 

@@ -8,18 +8,18 @@ from runner.schema.values import MountConfig
 
 
 def mount(macro: str, mini: str, prefix: str, place: MountConfig) -> tuple[str, str]:
-    """Return the URDF of an arm that carries another, and the name of the rider's root link in it.
+    """Return the URDF of an arm with another arm mounted on it, and the name of the mounted arm's root link.
 
-    The rider's links and joints take the prefix; the carrier's keep their names.
+    The links and joints of the mounted arm get a prefix; the names of the base arm do not change.
 
     Args:
-        macro: URDF text of the carrying arm, or of a chain made by this function.
-        mini: URDF text of the arm that is mounted.
-        prefix: What the rider's names start with, its stage's name and an underscore.
-        place: Where it is mounted.
+        macro: URDF of the base arm, or of a chain returned by this function.
+        mini: URDF of the mounted arm.
+        prefix: Prefix of the mounted arm's names: the name of its stage and an underscore.
+        place: Frame and pose of the mount.
 
     Raises:
-        ConfigError: if the frame does not exist, or a name would stand twice.
+        ConfigError: if the frame does not exist, or if a name would not be unique.
     """
     whole, mounted = ET.fromstring(macro), ET.fromstring(mini)  # noqa: S314 - resolves no external entities
     links = _names(whole, "link")

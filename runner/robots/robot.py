@@ -17,13 +17,13 @@ class Stage:
     """One arm of a robot.
 
     Attributes:
-        name: Its name.
-        model: The arm alone, on a fixed base.
-        urdf: Its URDF text.
-        joints: Its joints within the robot's.
-        home: Its joint positions at home, in rad.
-        base_frame: The robot's frame that is its base; None for the first stage, whose base is the robot's.
-        file: What its file says of its motion beside masses; None where it was made of none.
+        name: Name of the stage.
+        model: Model of this arm only, on a fixed base.
+        urdf: URDF of the arm.
+        joints: Slice of the arm's joints in those of the robot.
+        home: Joint positions at home, in rad.
+        base_frame: Frame of the robot that is the base of the arm; None for the first stage, on the robot's base.
+        file: Joint dynamics in the arm's file; None if the arm has no file.
     """
 
     name: str
@@ -36,19 +36,19 @@ class Stage:
 
     @property
     def home_offset(self) -> FloatArray:
-        """Tip of the arm at home in its own base frame, shape (3,), in m: r_0."""
+        """Tip position r_0 of the arm at home in its own base frame, shape (3,), in m."""
         return self.model.tip_position(self.home)
 
 
 @dataclass(frozen=True)
 class Robot:
-    """A chain of stages, from the base outwards.
+    """Chain of stages, from the base outwards.
 
     Attributes:
-        urdf: URDF text of the whole.
-        model: Rigid-body model of the whole; its tip is the last stage's.
+        urdf: URDF of the whole robot.
+        model: Rigid-body model of the whole robot; its tip is that of the last stage.
         stages: The arms.
-        flange: Frame on which a tool and a force/torque sensor are fixed; the tip itself where there is no tool.
+        flange: Frame on which a tool and a force/torque sensor are fixed; the tip itself without a tool.
     """
 
     urdf: str
@@ -72,16 +72,16 @@ class Robot:
         return {stage.name: stage.model.joint_names for stage in self.stages}
 
     def reach(self) -> float:
-        """Largest distance of the tip from the first joint that the link lengths admit, in m."""
+        """Return the largest possible distance of the tip from the first joint, in m; see RobotModel.reach."""
         return self.model.reach
 
 
 def with_models(robot: Robot, change: Callable[[RobotModel, slice, bool], RobotModel]) -> Robot:
-    """Return a robot with every model changed, the whole's and each stage's alike.
+    """Return a robot with a change of its model and of the model of each stage.
 
     Args:
         robot: The robot.
-        change: Changes a model, given this, its joints within the robot's, and whether it bears the payload.
+        change: Function of a model, its joints in the robot, and whether it includes the payload; returns a new model.
     """
     last = robot.stages[-1]
     stages = tuple(replace(stage, model=change(stage.model, stage.joints, stage is last)) for stage in robot.stages)
@@ -90,21 +90,21 @@ def with_models(robot: Robot, change: Callable[[RobotModel, slice, bool], RobotM
 
 
 def with_armature(robot: Robot, armature: FloatArray) -> Robot:
-    """Return a robot with other armatures, shape (nq,), in kg m^2, in its models; its URDF's text stays.
+    """Return a robot with other armatures, shape (nq,), in kg m^2, in its models; the URDF does not change.
 
-    With those of springy motors it is the limit of flexible joints with stiff springs, M + diag(B).
+    With the motor inertias B of flexible joints, it is the limit for stiff springs, M + diag(B).
     """
     return with_models(robot, lambda model, joints, _: model.with_armature(armature[joints]))
 
 
 class StageBase:
-    """Where the base of a riding stage is, and how it moves, from the joints below it.
+    """Pose and velocity of the base of a mounted stage, from the joints of the stages below it.
 
     Args:
         robot: The robot.
-        stage: Index of the riding stage, 1 or more.
-        ignore_base_rotation: True if the base keeps its orientation of home (the thesis' R = I), whatever the joints
-            below do. Only its origin moves then.
+        stage: Index of the mounted stage, 1 or more.
+        ignore_base_rotation: True if the base keeps its orientation at home (the thesis' R = I). Then the joints below
+            only move its origin.
     """
 
     def __init__(self, robot: Robot, stage: int, ignore_base_rotation: bool) -> None:
@@ -114,16 +114,16 @@ class StageBase:
         self._zero = np.zeros(robot.model.nq)
         placement = self._data.oMf[self._frame]
         self.position: FloatArray = placement.translation
-        """Origin of the base in the robot's base frame, shape (3,), in m; renewed by `update`."""
+        """Origin of the base in the robot's base frame, shape (3,), in m; changed by `update`."""
         self.rotation: FloatArray = placement.rotation
-        """Rotation from the stage's base frame into the robot's, shape (3, 3); renewed by `update`."""
+        """Rotation from the stage's base frame to the robot's, shape (3, 3); changed by `update`."""
         self._ignore_base_rotation = ignore_base_rotation
         if ignore_base_rotation:
             pin.framesForwardKinematics(self._model, self._data, robot.home)
             self.rotation = placement.rotation.copy()
 
     def update(self, q: FloatArray, dq: FloatArray) -> None:
-        """Take the robot's joint positions and velocities, shapes (nq,)."""
+        """Update the base from the joint positions and velocities of the robot, shapes (nq,)."""
         pin.forwardKinematics(self._model, self._data, q, dq, self._zero)
         pin.updateFramePlacement(self._model, self._data, self._frame)
 
@@ -136,12 +136,12 @@ class StageBase:
 def end_points(robot: Robot, q: FloatArray, ignore_base_rotation: bool = False) -> FloatArray:
     """Return the end point of every stage for rows of joint positions.
 
-    The end point of a stage that carries another is the origin of that one's base; the last one's is the tip.
+    The end point of a stage is the base origin of the stage mounted on it; that of the last stage is the tip.
 
     Args:
         robot: The robot.
         q: Joint positions, shape (T, nq), in rad.
-        ignore_base_rotation: Whether riding stages keep the orientation of home (the thesis' R = I).
+        ignore_base_rotation: True if the bases of mounted stages keep their orientation at home (the thesis' R = I).
 
     Returns:
         Positions in the robot's base frame, shape (stages, T, 3), in m.
@@ -176,15 +176,15 @@ def _frame_positions(model: RobotModel, q: Sequence[FloatArray] | FloatArray, fr
 
 
 def by_joint(key: str, value: TorquePerStage | OptionalPerStage, stages: Mapping[str, Sequence[str]]) -> FloatArray:
-    """Return a key's value of each joint of a robot, shape (nq,); infinite for null.
+    """Return the value of a config key for each joint of a robot, shape (nq,); infinite for null.
 
     Args:
-        key: The key.
-        value: Its value.
+        key: The config key.
+        value: Value of the key.
         stages: Joint names of each stage.
 
     Raises:
-        ConfigError: for values that do not fit the robot's stages and joints.
+        ConfigError: if the values do not match the stages and joints of the robot.
     """
     values: list[float | None] = []
     given = [None] * len(stages) if value is None else by_stage(key, value, list(stages))

@@ -7,24 +7,24 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 
-_POSTURES = 20  # random ones, which together show every direction
-_NONE = 1e-9  # of the largest singular value: a direction in which nothing moves
+_POSTURES = 20  # random configurations, which together span every direction
+_NONE = 1e-9  # of the largest singular value, for a direction without motion
 
 
 @lru_cache(maxsize=16)
 def task_basis(model: RobotModel, pose: bool) -> FloatArray:
-    """Return the directions, fixed in the base frame, in which joints can move an arm's tip from any of its postures.
+    """Return the directions in the base frame in which the joints can move the tip of an arm in any configuration.
 
-    A spatial arm has all three, and the answer is the identity. The tip of an arm whose axes are parallel stays in a
-    plane, and a task can ask for two; that of a SCARA turns about one axis alone, so that its pose has four.
+    For a spatial arm, the result is the identity. The tip of an arm with parallel axes stays in a plane, so a task has
+    two directions. The tip of a SCARA rotates about one axis only, so its pose has four directions.
 
     Args:
         model: The arm.
-        pose: Whether the tip is to be turned, too.
+        pose: True to include rotations of the tip.
 
     Returns:
-        Unit directions, shape (k, 3): of the tip's velocity; for a pose, shape (k, 6), with those of its angular
-        velocity below. A task's Jacobian is their product with the tip's.
+        Unit directions of the tip velocity, shape (k, 3); for a pose, shape (k, 6), followed by those of the angular
+        velocity. The Jacobian of a task is their product with the Jacobian of the tip.
     """
     lower, upper = model.usual_range
     postures = np.random.default_rng(0).uniform(lower, upper, (_POSTURES, model.nq))
@@ -32,7 +32,7 @@ def task_basis(model: RobotModel, pose: bool) -> FloatArray:
     linear = _span(columns[:3])
     directions = np.array(linear)
     if pose:
-        from scipy.linalg import block_diag  # for few configs
+        from scipy.linalg import block_diag  # few configs need it
 
         directions = block_diag(linear, _span(columns[3:]))
     directions.flags.writeable = False
@@ -40,7 +40,7 @@ def task_basis(model: RobotModel, pose: bool) -> FloatArray:
 
 
 def distance_beside(model: RobotModel, points: FloatArray) -> FloatArray:
-    """Return how far points, shape (N, 3), lie beside the plane or line that holds the tip, shape (N,), in m."""
+    """Return the distance of points, shape (N, 3), from the plane or line of the tip, shape (N,), in m."""
     directions = task_basis(model, pose=False)
     if len(directions) == 3:
         return np.zeros(len(points))
@@ -49,7 +49,7 @@ def distance_beside(model: RobotModel, points: FloatArray) -> FloatArray:
 
 
 def _span(vectors: FloatArray) -> FloatArray:
-    """Return unit vectors that span the columns of a matrix, shape (3, N) to (k, 3); along the axes where these do."""
+    """Return unit vectors that span the columns of a matrix, shape (3, N) to (k, 3); along the axes if possible."""
     left, sizes, _ = np.linalg.svd(vectors, full_matrices=False)
     basis = left[:, sizes > max(_NONE * sizes[0], 1e-12)]
     axes = np.eye(3)[np.linalg.norm(basis, axis=1) > 1e-6]
@@ -57,24 +57,24 @@ def _span(vectors: FloatArray) -> FloatArray:
 
 
 def tip_mobility(model: RobotModel, q: FloatArray, first: int = 0) -> FloatArray:
-    r"""Return how the tip yields to a force when joints from one on move, shape (3, 3), in 1/kg.
+    r"""Return the mobility of the tip when the joints from `first` on move, shape (3, 3), in 1/kg.
 
     .. math:: \Lambda^{-1} = J M^{-1} J^T
 
-    by the columns of the tip's J, and rows and columns of M, of the joints that move: M of a chain's outer joints is
-    that of these arms on a base at rest. It is along the robot's base axes, whatever way their base is turned, so that
-    mobilities of several stages may be compared: each stage more yields more (Khatib, International Journal of Robotics
-    Research 14(1), 1995), the difference to the next one is positive semi-definite.
+    J has the columns, and M the rows and columns, of the moving joints; this block of M is the mass matrix of the outer
+    stages on a base at rest. The mobility is along the base axes of the robot, so mobilities of several stages can be
+    compared. Each additional stage increases it by a positive semi-definite matrix (Khatib, International Journal of
+    Robotics Research 14(1), 1995).
 
     Args:
         model: The whole arm.
-        q: Its joint positions, shape (nq,), in rad.
-        first: The first joint that moves, such as that of a stage.
+        q: Joint positions, shape (nq,), in rad.
+        first: Index of the first moving joint, such as that of a stage.
     """
     J, M = model.tip_jacobian(q)[:3, first:], model.mass_matrix(q)[first:, first:]
     return np.asarray(J @ np.linalg.solve(M, J.T))
 
 
 def mass_along(mobility: FloatArray, direction: FloatArray) -> float:
-    """Return the mass that a tip has along a unit vector, shape (3,), in kg: 1 / (n^T Lambda^-1 n)."""
+    """Return the effective mass of a tip along a unit vector n, shape (3,), in kg: 1 / (n^T Lambda^-1 n)."""
     return 1.0 / float(direction @ mobility @ direction)

@@ -11,19 +11,19 @@ from runner.robots.inertials import impossible_inertia
 from runner.schema.values import ToolConfig
 
 TOOL, TOOL_TIP, TOOL_MOUNT = "tool", "tool_tip", "tool_mount"
-"""Names of the tool's link, of the massless one at its tip, the tool centre point, and of the joint to the flange."""
+"""Names of the tool's link, of the massless link at the tool centre point, and of the joint to the flange."""
 
 
 def mount_tool(urdf: str, flange: str, tool: ToolConfig) -> str:
-    """Return a URDF's text with a tool fixed on a link.
+    """Return a URDF with a tool fixed on a link.
 
     Args:
-        urdf: The arm's URDF text.
-        flange: Name of the link that bears the tool.
-        tool: The tool.
+        urdf: URDF of the arm.
+        flange: Name of the link on which the tool is fixed.
+        tool: Config of the tool.
 
     Raises:
-        ConfigError: if there is no such link, names clash, or no body has the tool's inertia.
+        ConfigError: if the link does not exist, if names clash, or if the tool's inertia is impossible.
     """
     robot = ET.fromstring(urdf)  # noqa: S314 - our own text, checked when it was read
     links = [link.get("name", "") for link in robot.iter("link")]
@@ -60,7 +60,7 @@ def mount_tool(urdf: str, flange: str, tool: ToolConfig) -> str:
 
 
 def find_tool(model: "pin.Model", flange: int) -> "pin.Inertia":
-    """Return the inertia of the tool on a flange, in its frame; zero where there is none."""
+    """Return the inertia of the tool on a flange, in the flange's frame; zero without a tool."""
     if not model.existFrame(TOOL_MOUNT):
         return pin.Inertia.Zero()
     mount = model.frames[model.getFrameId(TOOL_MOUNT)]  # Pinocchio keeps a fixed link's inertia at its joint
@@ -70,13 +70,13 @@ def find_tool(model: "pin.Model", flange: int) -> "pin.Inertia":
 def holding_wrench(
     model: "pin.Model", data: "pin.Data", flange: int, tool: "pin.Inertia", gravity: np.ndarray
 ) -> np.ndarray:
-    """Return what a flange puts on its tool to bear and to move it, by the tool's rigid-body balance.
+    """Return the wrench of a flange on its tool for weight and motion, from the tool's rigid-body balance.
 
     Args:
-        model: The arm.
-        data: Its data, after forward kinematics with velocities and accelerations, the flange's frame updated.
-        flange: The flange's frame.
-        tool: The tool's inertia in that frame.
+        model: Model of the arm.
+        data: Data of the model after forward kinematics up to accelerations, with an updated flange frame.
+        flange: Index of the flange's frame.
+        tool: Inertia of the tool in the flange's frame.
         gravity: Gravity in the base frame, shape (3,), in m/s^2.
 
     Returns:

@@ -19,16 +19,16 @@ _XACRO = "{http://www.ros.org/wiki/xacro}"
 
 @dataclass(frozen=True)
 class UrdfTree:
-    """A URDF whose links hang on one root.
+    """URDF whose links form a tree with one root.
 
     Attributes:
-        robot: The root element of its XML.
-        links: Its links by name.
-        joints: Its joints by name.
-        root: Name of the link that nothing bears.
-        ties: Joints that do not move freely, with what ties them, as in "mimics 'q1'".
-        home: Joint positions of the file's keyframe `home`, in rad or m; empty where it has none.
-        renamed: Joints with a new name because a link has theirs, in words.
+        robot: The root element of the XML.
+        links: Links by name.
+        joints: Joints by name.
+        root: Name of the link without a parent joint.
+        ties: Constrained joints with their constraints, as in "mimics 'q1'".
+        home: Joint positions of the file's keyframe `home`, in rad or m; empty without this keyframe.
+        renamed: Messages about joints that were renamed because a link has the same name.
     """
 
     robot: ET.Element
@@ -41,12 +41,12 @@ class UrdfTree:
 
     @property
     def bearers(self) -> dict[str, str]:
-        """Name of the joint that bears each link but the root."""
+        """Name of the parent joint of each link except the root."""
         return {end_of(joint, "child"): name for name, joint in self.joints.items()}
 
     @property
     def ends(self) -> list[str]:
-        """Links that bear nothing, in the file's order."""
+        """Links without child joints, in the order of the file."""
         bearing = {end_of(joint, "parent") for joint in self.joints.values()}
         return [name for name in self.links if name not in bearing]
 
@@ -60,21 +60,21 @@ class UrdfTree:
 
     @property
     def chain(self) -> list[str]:
-        """Joints that move on the way with most of them, in order: of a serial arm all that move."""
+        """Moving joints on the path with the most of them, in order; for a serial arm, all moving joints."""
         ways = [[name for name in self.way(end) if moves(self.joints[name])] for end in self.ends]
         return max(ways, key=len)
 
     def no_joint(self, name: str) -> str:
-        """Return in words why a name is none of a joint that moves."""
+        """Return a message about a name that is not that of a moving joint."""
         said = "it is held fixed" if name in self.joints else f"no such joint{nearest(name, self.chain)}"
         return f"{said}; joints: {', '.join(self.chain)}"
 
 
 def check_tip(tip: str, frames: Sequence[str]) -> None:
-    """Check that a tip is the name of one of an arm's frames: its links and joints.
+    """Check that a tip is the name of exactly one frame of an arm, a link or a joint.
 
     Raises:
-        ConfigError: if it is the name of none, or of several.
+        ConfigError: if no frame or several frames have this name.
     """
     if tip not in frames:
         raise ConfigError(f"robot.tip: no frame '{tip}'{nearest(tip, frames)}; frames: {', '.join(frames)}")
@@ -83,13 +83,13 @@ def check_tip(tip: str, frames: Sequence[str]) -> None:
 
 
 def end_of(joint: ET.Element, role: str) -> str:
-    """Return the link at an end of a joint; role is "parent" or "child"."""
+    """Return the name of the link at an end of a joint; role is "parent" or "child"."""
     element = joint.find(role)
     return "" if element is None else element.get("link", "")
 
 
 def moves(joint: ET.Element) -> bool:
-    """Tell whether a joint is of a kind that moves."""
+    """Return True if the type of a joint is not fixed."""
     return joint.get("type") != "fixed"
 
 
@@ -97,22 +97,22 @@ def read_tree(path: Path) -> UrdfTree:
     """Read a URDF file.
 
     Raises:
-        ConfigError: if it is no URDF, holds a document type or macros, more than any engine has room for, or its links
-            do not form one tree.
+        ConfigError: if the file is not a URDF, has a document type or macros, exceeds the limits of the engines, or if
+            its links do not form one tree.
     """
     return make_tree(parse_xml(path), path)
 
 
 def tree_of(urdf: str, path: Path) -> UrdfTree:
-    """Return the tree of a URDF's text that was made from a checked file; see make_tree."""
+    """Return the tree of a URDF string that was made from a checked file; see make_tree."""
     return make_tree(ET.fromstring(urdf), path)  # noqa: S314 - our own text
 
 
 def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
-    """Return the tree of links of a URDF's root element; see read_tree for the errors, which name the file.
+    """Return the tree of links of a URDF's root element; see read_tree for the errors, whose messages contain the file.
 
-    In place, a robot without a name gets that of its file, and a joint with the name of a link another one, as engines
-    look both up by name.
+    The element is changed in place: a robot without a name gets that of its file, and a joint with the name of a link
+    is renamed, because engines look up both by name.
     """
     links = {link.get("name", ""): link for link in robot.findall("link")}
     if robot.tag != "robot" or not links:
@@ -146,7 +146,7 @@ def make_tree(robot: ET.Element, path: Path) -> UrdfTree:
 
 
 class _Builder(ET.TreeBuilder):
-    """Refuses a document type at its first word, as entities can grow without end, and too many elements."""
+    """Builder that rejects document types, because entities can expand without limit, and too many elements."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -167,10 +167,10 @@ def parse_xml(path: Path, key: str = "robot.urdf") -> ET.Element:
 
     Args:
         path: The file.
-        key: The key that names it, for messages.
+        key: Config key of the file, for messages.
 
     Raises:
-        ConfigError: if it cannot be read, or is no such file.
+        ConfigError: if the file cannot be read, is not XML or exceeds the limits.
     """
     try:
         text = read_text(path, XML)
@@ -188,13 +188,13 @@ def is_mjcf(path: Path) -> bool:
     """Return True if the root element of an XML file is that of an MJCF.
 
     Raises:
-        ConfigError: if it is no XML, or cannot be read.
+        ConfigError: if the file is not XML or cannot be read.
     """
     return parse_xml(path).tag == "mujoco"
 
 
 def _rename_joints(robot: ET.Element, links: Collection[str]) -> tuple[str, ...]:
-    """Give each joint that has the name of a link another one; return what was renamed, in words."""
+    """Rename each joint that has the name of a link; return messages about the changes."""
     joints, told = robot.findall("joint"), []
     taken = {*links, *(joint.get("name", "") for joint in joints)}
     for joint in joints:
@@ -211,7 +211,7 @@ def _rename_joints(robot: ET.Element, links: Collection[str]) -> tuple[str, ...]
 
 
 def _excess(robot: ET.Element) -> list[str]:
-    """Return what engines have no room for: PyBullet writes names that are too long over other memory."""
+    """Return messages about exceeded limits of the engines; PyBullet overwrites memory if a name is too long."""
     named = (robot, *robot.findall("link"), *robot.findall("joint"))
     if excess := ARM_PARTS.excess(len(named) - 1):
         return [f"it {excess}"]
@@ -246,7 +246,7 @@ def _loose_ends(links: dict[str, ET.Element], joints: dict[str, ET.Element]) -> 
 
 
 def _circling(tree: UrdfTree) -> Sequence[str]:
-    """Return the links that do not hang on the root."""
+    """Return the links that are not connected to the root."""
     hanging, grown = {tree.root}, True
     while grown:
         more = {end_of(j, "child") for j in tree.joints.values() if end_of(j, "parent") in hanging} - hanging
@@ -256,12 +256,12 @@ def _circling(tree: UrdfTree) -> Sequence[str]:
 
 
 NO_LIMIT = 1e6
-"""Size, in SI units, from which a limit says that there is none: URDF demands limits of joints."""
+"""Smallest absolute value, in SI units, that means no limit, because URDF requires limits of joints."""
 TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def number(element: ET.Element | None, key: str) -> float:
-    """Return what an attribute of an element says, or NaN where it is missing or no number."""
+    """Return the number in an attribute of an element, or NaN if it is missing or not a number."""
     try:
         return math.nan if element is None else float(element.get(key, "nan"))
     except ValueError:
@@ -269,13 +269,13 @@ def number(element: ET.Element | None, key: str) -> float:
 
 
 def limit_of(joint: ET.Element, key: str) -> float:
-    """Return a limit of a joint that moves, in SI units: infinite if the file sets none, 0 if it omits the value."""
+    """Return a limit of a moving joint, in SI units: infinite if it means no limit, 0 if it is missing."""
     value = number(joint.find("limit"), key)
     return 0.0 if math.isnan(value) else value if abs(value) < NO_LIMIT else math.copysign(math.inf, value)
 
 
 def wrong_places(element: ET.Element) -> Iterator[tuple[str, str]]:
-    """Yield what is wrong with the places, turns and axes of a link or joint, and what to do about it."""
+    """Yield messages about invalid positions, rotations and axes of a link or joint, each with a remedy."""
     for part in element.iter():
         for key in ("xyz", "rpy") if part.tag in ("origin", "axis") else ():
             words = part.get(key)
@@ -289,7 +289,7 @@ def wrong_places(element: ET.Element) -> Iterator[tuple[str, str]]:
 
 
 def absurd_inertial(link: ET.Element) -> Iterator[str]:
-    """Yield masses and moments of inertia of a link that no body has; those that are no numbers are told elsewhere."""
+    """Yield messages about absurd masses and inertias of a link; values that are not numbers are checked elsewhere."""
     mass = number(link.find("inertial/mass"), "value")
     if LARGEST < mass < math.inf or 0.0 < mass < SMALLEST:
         yield f"mass {mass:g} kg; allowed: 0, or {SMALLEST:g} to {LARGEST:g}"
@@ -300,7 +300,7 @@ def absurd_inertial(link: ET.Element) -> Iterator[str]:
 
 
 def wrong_limits(joint: ET.Element) -> Iterator[str]:
-    """Yield what is wrong with the limits of a joint that moves; those that are missing are told elsewhere."""
+    """Yield messages about invalid limits of a moving joint; missing limits are checked elsewhere."""
     limit = joint.find("limit")
     if limit is None or not moves(joint):
         return

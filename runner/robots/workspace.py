@@ -7,20 +7,20 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 
-_REFINED = 5  # samples that are followed to the nearest extremum
+_REFINED = 5  # samples from which the nearest extremum is searched
 
 
 @dataclass(frozen=True)
 class Workspace:
-    """What a workspace analysis found.
+    """Results of a workspace analysis.
 
     Attributes:
         tips: Sampled tip positions in the base frame, shape (N, 3), in m.
         manipulability: Manipulability at each sample, shape (N,), in m^3.
-        shoulder: Origin of joint 1 in the base frame, from which distances count, shape (3,), in m.
+        shoulder: Origin of joint 1 in the base frame, from which distances are measured, shape (3,), in m.
         outer: Largest distance of the tip from the shoulder, in m.
         inner: Smallest distance of the tip from the shoulder, in m.
-        reach: Sum of the link lengths, the analytic outer radius of an arm that can be stretched out, in m.
+        reach: Sum of the link lengths, which is the outer radius of an arm that can be stretched out, in m.
     """
 
     tips: FloatArray
@@ -34,8 +34,8 @@ class Workspace:
 def manipulability(jacobians: FloatArray) -> FloatArray:
     """Return the product of the singular values of linear Jacobians, shape (N, 3, nq) to (N,).
 
-    It is |det J_v| for three joints and sqrt(det J_v J_v^T) in general: the volume, in m^3, that the tip's velocity
-    spans per unit of joint velocity, and zero at a singular posture.
+    It is |det J_v| for three joints and sqrt(det J_v J_v^T) in general: the volume, in m^3, that the tip velocity spans
+    per unit of joint velocity. It is zero in a singular configuration.
     """
     product: FloatArray = np.prod(np.linalg.svd(jacobians, compute_uv=False), axis=-1)
     return product
@@ -45,19 +45,19 @@ def analyse(model: RobotModel, samples: int, generator: np.random.Generator) -> 
     """Sample the workspace of an arm and find its largest and smallest radius.
 
     The thesis gives a sphere of radius 2 m (Macro, figure 2.3) and 0.2 m (Mini, figure 2.4), which is the outer
-    radius. It leaves out where the tip cannot move in every direction. For both of its arms
+    radius. It does not mention the positions in which the tip cannot move in every direction. For both of its arms
 
         det J_v = -L^3 c3 (c2 - s23),
 
-    which vanishes on the sphere's surface (arm stretched, q3 = -90 deg), at the shoulder (folded, q3 = 90 deg) and,
-    throughout the sphere, on the whole axis of joint 1 (c2 = s23). Its magnitude depends on the tip position alone,
-    L r rho sqrt(1 - (rho / 2L)^2) with r the distance from the axis and rho that from the shoulder, so that both
-    elbow branches share one picture.
+    which vanishes on the surface of the sphere (arm stretched, q3 = -90 deg), at the shoulder (folded, q3 = 90 deg) and
+    on the whole axis of joint 1 inside the sphere (c2 = s23). Its magnitude depends on the tip position only: it is
+    L r rho sqrt(1 - (rho / 2L)^2), with the distances r from the axis and rho from the shoulder. So one picture is
+    valid for both elbow branches.
 
     Args:
         model: The robot.
         samples: Number of random joint positions, uniform within the joint limits and one turn.
-        generator: Source of the samples.
+        generator: Random generator.
     """
     lower, upper = model.usual_range
     q = generator.uniform(lower, upper, (samples, model.nq))
@@ -76,7 +76,7 @@ def analyse(model: RobotModel, samples: int, generator: np.random.Generator) -> 
 
 def _extreme_distance(model: RobotModel, start: FloatArray, sign: float) -> float:
     """Return the distance of the tip from the shoulder at the nearest minimum (sign 1) or maximum (sign -1)."""
-    from scipy.optimize import minimize  # takes longer to import than most commands need
+    from scipy.optimize import minimize  # the import takes longer than most commands
 
     def cost(q: FloatArray) -> tuple[float, FloatArray]:
         arm = model.tip_position(q) - model.shoulder

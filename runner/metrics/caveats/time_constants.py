@@ -54,7 +54,7 @@ def slowest_part(run: RunConfig, q_start: FloatArray | None = None) -> TimeConst
         run: The checked config.
         q_start: Joint positions at the start, shape (nq,), in rad; None is the home configuration.
     """
-    ours = CONTROLLERS.is_ours(run.controller.kind)  # a user-supplied law may have a built-in config
+    ours = CONTROLLERS.is_ours(run.controller.kind)  # a user-supplied law can have a built-in config
     parts = dict(_parts(run.controller, run, run.arm.home if q_start is None else q_start) if ours else {})
     bandwidths = run.disturbance_observer.by_loop(run.loops)
     if bandwidths:
