@@ -65,7 +65,7 @@ class UrdfTree:
         return max(ways, key=len)
 
     def no_joint(self, name: str) -> str:
-        """Return a message about a name that is not that of a moving joint."""
+        """Return a message about a name that no moving joint has."""
         said = "it is held fixed" if name in self.joints else f"no such joint{nearest(name, self.chain)}"
         return f"{said}; joints: {', '.join(self.chain)}"
 

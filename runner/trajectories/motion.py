@@ -11,12 +11,12 @@ from runner.trajectories.nearest import distance_to_segment
 from runner.trajectories.trajectory import TrackedMotion
 
 Easing = Literal["quintic", "none"]
-"""Time scaling of a closed curve, as a config chooses it."""
+"""Time scaling of a closed curve in a config."""
 TimeScaling = Literal["quintic", "cosine", "none"]
 
 
 class Path(Protocol):
-    """A curve c(u) in R^n, for u from 0 to 1."""
+    """Curve c(u) in R^n, for u from 0 to 1."""
 
     @property
     def start(self) -> FloatArray:
@@ -39,13 +39,13 @@ class Path(Protocol):
 
 @dataclass(frozen=True)
 class Segment:
-    """A straight segment in R^n; see Path."""
+    """Straight segment in R^n; see Path."""
 
     start: FloatArray
     end: FloatArray
 
     def derivatives(self, u: FloatArray) -> FloatArray:
-        """Return point and derivatives; see Path."""
+        """Return the point and its derivatives; see Path."""
         D = self.end - self.start
         found = np.zeros((len(u), 3, len(D)))
         found[:, 0], found[:, 1] = np.outer(u, D) + self.start, D
@@ -57,7 +57,7 @@ class Segment:
 
 
 class ClosedCurve:
-    """A curve that ends at its start; see Path. It may be continued beyond u = 1."""
+    """Curve that ends at its start, and on which u can exceed 1; see Path."""
 
     start: FloatArray
 
@@ -129,6 +129,6 @@ def quintic_motion(start: FloatArray, goal: FloatArray, duration: float) -> Path
 
     .. math:: x(t) = x_0 + D (10 u^3 - 15 u^4 + 6 u^5)
 
-    The peak speed is 1.875 |D| / t_f, at half time; of a motion of joints, that of each joint.
+    The peak speed is 1.875 |D| / t_f, at half time. In a joint motion, this is valid for each joint with its own D.
     """
     return PathMotion(Segment(start, goal), duration, "quintic")

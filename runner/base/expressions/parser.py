@@ -2,7 +2,7 @@
 
 The evaluator's grammar reads the arithmetic. The tree is for drawing and comparison.
 
-A power is written `^` or `**`, and a name may end in primes (`s2'`). The evaluation defines the meaning of a primed
+A power is written `^` or `**`, and a name can end in primes (`s2'`). The evaluation defines the meaning of a primed
 name. Every product needs its sign: the parser rejects `2 s1` and `c1(q2)`, because a lost sign and a lost bracket look
 alike.
 """
@@ -23,7 +23,7 @@ FUNCTIONS = {
     **dict.fromkeys(("sin", "cos", "tan", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sqrt", "abs"), 1),
     "atan2": 2,
 }
-"""The functions that an expression may call, with their number of arguments."""
+"""Functions that an expression can call, with their numbers of arguments."""
 
 PRIME = "\N{MODIFIER LETTER PRIME}"
 """Prime character that Python accepts as a letter."""
