@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from runner.base.quantities import above_rounding, number, quantity
@@ -170,6 +170,11 @@ def finding(title: str, text: str, *holds: Condition) -> Finding:
         return Finding("finding", title, text, holds, title, text)
     reasons = " ".join(f"Not so: {condition.text} ({condition.measured})." for condition in failed)
     return Finding("warning", f"No longer holds: {title}", f"{reasons} It was written: {text}", holds, title, text)
+
+
+def check_caption(title: str, caption: str, conditions: Sequence[Condition]) -> list[Finding]:
+    """Return a finding if a condition for the caption of a figure fails; the caption stands in a chapter."""
+    return [] if all(each.holds for each in conditions) else [finding(title, caption, *conditions)]
 
 
 def findings(document: Document) -> Iterator[tuple[str, Finding]]:

@@ -19,7 +19,7 @@ from runner.store import Run
 from runner.studies.thesis.compared import Compared, parting, step_of_both
 from runner.studies.thesis.equations.truths.thesis_printed import compare
 from runner.study.job import PRESETS
-from runner.study.measured import Condition, Measured, finding
+from runner.study.measured import Condition, Measured, check_caption
 from runner.study.prose.patterns import found
 from runner.study.run_values import cell, clock, measured, median, values
 
@@ -143,8 +143,7 @@ def reproduced(
     text = " ".join(filter(None, [step_of_both(own, metrics), *parting(own, told)]))
     told_of = f"{caption}; curves of repetition 0, numbers are medians (smallest to largest). {figure.scales()}".strip()
     curves = Curves(told_of, panels, 3, origin(first, f"figure {number}"))
-    wrong = [] if all(each.holds for each in conditions) else [finding(f"Figure {number}", caption, *conditions)]
-    return [curves, Text(text), *wrong]
+    return [curves, Text(text), *check_caption(f"Figure {number}", caption, conditions)]
 
 
 def _experiment(number: str) -> str:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from runner.controllers import Loop
+from runner.plants import Plant
 from runner.sensing import EncoderNoise, JointEncoders
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import ClosedLoop, simulate
@@ -17,7 +18,7 @@ from runner.simulation.sensors import make_encoders
 NOISY = ("noise.position=1e-3", "duration=0.5")
 
 
-class Integrator:
+class Integrator(Plant):
     """A plant of three unit masses, moved by semi-implicit Euler; it leaves the domain where a test tells it to."""
 
     def __init__(self, period, jump=None):

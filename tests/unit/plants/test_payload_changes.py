@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from runner.plants import Plant
 from runner.plants.payload_changes import PayloadChanges
 
 
-class Even:
+class Even(Plant):
     """A joint that each tick accelerates by its torque over its payload."""
 
     def __init__(self, mass):
