@@ -14,11 +14,11 @@ from matplotlib.figure import Figure
 
 import runner
 from bench.robot_pictures import robots
-from runner.controllers.graph import ControlGraph, Edge, Node
-from runner.controllers.operational_space.operational_space_graph import operational_space_graph
 from runner.reporting.charts import palette
-from runner.reporting.charts.block_diagram import block_diagram
 from runner.reporting.charts.canvas import GREY, INK, drawing
+from runner.studies.thesis.diagrams.block_diagram import block_diagram
+from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node
+from runner.studies.thesis.diagrams.operational_space import operational_space_graph
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "pictures"
 CONTROLLERS = ["computed_torque", "passivity"]

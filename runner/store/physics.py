@@ -29,16 +29,16 @@ _TABLE = """
     config: arms calibration cross_checks desired_motion flexibility groups input_shaper joints parsing
         robot=config.robot run settings timing validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
-        disturbance_observer=controllers.disturbance_observer graph kinds=controllers.kinds notch=controllers.notch
+        disturbance_observer=controllers.disturbance_observer kinds=controllers.kinds notch=controllers.notch
         sampled_stability torque_filter torque_law
     controllers/force: admittance admittance_filter admittance_stability force_reading=controllers.force_reading
         force_stability hybrid_force impedance tip_force wrist
     controllers/joint_space: adaptive computed_torque iterative_learning joint_law
         joint_motion=controllers.joint_motion joint_pd joint_pid motor_pd passivity sliding_mode
     controllers/kinematic: differential_inverse_kinematics limited_motion resolved_rate
-    controllers/macro_mini: inertial_damping macro_mini macro_mini_graph stage_law stage_loops
-    controllers/operational_space: null_space operational_space operational_space_graph tip_task whole_body
-        whole_body_graph whole_body_posture
+    controllers/macro_mini: inertial_damping macro_mini stage_law stage_loops
+    controllers/operational_space: null_space operational_space tip_task whole_body
+        whole_body_posture
     environments: __init__=environments.__init__ environment=environments.environment external_wrench=interaction free
         hand link_forces=pushed_links push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary
@@ -49,7 +49,7 @@ _TABLE = """
         friction kinds=plants.kinds kinematic motors=sensing.motors mujoco mujoco_model payload_changes
         plant=plants.plant rk4 rk4_flexible_links servo
     plugins: features guard metric_units registry
-    robots: __init__=robots.__init__ cantilever chain denavit_hartenberg description
+    robots: __init__=robots.__init__ chain description
         inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses mjcf_urdf model
         modes mounting robot=robots.robot task_space tool_link tree workspace
     schema: values

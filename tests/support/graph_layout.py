@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.mathtext import MathTextParser
 
 from runner.reporting.charts import canvas
-from runner.reporting.charts.block_diagram import _box, _route, _text_width, block_diagram
+from runner.studies.thesis.diagrams.block_diagram import _box, _route, _text_width, block_diagram
 
 # The same few texts stand in all graphs; each is set once.
 MathTextParser._parse_cached = functools.cache(MathTextParser._parse_cached.__wrapped__)
-sys.modules["runner.reporting.charts.block_diagram"]._text_width = functools.cache(_text_width)
+sys.modules["runner.studies.thesis.diagrams.block_diagram"]._text_width = functools.cache(_text_width)
 
 
 def check_structure(graph):

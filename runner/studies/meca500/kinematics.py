@@ -14,10 +14,10 @@ from runner.base.expressions.parser import parse
 from runner.base.quantities import number
 from runner.reporting.document import Table
 from runner.reporting.figures import model_of
-from runner.robots.denavit_hartenberg import modified_frames
 from runner.robots.model import RobotModel
 from runner.studies.meca500.equations.truths.meca500 import TABLE
 from runner.studies.meca500.figures import Runs
+from runner.studies.meca500.modified_denavit_hartenberg import modified_frames
 from runner.study.measured import Measured
 
 _COUNT, _SAMPLES = 1000, 200

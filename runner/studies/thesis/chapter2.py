@@ -8,9 +8,9 @@ from runner.base.quantities import above_rounding, number
 from runner.reporting.charts.workspace import workspace_sphere
 from runner.reporting.document import Picture, Table
 from runner.reporting.figures import model_of, origin
-from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.robots.workspace import analyse
 from runner.store import Run
+from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
 
 _SAMPLES = 4000
 

@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
-from runner.controllers.operational_space.whole_body_graph import whole_body_graph
-from runner.reporting.charts.block_diagram import block_diagram
 from runner.reporting.charts.control_steps import control_steps
 from runner.reporting.document import Curves, Picture
 from runner.reporting.figures import macro_mini_targets, origin
 from runner.store import Run
+from runner.studies.thesis.diagrams.block_diagram import block_diagram
+from runner.studies.thesis.diagrams.macro_mini import macro_mini_graph
+from runner.studies.thesis.diagrams.whole_body import whole_body_graph
 from runner.studies.thesis.folding import singular_value
 from runner.study.job import PRESETS
 from runner.study.run_values import clock

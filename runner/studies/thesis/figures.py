@@ -7,16 +7,16 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding
-from runner.controllers.operational_space.operational_space_graph import operational_space_graph
-from runner.reporting.charts.block_diagram import block_diagram
-from runner.reporting.charts.frames import frame_assignment
 from runner.reporting.document import Block, Curves, Picture, Series, Table, Text
 from runner.reporting.figures import AXES, columns, joint_columns, model_of, origin
 from runner.reporting.published_claims import load_claims
 from runner.reporting.words import PRESET, in_words
-from runner.robots.denavit_hartenberg import denavit_hartenberg
 from runner.store import Run
 from runner.studies.thesis.compared import Compared, parting, step_of_both
+from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
+from runner.studies.thesis.diagrams.block_diagram import block_diagram
+from runner.studies.thesis.diagrams.frames import frame_assignment
+from runner.studies.thesis.diagrams.operational_space import operational_space_graph
 from runner.studies.thesis.equations.truths.thesis_printed import compare
 from runner.study.job import PRESETS
 from runner.study.measured import Condition, Measured, check_caption

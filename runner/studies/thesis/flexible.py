@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.reporting.document import Series
 from runner.reporting.figures import columns, joint_columns, model_of
-from runner.robots.cantilever import frequency_errors
 from runner.robots.modes import Mode
 from runner.store import Run
+from runner.studies.thesis.cantilever import frequency_errors
 from runner.studies.thesis.flexible_map import stable_and_not
 from runner.study.prose.plots import points
 from runner.study.prose.signals import moved, norm, vector

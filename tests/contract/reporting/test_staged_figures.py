@@ -8,13 +8,13 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch, Polygon
 
-from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
-from runner.controllers.operational_space.whole_body_graph import whole_body_graph
-from runner.reporting.charts.block_diagram import block_diagram
 from runner.reporting.charts.control_steps import control_steps, steps
-from runner.reporting.charts.frames import frame_assignment
 from runner.reporting.charts.stills import draw
 from runner.reporting.figures import macro_mini_targets
+from runner.studies.thesis.diagrams.block_diagram import block_diagram
+from runner.studies.thesis.diagrams.frames import frame_assignment
+from runner.studies.thesis.diagrams.macro_mini import macro_mini_graph
+from runner.studies.thesis.diagrams.whole_body import whole_body_graph
 
 SCHEDULES = [(schedule, beyond) for schedule in ("both", "turns") for beyond in ("hold", "stretch")]
 GRAPH = ("two_way", "minus_home", "full", "real", True, True, True, False, "turns")

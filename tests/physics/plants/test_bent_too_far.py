@@ -5,8 +5,8 @@ import pytest
 
 from runner.base.errors import SimulationError
 from runner.plants.flexible_links import FlexibleLinks
-from runner.robots.cantilever import clamped_arm
 from runner.robots.chain import Beam, cut
+from runner.studies.thesis.cantilever import clamped_arm
 
 TICK = 1e-3  # s, of two steps
 TORQUE = 3e3 * np.ones(1)  # N m

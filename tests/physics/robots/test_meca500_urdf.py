@@ -8,14 +8,14 @@ import pytest
 from scipy.optimize import minimize
 
 from runner.robots import RobotModel, find_urdf, read_urdf
-from runner.robots.denavit_hartenberg import (
+from runner.robots.description import with_payloads
+from runner.robots.inertials import Payload
+from runner.studies.meca500.equations.truths import meca500 as report
+from runner.studies.meca500.modified_denavit_hartenberg import (
     ModifiedRow,
     modified_frames,
     modified_transform,
 )
-from runner.robots.description import with_payloads
-from runner.robots.inertials import Payload
-from runner.studies.meca500.equations.truths import meca500 as report
 
 TABLE = [replace(row, a=row.a / 1000.0, d=row.d / 1000.0) for row in report.TABLE]  # in m
 

@@ -10,12 +10,12 @@ from support.physics import assert_order
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.plants import PLANTS
-from runner.robots.cantilever import cantilever_roots
 from runner.robots.chain import stiffen_robot
 from runner.robots.modes import Mode
 from runner.robots.robot import with_armature
 from runner.simulation.assembly import assemble
 from runner.store import simulated_part
+from runner.studies.thesis.cantilever import cantilever_roots
 from runner.trajectories.impulses import zero_vibration
 
 MACRO = ("robot=macro", "plant=rk4_flexible_links", "noise=none", "torque_limits=none")

@@ -25,7 +25,7 @@ from runner.audit.truth import (
     whole_and_elements,
 )
 from runner.base.arrays import FloatArray
-from runner.robots.denavit_hartenberg import ModifiedRow
+from runner.studies.meca500.modified_denavit_hartenberg import ModifiedRow
 
 JOINTS = 6
 _Matrices = Callable[[FloatArray], FloatArray]

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 from runner.audit.model_truths import by_model
 from runner.audit.truth import Elements, Symbols, Truth, Way, elements, product, rotation
 from runner.base.arrays import FloatArray
-from runner.robots.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames, transform
+from runner.studies.thesis.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames, transform
 from runner.studies.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm
 
 WAYS = ("Denavit-Hartenberg frames placed on the model's joint axes", "product of elementary turns and shifts")

@@ -7,7 +7,7 @@ from support.covers import SWITCH, covered, every_case
 from support.graph_layout import assert_loop_closed, check_structure, check_texts, check_ways
 
 from runner.controllers.operational_space.operational_space import OperationalSpace
-from runner.controllers.operational_space.operational_space_graph import operational_space_graph
+from runner.studies.thesis.diagrams.operational_space import operational_space_graph
 
 OPTIONS = dict.fromkeys(("gravity_compensation", "feedforward", "torque_limited", "goal"), SWITCH)
 

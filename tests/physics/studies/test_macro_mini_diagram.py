@@ -9,8 +9,8 @@ from support.covers import every_case, name_of, pairwise
 from support.graph_layout import assert_loop_closed, check_structure, check_texts, check_ways
 
 from runner.controllers import CONTROLLERS
-from runner.controllers.macro_mini.macro_mini_graph import macro_mini_graph
 from runner.robots.robot import StageBase
+from runner.studies.thesis.diagrams.macro_mini import macro_mini_graph
 
 CHOICES = {
     "coupling": ("independent", "one_way", "two_way", "mini_held", "independent_base"),

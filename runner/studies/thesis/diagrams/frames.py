@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 
 from runner.base.arrays import FloatArray
 from runner.reporting.charts.canvas import GREY, INK, PALE, Camera, arrow, circle, drawing, scene, triad, write
-from runner.robots.denavit_hartenberg import denavit_hartenberg, frames
 from runner.robots.model import RobotModel
+from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg, frames
 
 _ASIDE = (2.5, 0.0)  # of frames at one place: from it, sideways and upwards, in lengths of an axis
 _APART = 2.4  # of frames at one place: from each other

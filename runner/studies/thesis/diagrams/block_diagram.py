@@ -11,9 +11,9 @@ from matplotlib.patches import Circle, FancyBboxPatch
 from matplotlib.textpath import TextPath
 
 from runner.base.arrays import FloatArray
-from runner.controllers.graph import ControlGraph, Edge, Node, Side
 from runner.reporting.charts import palette
 from runner.reporting.charts.canvas import INK, arrow, drawing, scene, write
+from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node, Side
 
 # Measures in inches, at the size on paper.
 _COLUMN, _ROW = 0.64, 0.56

@@ -1,10 +1,6 @@
-"""Denavit-Hartenberg parameters of a serial arm, standard and modified.
+"""Standard (distal) Denavit-Hartenberg parameters of a serial arm, from its joint axes (thesis section 3.1)."""
 
-The standard (distal) convention is from the thesis (section 3.1, eq. 3.2). Its parameters follow from the joint axes of
-an arm. The modified (proximal) convention is Craig's, which the Meca500 report uses.
-"""
-
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
@@ -50,47 +46,8 @@ def transform(row: DenavitHartenbergRow, q: float) -> FloatArray:
 
 def frames(rows: Sequence[DenavitHartenbergRow], q: FloatArray) -> FloatArray:
     """Return frames 0 to n in the base frame at joint positions q, shape (n + 1, 4, 4) (thesis eq. 3.1)."""
-    return _chained(transform(row, float(q_i)) for row, q_i in zip(rows, q, strict=True))
-
-
-def _chained(transforms: Iterable[FloatArray]) -> FloatArray:
+    transforms = (transform(row, float(q_i)) for row, q_i in zip(rows, q, strict=True))
     return np.array(list(accumulate(transforms, np.matmul, initial=np.eye(4))))
-
-
-@dataclass(frozen=True)
-class ModifiedRow:
-    """Row of a modified (proximal, Craig's) D-H table: joint i turns about z_i, and frame i is on the axis of joint i.
-
-    Attributes:
-        alpha: Angle from z_{i-1} to z_i about x_{i-1}, in rad.
-        a: Distance from z_{i-1} to z_i along x_{i-1}, in m.
-        theta: Angle from x_{i-1} to x_i about z_i at q_i = 0, in rad; the joint position is added to it.
-        d: Distance from x_{i-1} to x_i along z_i, in m.
-    """
-
-    alpha: float
-    a: float
-    theta: float
-    d: float
-
-
-def modified_transform(row: ModifiedRow, q: float) -> FloatArray:
-    """Return Rx(alpha) Tx(a) Rz(theta + q) Tz(d), from frame i to frame i-1, at q in rad, shape (4, 4)."""
-    c, s = np.cos(row.theta + q), np.sin(row.theta + q)
-    ca, sa = np.cos(row.alpha), np.sin(row.alpha)
-    return np.array(
-        [
-            [c, -s, 0.0, row.a],
-            [s * ca, c * ca, -sa, -sa * row.d],
-            [s * sa, c * sa, ca, ca * row.d],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
-
-
-def modified_frames(rows: Sequence[ModifiedRow], q: FloatArray) -> FloatArray:
-    """Return frames 0 to n in frame 0 at joint positions q, shape (n + 1, 4, 4)."""
-    return _chained(modified_transform(row, float(q_i)) for row, q_i in zip(rows, q, strict=True))
 
 
 def denavit_hartenberg(model: RobotModel) -> tuple[DenavitHartenbergRow, ...]:

@@ -6,7 +6,7 @@ from support.covers import SWITCH, covered, every_case
 from support.graph_layout import check_structure, check_texts, check_ways
 
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyConfig
-from runner.controllers.operational_space.whole_body_graph import whole_body_graph
+from runner.studies.thesis.diagrams.whole_body import whole_body_graph
 
 NAMES = ("gravity_compensation", "feedforward", "torque_limited", "goal", "speed_limited", "posture_task")
 OPTIONS = dict.fromkeys(NAMES, SWITCH)

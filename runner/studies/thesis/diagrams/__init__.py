@@ -1,0 +1,1 @@
+"""Block diagrams of the control laws and drawings of coordinate frames."""
