@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
 
 .PHONY: install reproduce test test-pages test-study test-slow test-busy test-lowest test-wheel mutants coverage-map lint types docs
-.PHONY: pins release-notes bench clean
+.PHONY: pins release-notes bench checks clean
 
 install:
 	@$(PYTHON) .ci/install.py $(ANY_VERSION)
@@ -31,15 +31,15 @@ test-slow: install
 
 # The tests in random order beside four busy loops, with a home folder that is empty and read-only.
 test-busy: install
-	$(BIN)/python -m bench.busy_tests $(SEED)
+	$(BIN)/python -m tools.busy_tests $(SEED)
 
 # Small errors put into the package: SAMPLE of them drawn by SEED, or without SAMPLE those written by hand.
 mutants: install
-	$(BIN)/python -m bench.mutants $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(SEED),--seed $(SEED))
+	$(BIN)/python -m tools.mutants $(if $(SAMPLE),--sample $(SAMPLE)) $(if $(SEED),--seed $(SEED))
 
 # Which tests run which lines, for `make mutants`, in .cache.
 coverage-map: install
-	$(BIN)/python -m bench.mutants --record --workers 2
+	$(BIN)/python -m tools.mutants --record --workers 2
 
 # The oldest versions that pyproject.toml allows of what the runner itself needs, in build/lowest.
 test-lowest: install
@@ -73,7 +73,7 @@ types: install
 
 # The site of the documentation, in build/site: it works from there as files, and from any server.
 docs: install
-	$(BIN)/python -m bench.gallery
+	$(BIN)/python -m tools.docs.gallery
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict
 
 # What is new in the version of pyproject.toml, or what is not released yet.
@@ -82,6 +82,10 @@ release-notes:
 
 bench: install
 	$(BIN)/python -m bench
+
+# Checks that take too long for the tests: killed sweeps, damaged files, mutants, statistics of answers and intervals.
+checks: install
+	$(BIN)/python -m tools
 
 clean:
 	rm -rf $(VENV) .cache outputs dist build .pytest_cache .mypy_cache .ruff_cache .hypothesis

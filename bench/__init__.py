@@ -1,1 +1,1 @@
-"""What the runner's speed is measured by: `make bench`, or `python -m bench NAME` for one of them."""
+"""Benchmarks of the runner's speed: `make bench`, or `python -m bench NAME` for one of them."""

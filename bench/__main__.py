@@ -9,19 +9,13 @@ NAMES = (
     "tick",
     "laws",
     "mujoco_tick",
-    "agreement",
-    "friction_coverage",
     "derivatives",
     "caveats",
     "around",
-    "answers",
     "repetitions",
     "cold_start",
     "reproduce",
     "sweep",
-    "kills",
-    "mutants",
-    "fuzz",
 )
 _AGAINST_PYBULLET = ("tick", "laws", "cold_start")  # they time its calls, or take an arm of its package
 

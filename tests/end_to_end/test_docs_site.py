@@ -11,7 +11,7 @@ import yaml
 from support.pages import ROOT
 
 import runner
-from bench.make_docs_pictures import PICTURES
+from tools.docs.pictures import PICTURES
 
 pytest.importorskip("mkdocs")
 # Slow, as `make docs` builds the same site, as strictly; these look closer at what a second build gives.
@@ -50,7 +50,7 @@ def site(tmp_path_factory):
     changed = {
         "INHERIT": str(ROOT / "mkdocs.yml"),
         "docs_dir": str(ROOT / "docs"),
-        "hooks": [str(ROOT / "bench" / "site_pages.py")],
+        "hooks": [str(ROOT / "tools" / "docs" / "site_pages.py")],
         "site_dir": str(folder / "built"),
         "extra": {"live_report": str(folder / "report.html")},
     }
@@ -124,7 +124,7 @@ def test_a_missing_report_is_told(tmp_path):
             {
                 "INHERIT": str(ROOT / "mkdocs.yml"),
                 "docs_dir": str(ROOT / "docs"),
-                "hooks": [str(ROOT / "bench" / "site_pages.py")],
+                "hooks": [str(ROOT / "tools" / "docs" / "site_pages.py")],
                 "extra": {"live_report": str(tmp_path / "none.html")},
             }
         )
@@ -132,7 +132,7 @@ def test_a_missing_report_is_told(tmp_path):
     command = [sys.executable, "-m", "mkdocs", "build", "--config-file", tmp_path / "mkdocs.yml"]
     ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert ended.returncode != 0
-    assert "none.html is missing: `python -m bench.gallery` makes it" in ended.stderr
+    assert "none.html is missing: `python -m tools.docs.gallery` makes it" in ended.stderr
 
 
 def test_every_picture_of_the_docs_is_one_that_is_drawn():

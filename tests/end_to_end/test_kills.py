@@ -1,4 +1,4 @@
-"""Workers and commands killed at named points of a sweep and a tuning; `python -m bench kills` draws the points."""
+"""Workers and commands killed at named points of a sweep and a tuning; `python -m tools kills` draws the points."""
 
 import os
 import signal
@@ -10,8 +10,8 @@ import pytest
 from support.patience import PATIENCE
 from support.short_runs import DAMPING, FREQUENCY, SHORT
 
-from bench.kills import Stored
 from runner.store import open_sweep
+from tools.kills import Stored
 
 IN_PROCESS = "hydra.sweeper.workers=0"
 

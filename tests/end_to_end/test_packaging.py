@@ -34,7 +34,7 @@ def test_the_wheel_holds_configs_robots_templates_and_references(wheel):
         ours = {path.relative_to(ROOT).as_posix() for path in (ROOT / folder).rglob("*.*") if path.suffix != ".pyc"}
         assert {f"runner/_data/{name}" for name in ours} <= names
     assert {baseline_path(name).relative_to(ROOT).as_posix() for name in shipped_baselines()} <= names
-    assert not [name for name in names if name.startswith(("tests", "bench", "outputs"))]
+    assert not [name for name in names if name.startswith(("tests", "bench", "tools", "outputs"))]
 
 
 def test_the_source_distribution_holds_docs_examples_and_what_builds_the_site(tmp_path):
@@ -44,7 +44,7 @@ def test_the_source_distribution_holds_docs_examples_and_what_builds_the_site(tm
         names = {name.partition("/")[2] for name in packed.getnames()}
     pages = {path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.*")}
     examples = {path.relative_to(ROOT).as_posix() for path in (ROOT / "examples").rglob("*.*") if path.suffix != ".pyc"}
-    assert pages | examples | {"mkdocs.yml", "bench/site_pages.py", "CITATION.cff", "SECURITY.md"} <= names
+    assert pages | examples | {"mkdocs.yml", "tools/docs/site_pages.py", "CITATION.cff", "SECURITY.md"} <= names
     assert not [name for name in names if name.startswith(("outputs", "build/", ".venv"))]
 
 

@@ -53,7 +53,7 @@ def test_the_workflow_for_github_holds_on_the_same_sweep(tmp_path):
 
 
 def test_the_gallery_builds_the_report_that_it_shows():
-    text = (ROOT / "bench" / "gallery.py").read_text()
+    text = (ROOT / "tools" / "docs" / "gallery.py").read_text()
     shown = [
         step.command for step in steps(DOCS / "gallery.md") if "controller=computed_torque,passivity" in step.command
     ]

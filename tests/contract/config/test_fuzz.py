@@ -1,8 +1,9 @@
-"""Bad input from a grammar, a little of it on every run of the tests; `python -m bench.fuzz` tries and times more."""
+"""Bad input from a grammar, a little of it on every run of the tests; `python -m tools.fuzz` tries and times more."""
 
 import pytest
 
-from bench import fuzz_configs, fuzz_lines
+from tools import fuzz
+from tools.fuzz import configs, lines
 
 SEED, CASES = 12, 60
 
@@ -11,8 +12,8 @@ SEED, CASES = 12, 60
 def test_every_config_is_taken_or_refused_in_words(tmp_path):
     faults, refused, kinds = {}, 0, set()
     for number in range(CASES):
-        given = fuzz_configs.case(SEED, number)
-        ended = fuzz_configs.attempt(given, tmp_path)
+        given = configs.case(SEED, number)
+        ended = configs.attempt(given, tmp_path)
         kinds.add(given.kind)
         refused += ended.refused
         if ended.faults:
@@ -22,22 +23,28 @@ def test_every_config_is_taken_or_refused_in_words(tmp_path):
     assert CASES // 20 < refused < CASES - CASES // 20
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("target", fuzz.TARGETS)
+def test_a_thousand_cases(target):
+    assert fuzz.main([target])
+
+
 def test_a_case_follows_from_seed_and_number_alone():
-    assert repr(fuzz_configs.case(SEED, 7)) == repr(fuzz_configs.case(SEED, 7))
-    assert repr(fuzz_configs.case(SEED, 7)) != repr(fuzz_configs.case(SEED + 1, 7))
+    assert repr(configs.case(SEED, 7)) == repr(configs.case(SEED, 7))
+    assert repr(configs.case(SEED, 7)) != repr(configs.case(SEED + 1, 7))
 
 
 @pytest.mark.parametrize(
     ("text", "count"), [("runner: one line\nand another", 0), ("x" * 10_001, 1), ("\x1b[2J", 1), ("a\rb", 1)]
 )
 def test_what_is_wrong_with_a_message(text, count):
-    assert len(fuzz_configs.judge(text)) == count
+    assert len(configs.judge(text)) == count
 
 
 def test_what_is_wrong_with_how_a_command_line_ended():
-    usual = fuzz_lines.Measured(0, "outputs/runs/x\n", 2.0, 200.0)
-    assert fuzz_lines.judge(usual, usual) == []
-    assert fuzz_lines.judge(fuzz_lines.Measured(2, "runner: no\n", 6.9, 690.0), usual) == []
+    usual = lines.Measured(0, "outputs/runs/x\n", 2.0, 200.0)
+    assert lines.judge(usual, usual) == []
+    assert lines.judge(lines.Measured(2, "runner: no\n", 6.9, 690.0), usual) == []
     for code, printed, seconds, megabytes in (
         (-11, "", 1.0, 100.0),
         (None, "", 1.0, 100.0),
@@ -46,4 +53,4 @@ def test_what_is_wrong_with_how_a_command_line_ended():
         (0, "", 1.0, 701.0),
         (2, "\x1b[2J", 1.0, 100.0),
     ):
-        assert len(fuzz_lines.judge(fuzz_lines.Measured(code, printed, seconds, megabytes), usual)) == 1
+        assert len(lines.judge(lines.Measured(code, printed, seconds, megabytes), usual)) == 1

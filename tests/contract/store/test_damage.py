@@ -2,10 +2,10 @@
 
 import pytest
 
-from bench.fuzz_stores import damage_files, files_of, flip_bits, make_store, read_all
 from runner.cli.verify import verify
+from tools.fuzz.stores import damage_files, files_of, flip_bits, make_store, read_all
 
-CASES = 200  # `python -m bench.fuzz stores` takes thousands
+CASES = 200  # `python -m tools.fuzz stores` takes thousands
 
 
 @pytest.fixture(scope="module")

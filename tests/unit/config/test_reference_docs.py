@@ -5,16 +5,16 @@ from typing import Annotated, Literal
 import pytest
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
-from bench.allowed_values import describe
-from bench.make_reference_docs import PAGE, meanings, reference_text
 from runner.config.joints import NoiseConfig
 from runner.schema.values import TorquePerStage
+from tools.docs.allowed_values import describe
+from tools.docs.reference import PAGE, meanings, reference_text
 
 
 @pytest.mark.costs(3)
 @pytest.mark.bullet  # it holds bullet's keys
 def test_the_reference_is_what_the_models_say():
-    assert PAGE.read_text() == reference_text(), "stale: run `python -m bench.make_reference_docs`"
+    assert PAGE.read_text() == reference_text(), "stale: run `python -m tools.docs.reference`"
 
 
 @pytest.mark.parametrize(

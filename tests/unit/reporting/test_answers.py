@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bench.answers import CASES, false_answers, same_law, true_answers
 from runner.base.quantities import ROUNDING
 from runner.reporting.answers import ALPHA, Asked, judge
 from runner.statistics import compare_paired
+from tools.answers import CASES, false_answers, same_law, true_answers
 
 N = 8
 APART = np.linspace(0.9, 1.1, N)  # differences of one sign

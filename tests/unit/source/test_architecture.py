@@ -4,13 +4,13 @@ import ast
 
 from support.pages import ROOT
 
-from bench.make_architecture import PAGE, PICTURE, layers, page, picture, reduced
+from tools.docs.architecture import PAGE, PICTURE, layers, page, picture, reduced
 
 PACKAGE = ROOT / "runner"
 
 
 def test_the_page_and_the_picture_are_up_to_date():
-    stale = "stale: run `python -m bench.make_architecture`"
+    stale = "stale: run `python -m tools.docs.architecture`"
     assert PAGE.read_text() == page(), stale
     assert PICTURE.read_text() == picture(), stale
 

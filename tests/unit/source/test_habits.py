@@ -112,6 +112,6 @@ def test_this_version_has_release_notes(release_notes, capsys):
 
 def test_the_version_stands_in_one_place():
     named = re.compile(rf"(?<![\d.=]){re.escape(PROJECT['version'])}(?![\d.])")
-    for name in ("runner", "bench", ".ci"):
+    for name in ("runner", "bench", "tools", ".ci"):
         for path in (ROOT / name).rglob("*.py"):
             assert not named.search(path.read_text(encoding="utf-8")), path

@@ -1,7 +1,0 @@
-"""`python -m bench.mutants`: try mutants; exit code 1 where one is not found."""
-
-import sys
-
-from bench.mutants import main
-
-sys.exit(0 if main(sys.argv[1:]) else 1)

@@ -1,0 +1,254 @@
+"""Writes docs/reference.md, all keys, metrics and commands, from the models: `python -m tools.docs.reference`.
+
+Meaning and unit of a key come from its model's docstring, what is allowed from its type, its default from conf/. So the
+page says what the code does; a test fails where it is stale.
+"""
+
+import argparse
+import inspect
+import re
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from runner.base.paths import conf_dir
+from runner.calibration.procedures import CALIBRATIONS
+from runner.cli.main import COMMANDS, COMMON, build_parser
+from runner.config.calibration import CalibrationSettings
+from runner.config.compose.files import group_options
+from runner.config.groups import GROUPS
+from runner.config.judgement import Bound, CaveatsConfig
+from runner.config.limits import SweepConfig
+from runner.config.robot import OneArmConfig, StageConfig
+from runner.config.run import RunSettings
+from runner.plugins.metric_units import families
+from runner.plugins.registry import Kinds
+from runner.schema.model import StrictModel, nested_model
+from runner.schema.units import WRITTEN
+from runner.study.chapters import SHARED
+from runner.study.code import public_functions
+from tools.docs.allowed_values import describe
+from tools.docs.compiled_table import compiled_section
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "reference.md"
+_HEAD = """\
+# Reference
+
+All config keys, metrics and commands. Made by `python -m tools.docs.reference` from the models: do not edit.
+
+Units are SI, angles in rad; a joint that slides counts in m where one that turns counts in rad. A default such as
+`${robot.period}` is the value of another key. "By stage" means: one value for a robot of one arm; for a robot of
+several a mapping with one for each. A number other than 0 lies between 1e-12 and 1e12 in magnitude (one of a list may
+be smaller), a name has at most 200 characters.
+
+## Units
+
+A number may have its unit behind it, in YAML and on the command line: `controller.period=20ms`,
+`robot.home=[0,-30deg,90deg]`, `noise.position=0.1deg`, `controller.period=interval(5ms,50ms)` to `runner tune`. It is
+stored as the number in SI units, in the config of a run and on the axes of a sweep: `controller.period=0.02` is the
+same run. A unit that does not fit its key is refused, and so is any unit where a key has none. Signs that a shell or
+Hydra reads otherwise stand in quotes: `"gravity='9.8m/s^2'"`. A key of joints takes angles where a joint turns and
+lengths where it slides; one value for joints of both kinds has no unit. A plug-in's key has the unit of its type in the
+config, as in `reach: Metres[PositiveFloat]`; `runner.schema.units` has these types.
+
+| A key in | may be written in |
+|---|---|
+"""
+_OPTION = {"input_shaper": "zv", "notch": "torques", "preset": "full_equations", "wrist_sensor": "ideal"}
+"""Option of a group whose values are the defaults on the page, if it is not "none"."""
+_ELSEWHERE = ("robot", "sweep", "limits", "caveats", "spec")
+"""Groups with a section of another form."""
+
+
+def reference_text() -> str:
+    """Return the page."""
+    sections = [
+        _HEAD,
+        *_units(),
+        "## Keys\n\n",
+        *_keys(),
+        "## What is compiled\n\n",
+        *compiled_section(),
+        "## Metrics\n\n",
+        *_metrics(),
+        "## In chapters\n\n",
+        *_chapters(),
+        "## Commands\n\n",
+        *_commands(),
+    ]
+    return "".join(sections).rstrip() + "\n"
+
+
+def _units() -> Iterator[str]:
+    for unit, written in WRITTEN.items():
+        yield f"| {unit} | {', '.join(f'`{each}`' for each in written)} |\n"
+    yield "\n"
+
+
+def _keys() -> Iterator[str]:
+    yield "### At the root\n\n"
+    yield _table("", RunSettings, _read("run"))
+    yield "Of a sweep, `runner -m`:\n\n"
+    yield _table("sweep", SweepConfig, _read("run")["sweep"])
+    yield "".join(_sweeper())
+    yield "Of [caveats](caveats.md), why a result may mislead:\n\n"
+    yield _table("caveats", CaveatsConfig, _read("caveats")["caveats"])
+    yield "Of `runner calibrate`:\n\n"
+    yield _table("", CalibrationSettings, _read("calibrate"))
+    yield "### robot\n\n" + _options("robot")
+    defaults = _read("robot_defaults")["robot"]
+    yield _table("robot", OneArmConfig, defaults)
+    yield "A robot of arms that ride on each other has `robot.stages.NAME` for each in place of an arm's own keys:\n\n"
+    yield _table("robot.stages.NAME", StageConfig, {**defaults, "mount": None})
+    kinds = {group: known for group, known in GROUPS.items() if isinstance(known, Kinds)}
+    for group, registry in {**kinds, "calibration": CALIBRATIONS}.items():
+        yield f"### {group}\n\n" + _options(group)
+        for kind in (kind for kind in registry.names() if registry.is_ours(kind)):
+            yield f"#### {group}.kind: {kind}\n\n"
+            yield _table(group, registry.config_model(kind), _of_kind(group, kind))
+    for group, model in GROUPS.items():
+        if isinstance(model, Kinds) or group in _ELSEWHERE:
+            continue
+        option = _OPTION.get(group, "none")
+        yield f"### {group}\n\n{_options(group)}Defaults are those of `{group}={option}`.\n\n"
+        yield _table(group, model, _read(f"{group}/{option}"))
+    yield "### spec\n\n" + _options("spec")
+    yield "[Bounds](how_sure.md) on metrics: of each as many as are wanted, by the metric's name.\n\n"
+    yield _table("spec.metrics.NAME", Bound, {name: field.default for name, field in Bound.model_fields.items()})
+
+
+def _sweeper() -> Iterator[str]:
+    """Yield the keys of Hydra's door to our sweeps, whose meanings stand in its file."""
+    text = (conf_dir() / "hydra" / "sweeper" / "runner.yaml").read_text(encoding="utf-8")
+    yield "| Key | Meaning | Default |\n|---|---|---|\n"
+    for name, default, meaning in re.findall(r"^([a-z]\w*): +(\S+) +# (.+)$", text, re.M):
+        yield f"| `hydra.sweeper.{name}` | {_cell(meaning)} | `{default}` |\n"
+    yield "\n"
+
+
+def _options(group: str) -> str:
+    """Return the options of a group as a list."""
+    lines = [f"- `{group}={name}`: {text}" for name, text in group_options(group).items()]
+    return "\n".join(lines) + "\n\n"
+
+
+def _of_kind(group: str, kind: str) -> Mapping[str, Any]:
+    """Return the values of the option named like a kind; a file of the root's package holds them below its group."""
+    values = _read(f"{group}/{kind}")
+    return dict(values.get(group, values))
+
+
+def _read(name: str) -> dict[str, Any]:
+    return dict(yaml.safe_load((conf_dir() / f"{name}.yaml").read_text(encoding="utf-8")))
+
+
+def _table(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> str:
+    rows = ["| Key | Meaning | Allowed | Default |", "|---|---|---|---|"]
+    rows += [f"| {' | '.join(_cell(cell) for cell in row)} |" for row in _rows(group, model, defaults)]
+    return "\n".join(rows) + "\n\n"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def _rows(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> Iterator[tuple[str, str, str, str]]:
+    said = meanings(model)
+    for name, field in model.model_fields.items():
+        key = f"{group}.{name}" if group else name
+        inner = nested_model(field.annotation)
+        given = defaults.get(name)
+        if inner is not None and isinstance(given, Mapping):
+            yield from _rows(key, inner, given)
+            continue
+        default = f"`{_inline(given)}`" if name in defaults else "must be given"
+        yield f"`{key}`", _null(said[name]), describe(field.annotation, field.metadata), default
+        if inner is not None and given is None:
+            yield from _rows(key, inner, {})
+
+
+def _inline(value: Any) -> str:
+    return yaml.safe_dump(value, default_flow_style=True, width=1000).removesuffix("\n").removesuffix("\n...")
+
+
+def meanings(model: type[StrictModel]) -> dict[str, str]:
+    """Return what the docstrings of a model and its bases say of its keys."""
+    found: dict[str, str] = {}
+    for base in reversed(model.__mro__):
+        text = inspect.cleandoc(base.__doc__ or "").partition("Attributes:\n")[2]
+        entries = re.findall(r"^    (\w+): (.+?)(?=^    \w|\Z)", text, re.M | re.S)
+        found |= {name: " ".join(meaning.split()) for name, meaning in entries if name in model.model_fields}
+    return found
+
+
+def _null(text: str) -> str:
+    """Return a docstring's words with None as YAML writes it."""
+    return re.sub(r"\bNone\b", "`null`", text)
+
+
+def _metrics() -> Iterator[str]:
+    yield (
+        "One value for each repetition, and their median, smallest and largest. A metric of one joint or axis carries "
+        "it behind its name, as `peak_torque_q1` and `max_tracking_error_x`; of a carrying stage in front, as "
+        "`macro_settling_time`. Rows of a trace are control ticks.\n\n| Metric | Unit | Formula |\n|---|---|---|\n"
+    )
+    for family in families():
+        meanings = _bullets(family.evaluate.__doc__ or "")
+        for name, unit in family.UNITS.items():
+            yield f"| `{name}` | {unit} | {_cell(_null(meanings[name]))} |\n"
+    yield "\n"
+
+
+def _bullets(docstring: str) -> dict[str, str]:
+    """Return what a docstring's bullets `- name, name: meaning.` say of each name."""
+    entries = re.findall(r"^\s*- ([\w, ]+): (.+?)(?=^\s*- |\Z)", docstring, re.M | re.S)
+    return {name.strip(): " ".join(text.split()) for names, text in entries for name in names.split(",")}
+
+
+def _chapters() -> Iterator[str]:
+    yield "What a chapter of a [study](paper.md) may call. `runs` is filled in.\n\n| Call | Gives |\n|---|---|\n"
+    for module in SHARED:
+        for name, function in public_functions(module).items():
+            call = f"{name}{_signature(function)}"
+            meaning = (inspect.getdoc(function) or "").partition("\n\n")[0].replace("\n", " ").removeprefix("Return ")
+            yield f"| `{_cell(call)}` | {_cell(meaning)} |\n"
+    yield "\n"
+
+
+def _signature(function: Callable[..., Any]) -> str:
+    """Return a function's arguments as a chapter gives them, without types."""
+    parameters = [each for name, each in inspect.signature(function).parameters.items() if name != "runs"]
+    shown = [each.replace(annotation=inspect.Parameter.empty) for each in parameters]
+    return str(inspect.Signature(shown))
+
+
+def _commands() -> Iterator[str]:
+    yield "Options of every command:\n\n| Argument | Meaning | Default |\n|---|---|---|\n"
+    yield from _arguments(COMMON)
+    yield "\n"
+    parsers = build_parser(name for name in COMMANDS if name != "sweep").commands
+    for name, parser in parsers.items():
+        yield f"### runner {name}\n\n{inspect.cleandoc(parser.description or '')}\n\n"
+        yield "| Argument | Meaning | Default |\n|---|---|---|\n"
+        yield from _arguments(parser)
+        yield "\n"
+
+
+def _arguments(parser: argparse.ArgumentParser, before: str = "") -> Iterator[str]:
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for name, own in action.choices.items():
+                yield from _arguments(own, f"{name} ")
+        elif not isinstance(action, argparse._HelpAction) and (parser is COMMON or action not in COMMON._actions):
+            words = ", ".join(action.option_strings) or str(action.metavar or action.dest)
+            value = f" {action.metavar}" if action.option_strings and action.metavar else ""
+            shown = action.default not in (None, False, [], argparse.SUPPRESS)
+            default = f"`{action.default}`" if shown else ""
+            yield f"| `{before}{words}{value}` | {_cell(action.help or '')} | {default} |\n"
+
+
+if __name__ == "__main__":
+    PAGE.write_text(reference_text(), encoding="utf-8")
+    print(PAGE.name)
