@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.base.trace import Traces
+from runner.base.trace import Trace
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.metrics import measure
@@ -38,7 +38,7 @@ def main() -> bool:
     loop, context = assemble(config), metric_context(config)
     trace = simulate(loop, make_encoders(loop, config.noise, 0, 0))
     loop.close()
-    traces = _varied(Traces.of(trace))
+    traces = _varied(trace[None])
     clocked, provenance = timing(np.zeros(1), 0.0, 0.0), job_provenance(config)
     metrics = measure(traces, context)
 
@@ -81,7 +81,7 @@ def main() -> bool:
     return all(met)
 
 
-def _varied(one: Traces) -> Traces:
+def _varied(one: Trace) -> Trace:
     """Return many runs like one, each a little different."""
     factor = 1.0 + 1e-3 * np.random.default_rng(0).normal(size=(_RUNS, 1, 1))
     return replace(

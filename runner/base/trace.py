@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Self, TypedDict
 
 import numpy as np
 
@@ -42,10 +41,22 @@ class ContactSignals:
     load: FloatArray
     reaction: FloatArray
 
+    def during(self, ticks: slice) -> "ContactSignals":
+        """Return some of the ticks."""
+        return ContactSignals(*(signal[ticks] for signal in vars(self).values()))
+
 
 @dataclass(frozen=True)
-class Signals:
-    """Signals of one or several runs, as true values; shapes are for one run, see Traces for several runs.
+class Trace:
+    """True signals of one run or of several, with a row for each control tick from t = 0 to the end.
+
+    The shapes are for one run. Several runs have ticks, path, arm and settling band in common, and no failures. Their
+    axis is the first one of q, dq, tau, limits and q_command, and the second one of end_points, after the stages.
+    desired has it as its first axis if the desired motions differ. contact and tick_seconds are of one run.
+    `traces[i]` is one of several runs, and `trace[None]` is one run as a batch of one.
+
+    Results of a run must not depend on the other runs, not even by rounding. Code for several runs therefore reduces
+    along contiguous rows.
 
     Attributes:
         t: Times, shape (T,), in s.
@@ -65,6 +76,9 @@ class Signals:
         q_command: Commanded joint positions, constant until the next row, shape (T, nq), in rad; None if the controller
             commands torques.
         contact: Wrenches of the run; None without an external wrench.
+        failure: Failure that ended the run early, or None.
+        law_seconds: Wall-clock time of all control loops in each tick, including encoders, shape (T,), in s; None if
+            plant and loops are compiled together.
     """
 
     t: FloatArray
@@ -81,26 +95,49 @@ class Signals:
     tick_seconds: FloatArray
     q_command: FloatArray | None = None
     contact: ContactSignals | None = None
+    failure: Failure | None = None
+    law_seconds: FloatArray | None = None
 
-    def at_stage(self, index: int) -> Self:
+    def __getitem__(self, runs: int | slice | list[int] | None) -> "Trace":
+        """Return one or some of several runs; `trace[None]` is one run as a batch of one."""
+        return replace(
+            self,
+            q=self.q[runs],
+            dq=self.dq[runs],
+            tau=self.tau[runs],
+            end_points=self.end_points[:, runs],
+            desired=self.desired if self.desired.ndim == 3 else self.desired[runs],
+            limits=self.limits[runs],
+            q_command=None if self.q_command is None else self.q_command[runs],
+        )
+
+    def ended(self, failure: Failure) -> "Trace":
+        """Return the trace of one run up to the time of a failure."""
+        rows = int(np.searchsorted(self.t, failure.time)) + 1
+        return replace(self.during(slice(rows)), failure=failure)
+
+    def during(self, ticks: slice) -> "Trace":
+        """Return some of the ticks."""
+        t = self.t[ticks]
+        return replace(
+            self,
+            t=t,
+            q=self.q[..., ticks, :],
+            dq=self.dq[..., ticks, :],
+            tau=self.tau[..., ticks, :],
+            end_points=self.end_points[..., ticks, :],
+            desired=self.desired[..., ticks, :, :],
+            tick_seconds=self.tick_seconds[: len(t) - 1],
+            q_command=None if self.q_command is None else self.q_command[..., ticks, :],
+            contact=None if self.contact is None else self.contact.during(ticks),
+            law_seconds=None if self.law_seconds is None else self.law_seconds[ticks],
+        )
+
+    def at_stage(self, index: int) -> "Trace":
         """Return the signals with the end point of a stage as the tip; x_d is reduced by its home offset."""
         desired = self.desired.copy()
         desired[..., 0, :] -= self.offsets[index]
         return replace(self, end_points=self.end_points[index : index + 1], desired=desired)
-
-
-@dataclass(frozen=True)
-class Trace(Signals):
-    """Signals of one run, with a row for each control tick from t = 0 to the end.
-
-    Attributes:
-        failure: Failure that ended the run early, or None.
-        law_seconds: Wall-clock time of all control loops in each tick, including encoders, shape (T,), in s; None if
-            plant and loops are compiled together.
-    """
-
-    failure: Failure | None = None
-    law_seconds: FloatArray | None = None
 
     @property
     def tip(self) -> FloatArray:
@@ -108,125 +145,27 @@ class Trace(Signals):
         tip: FloatArray = self.end_points[-1]
         return tip
 
-    def ended(self, failure: Failure) -> "Trace":
-        """Return the trace of a torque-controlled run up to the time of a failure."""
-        rows = int(np.searchsorted(self.t, failure.time)) + 1
-        return replace(
-            self,
-            t=self.t[:rows],
-            q=self.q[:rows],
-            dq=self.dq[:rows],
-            tau=self.tau[:rows],
-            end_points=self.end_points[:, :rows],
-            desired=self.desired[:rows],
-            tick_seconds=self.tick_seconds[: rows - 1],
-            failure=failure,
-        )
-
     @property
     def error(self) -> FloatArray:
         """Tip error, desired minus actual, shape (T, 3), in m."""
-        difference: FloatArray = self.desired[:, 0] - self.tip
+        difference: FloatArray = self.desired[..., 0, :] - self.tip
         return difference
 
-
-@dataclass(frozen=True)
-class Traces(Signals):
-    """Signals of several runs without failures that have ticks, path, arm and settling band in common.
-
-    Results of a run must not depend on the other runs, not even by rounding. Code for several runs therefore reduces
-    along contiguous rows. The axis of the runs is the first axis of q, dq, tau, limits and q_command, and the second
-    one of end_points, after the stages. desired has it if the desired motions differ. contact and tick_seconds are of
-    one run.
-    """
-
-    @classmethod
-    def of(cls, trace: Trace) -> "Traces":
-        """Return a run without a failure as a batch of one run."""
-        return cls(
-            **_in_common(trace),
-            q=trace.q[None],
-            dq=trace.dq[None],
-            tau=trace.tau[None],
-            end_points=trace.end_points[:, None],
-            desired=trace.desired,
-            limits=trace.limits[None],
-            q_command=None if trace.q_command is None else trace.q_command[None],
-        )
-
-    @property
-    def runs(self) -> int:
-        """Number of runs."""
-        return len(self.q)
-
-    def run(self, index: int) -> Trace:
-        """Return the trace of one run."""
-        return Trace(**_in_common(self), **self._own(index))
-
-    def part(self, own: slice | list[int]) -> "Traces":
-        """Return some of the runs."""
-        return replace(self, **self._own(own))
-
-    def _own(self, runs: int | slice | list[int]) -> "_Own":
-        """Return the signals of some runs that are not common to all runs."""
-        return {
-            "q": self.q[runs],
-            "dq": self.dq[runs],
-            "tau": self.tau[runs],
-            "end_points": self.end_points[:, runs],
-            "desired": self.desired if self.desired.ndim == 3 else self.desired[runs],
-            "limits": self.limits[runs],
-            "q_command": None if self.q_command is None else self.q_command[runs],
-        }
+    @cached_property
+    def tip_by_axis(self) -> FloatArray:
+        """Tip positions, shape (..., 3, T), in m, with contiguous rows."""
+        return by_rows(self.tip)
 
     @cached_property
-    def tip(self) -> FloatArray:
-        """Tip positions by axes, shape (runs, 3, T), in m, with contiguous rows."""
-        return by_rows(self.end_points[-1])
-
-    @cached_property
-    def target(self) -> FloatArray:
-        """Desired tip positions by axes, shape (3, T) if common to all runs or (runs, 3, T), in m."""
+    def target_by_axis(self) -> FloatArray:
+        """Desired tip positions, shape (3, T) if common to all runs, else (runs, 3, T), in m, with contiguous rows."""
         return by_rows(self.desired[..., 0, :])
 
     @cached_property
-    def error(self) -> FloatArray:
-        """Tip error, desired minus actual, by axes, shape (runs, 3, T), in m."""
-        difference: FloatArray = self.target - self.tip
+    def error_by_axis(self) -> FloatArray:
+        """Tip error, desired minus actual, shape (..., 3, T), in m, with contiguous rows."""
+        difference: FloatArray = self.target_by_axis - self.tip_by_axis
         return difference
-
-
-class _Common(TypedDict):
-    t: FloatArray
-    offsets: FloatArray
-    stage_names: tuple[str, ...]
-    joint_names: tuple[str, ...]
-    joint_units: tuple[str, ...]
-    tick_seconds: FloatArray
-    contact: ContactSignals | None
-
-
-class _Own(TypedDict):
-    q: FloatArray
-    dq: FloatArray
-    tau: FloatArray
-    end_points: FloatArray
-    desired: FloatArray
-    limits: FloatArray
-    q_command: FloatArray | None
-
-
-def _in_common(signals: Signals) -> _Common:
-    """Return the signals that several runs have in common."""
-    return {
-        "t": signals.t,
-        "offsets": signals.offsets,
-        "stage_names": signals.stage_names,
-        "joint_names": signals.joint_names,
-        "joint_units": signals.joint_units,
-        "tick_seconds": signals.tick_seconds,
-        "contact": signals.contact,
-    }
 
 
 def by_rows(values: FloatArray) -> FloatArray:

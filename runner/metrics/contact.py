@@ -3,14 +3,14 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.trace import Traces
+from runner.base.trace import Trace
 from runner.metrics.family import MetricContext
 
 UNITS = {"peak_force": "N", "steady_force": "N", "force_error": "N"}
 _STEADY_WINDOW = 0.5  # s, at the end of the run
 
 
-def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
+def evaluate(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
     """Return the contact forces of a single run; empty for a run without an external wrench.
 
     - peak_force: largest magnitude of the environment's force on the tip.

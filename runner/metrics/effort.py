@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.base.trace import Traces, by_rows
+from runner.base.trace import Trace, by_rows
 from runner.metrics.family import MetricContext
 
 _AT_LIMIT = 1.0 - 1e-12
@@ -25,7 +25,7 @@ UNITS = {
 }
 
 
-def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
+def evaluate(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
     """Return torques, speeds, saturation, energy and effort, from the applied torques (all rows except the last).
 
     - peak_torque: largest absolute torque of the revolute joints; also for each joint, as in peak_torque_q1.

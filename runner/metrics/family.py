@@ -7,7 +7,7 @@ from typing import Protocol, runtime_checkable
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
-from runner.base.trace import Trace, Traces
+from runner.base.trace import Trace
 from runner.plugins import metric_units
 from runner.plugins.guard import describe_fault, find_fault, is_write, place, read_only
 from runner.trajectories.trajectory import Trajectory
@@ -39,7 +39,7 @@ class OwnFamily(Protocol):
         """Unit of each metric by name, without the suffixes of joints and axes."""
         ...
 
-    def evaluate(self, traces: Traces, context: MetricContext) -> Mapping[str, FloatArray]:
+    def evaluate(self, traces: Trace, context: MetricContext) -> Mapping[str, FloatArray]:
         """Return the metrics by name, each of shape (runs,); NaN for a run without a value."""
         ...
 

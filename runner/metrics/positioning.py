@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.trace import Traces
+from runner.base.trace import Trace
 from runner.metrics.family import MetricContext
 from runner.trajectories.vectors import component
 
@@ -11,7 +11,7 @@ UNITS = {"settling_time": "s", "steady_state_error": "m", "overshoot": "m"}
 STEADY_WINDOW = 0.5  # s, at the end of the run
 
 
-def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
+def evaluate(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
     """Return settling time, steady-state error and overshoot.
 
     - settling_time: first tick after the last one with any axis error beyond the band; 0 if the error never exceeds the
@@ -21,8 +21,8 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     - overshoot: largest distance past the goal in the direction from start to goal, minus that of the desired motion;
       None without a goal.
     """
-    worst = np.abs(traces.error).max(axis=1)
-    goal, none = context.trajectory.goal, np.full(traces.runs, np.nan)
+    worst = np.abs(traces.error_by_axis).max(axis=1)
+    goal, none = context.trajectory.goal, np.full(len(traces.q), np.nan)
     return {
         "settling_time": _settling_time(traces.t, worst > context.settling_band),
         "steady_state_error": (
@@ -46,13 +46,14 @@ def _steady_state_error(t: FloatArray, worst: FloatArray, t_f: float) -> FloatAr
     return steady
 
 
-def _overshoot(traces: Traces, start: FloatArray, goal: FloatArray) -> FloatArray:
+def _overshoot(traces: Trace, start: FloatArray, goal: FloatArray) -> FloatArray:
     distance = float(np.linalg.norm(goal - start))
     if distance == 0.0:
-        return np.zeros(traces.runs)
+        return np.zeros(len(traces.q))
     along = (goal - start) / distance
     past, wanted = (
-        component(points.swapaxes(-1, -2) - goal, along).max(axis=-1) for points in (traces.tip, traces.target)
+        component(points.swapaxes(-1, -2) - goal, along).max(axis=-1)
+        for points in (traces.tip_by_axis, traces.target_by_axis)
     )
     overshoot: FloatArray = np.maximum(past - np.maximum(wanted, 0.0), 0.0) + 0.0  # no -0.0
     return overshoot

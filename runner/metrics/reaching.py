@@ -3,13 +3,13 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.trace import Traces
+from runner.base.trace import Trace
 from runner.metrics.family import MetricContext
 
 UNITS = {"reach_loss_fraction": "1"}
 
 
-def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
+def evaluate(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
     """Return the reach loss of the last stage; empty for a robot with one stage.
 
     - reach_loss_fraction: fraction of ticks at which x_d is out of reach of the last stage.

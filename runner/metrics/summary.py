@@ -8,7 +8,7 @@ from importlib import import_module
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.trace import Trace, Traces
+from runner.base.trace import Trace
 from runner.metrics import positioning, tracking
 from runner.metrics.family import MetricContext, OwnFamily, evaluate_added
 from runner.plugins import metric_units
@@ -70,10 +70,10 @@ def evaluate(trace: Trace, context: MetricContext, notices: list[str] | None = N
     if trace.failure is not None:
         return {}
     told = [] if notices is None else notices
-    return of_run(measure(Traces.of(trace), context), 0) | evaluate_added(trace, context, told)
+    return of_run(measure(trace[None], context), 0) | evaluate_added(trace, context, told)
 
 
-def measure(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
+def measure(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
     """Return the built-in metrics of several runs, each of shape (runs,); NaN for a run without a value.
 
     For a robot with mounted stages, there are also positioning and tracking metrics of each base stage, with its name
@@ -87,13 +87,11 @@ def measure(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     """
     rows, joints = traces.q.shape[1:]
     block = max(1, _BLOCK // (rows * joints))
-    parts = [
-        _measure_block(traces.part(slice(first, first + block)), context) for first in range(0, traces.runs, block)
-    ]
+    parts = [_measure_block(traces[first : first + block], context) for first in range(0, len(traces.q), block)]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-def _measure_block(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
+def _measure_block(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
     values: dict[str, FloatArray] = {}
     for family in _FAMILIES:
         values |= family.evaluate(traces, context)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.trace import Traces
+from runner.base.trace import Trace
 from runner.metrics.family import MetricContext
 from runner.trajectories.trajectory import Trajectory
 
@@ -19,7 +19,7 @@ UNITS = {
 }
 
 
-def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
+def evaluate(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
     """Return the tracking errors; for a goal, only cross_track_error.
 
     - max_tracking_error: largest norm of the error over 0..t_f; with _x, _y or _z, largest error on that axis.
@@ -33,12 +33,12 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
     - rms_joint_error: RMS of the norm of the errors of the revolute joints over 0..t_f; only if the desired motion is a
       joint motion.
     """
-    distance = context.trajectory.distance_to_path(traces.tip.swapaxes(-1, -2))
+    distance = context.trajectory.distance_to_path(traces.tip_by_axis.swapaxes(-1, -2))
     cross_track: dict[str, FloatArray] = {"cross_track_error": distance.max(axis=-1)}
     if not context.trajectory.tracked:
         return cross_track
     ticks = int(np.searchsorted(traces.t, context.trajectory.duration + 1e-9, side="right"))
-    error = traces.error[:, :, :ticks]
+    error = traces.error_by_axis[:, :, :ticks]
     axes = np.abs(error).max(axis=2)
     squared = _squared(error)
     return {
@@ -46,7 +46,7 @@ def evaluate(traces: Traces, context: MetricContext) -> dict[str, FloatArray]:
         **{f"max_tracking_error_{axis}": axes[:, index] for index, axis in enumerate("xyz")},
         "max_axis_error": axes.max(axis=1),
         "rms_tracking_error": np.sqrt(squared.sum(axis=1) / ticks),
-        **_of_periods(traces, context.trajectory, _squared(traces.error)),
+        **_of_periods(traces, context.trajectory, _squared(traces.error_by_axis)),
         **cross_track,
         **_of_joints(traces, context.trajectory, ticks),
     }
@@ -57,7 +57,7 @@ def _squared(error: FloatArray) -> FloatArray:
     return np.asarray(error[:, 0] ** 2 + error[:, 1] ** 2 + error[:, 2] ** 2)
 
 
-def _of_periods(traces: Traces, path: Trajectory, squared: FloatArray) -> dict[str, FloatArray]:
+def _of_periods(traces: Trace, path: Trajectory, squared: FloatArray) -> dict[str, FloatArray]:
     """Return the RMS errors of a periodic motion in its last period and in periods 1, 2, 4, 8 and so on."""
     end, period = float(traces.t[-1]), path.duration
     whole = int(end / period + 1e-9)
@@ -74,7 +74,7 @@ def _within(times: FloatArray, after: float, until: float) -> slice:
     return slice(*np.searchsorted(times, (after + 1e-9, until + 1e-9), side="right"))
 
 
-def _of_joints(traces: Traces, path: Trajectory, ticks: int) -> dict[str, FloatArray]:
+def _of_joints(traces: Trace, path: Trajectory, ticks: int) -> dict[str, FloatArray]:
     turn = np.array([unit == "rad" for unit in traces.joint_units])
     desired = path.sample_joints(traces.t[:ticks])
     if desired is None or not turn.any():

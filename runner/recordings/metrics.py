@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.trace import Trace, Traces
 from runner.metrics import effort, positioning, tracking
 from runner.metrics.summary import measure, of_run
 from runner.recordings.columns_map import Signal
@@ -32,7 +31,7 @@ def both_metrics(
         recorded: Its signals at these, shape (T,).
         speeds: Its joint speeds there, shape (T, nq), in rad/s; None where not all positions are recorded.
     """
-    run = _part(setting.trace, ticks)
+    run = setting.trace.during(ticks)
     joints = run.joint_names
     q, tau = (_all(recorded, [Signal(kind, joint) for joint in joints]) for kind in ("position", "torque"))
     tip = _all(recorded, [Signal("tip", axis) for axis in AXES])
@@ -54,7 +53,7 @@ def both_metrics(
         tau=run.tau if tau is None else tau,
         end_points=points,
     )
-    of_both = [of_run(measure(Traces.of(trace), setting.context), 0) for trace in (run, other)]
+    of_both = [of_run(measure(trace[None], setting.context), 0) for trace in (run, other)]
     return {
         name: (value, of_both[1][name])
         for name, value in of_both[0].items()
@@ -70,16 +69,3 @@ def _base(name: str, known: Mapping[str, bool]) -> str:
 def _all(recorded: Mapping[Signal, FloatArray], signals: list[Signal]) -> FloatArray | None:
     found = [recorded[signal] for signal in signals if signal in recorded]
     return np.column_stack(found) if len(found) == len(signals) else None
-
-
-def _part(trace: Trace, ticks: slice) -> Trace:
-    return replace(
-        trace,
-        t=trace.t[ticks],
-        q=trace.q[ticks],
-        dq=trace.dq[ticks],
-        tau=trace.tau[ticks],
-        end_points=trace.end_points[:, ticks],
-        desired=trace.desired[ticks],
-        tick_seconds=trace.tick_seconds[: len(trace.t[ticks]) - 1],
-    )

@@ -14,7 +14,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.cache import Memory
 from runner.base.ticks import add_ticks
-from runner.base.trace import Trace, Traces
+from runner.base.trace import Trace
 from runner.config.run import RunConfig
 from runner.metrics import MetricContext, measure
 from runner.metrics.caveats import Watch, look_together, setting_of, signals_of
@@ -81,12 +81,12 @@ class BatchResult:
 
     Attributes:
         places: Indices among the requested runs.
-        traces: Traces of the runs.
+        traces: Trace of the runs.
         context: Data for the metrics.
     """
 
     places: Sequence[int]
-    traces: Traces
+    traces: Trace
     context: MetricContext
 
 
@@ -175,9 +175,9 @@ class BatchSimulator:
                 if failure is None:
                     good.append(index)
                 else:
-                    yield place, traces.run(index).ended(failure)
+                    yield place, traces[index].ended(failure)
             if good:
-                kept = traces if len(good) == len(places) else traces.part(good)
+                kept = traces if len(good) == len(places) else traces[good]
                 yield BatchResult([places[index] for index in good], kept, metric_context(one.config))
 
     def _shared(self, runs: Sequence[RunSpec], times: FloatArray, paths: Sequence[FloatArray]) -> FloatArray:
@@ -200,7 +200,7 @@ class BatchSimulator:
         desired: FloatArray,
         times: FloatArray,
         seconds: float,
-    ) -> Traces:
+    ) -> Trace:
         """Return the traces of runs with the same scene."""
         one = runs[places[0]]
         config, own = one.config, slice(None) if len(places) == len(runs) else list(places)
@@ -208,7 +208,7 @@ class BatchSimulator:
         acted = np.maximum(np.arange(len(t)) - one.loop_program.delay, 0) if one.loop_program.delay else slice(len(t))
         arm, model = config.arm, config.arm.model
         home = self.memory.recall(_home_points, arm, config.ignore_base_rotation)
-        return Traces(
+        return Trace(
             t=t,
             q=signals.q[own, : len(t)],
             dq=signals.dq[own, : len(t)],
@@ -289,7 +289,7 @@ def _collect(found: BatchResult, owners: Sequence[tuple[Collector, int]]) -> lis
     seconds, row = float(traces.tick_seconds.sum()), 0
     for owner, repetitions in parts:
         owner.put(repetitions, names, values[row : row + len(repetitions)])
-        first = traces.run(row) if owner.first == repetitions[0] else None
+        first = traces[row] if owner.first == repetitions[0] else None
         if owner.end(len(repetitions), seconds, first):
             complete.append(owner)
         row += len(repetitions)

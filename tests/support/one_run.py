@@ -1,9 +1,8 @@
 """A family of metrics of several runs, asked for one."""
 
-from runner.base.trace import Traces
 from runner.metrics import of_run
 
 
 def of_one(family):
     """Make a function that gives a family's metrics of one trace by name, None for no value."""
-    return lambda trace, context: of_run(family.evaluate(Traces.of(trace), context), 0)
+    return lambda trace, context: of_run(family.evaluate(trace[None], context), 0)

@@ -75,7 +75,7 @@ MUTANTS = [
     *_of(
         "metrics/summary.py",
         "unit/metrics/test_measure.py",
-        ("the last block of runs lost", "range(0, traces.runs, block)", "range(0, traces.runs - block, block)"),
+        ("the last block of runs lost", "range(0, len(traces.q), block)", "range(0, len(traces.q) - block, block)"),
     ),
     *_of(
         "store/shards.py",

@@ -142,7 +142,7 @@ def simulate_run(run: RunSpec) -> tuple[Trace, Mapping[str, float | None]]:
         failure = found[1].failure
         assert failure is not None  # noqa: S101 - only failed runs are not a BatchResult
         raise RunnerError(f"the run has no derivatives: it ended at {failure.time:g} s, {failure.reason}")
-    return found.traces.run(0), summary.of_run(measure(found.traces, found.context), 0)
+    return found.traces[0], summary.of_run(measure(found.traces, found.context), 0)
 
 
 def scene_of(config: RunConfig, repetition: int) -> Scene:

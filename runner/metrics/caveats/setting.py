@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.base.trace import Trace, Traces
+from runner.base.trace import Trace
 
 if TYPE_CHECKING:
     from runner.config.robot import RobotConfig
@@ -149,15 +149,15 @@ class Signals:
         return Signals(**{name: value[first:last] for name, value in vars(self).items()})
 
 
-def signals_of(trace: Trace | Traces, metrics: Mapping[str, float | FloatArray | None]) -> Signals:
+def signals_of(trace: Trace, metrics: Mapping[str, float | FloatArray | None]) -> Signals:
     """Return the signals for the rules, of a run that did not fail or of several such runs on the first axis.
 
     Args:
-        trace: The trace of the run, or the traces of the runs.
+        trace: The trace of the run or runs.
         metrics: The metrics of the run, or arrays of metrics of the runs.
     """
     shares = [metrics[f"saturation_fraction_q{joint + 1}"] for joint in range(len(trace.joint_names))]
-    tip = trace.end_points[-1]
+    tip = trace.tip
     return Signals(
         q=trace.q,
         tau=trace.tau[..., :-1, :],

@@ -10,7 +10,6 @@ import pytest
 from support.caveat_runs import signals, stacked
 from support.engines import ASKED
 
-from runner.base.trace import Traces
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
 from runner.metrics.caveats import (
     Signals,
@@ -157,7 +156,7 @@ def test_the_signals_of_many_traces_are_those_of_each(hand_made_trace):
     names = ("q", "dq", "tau", "limits", "desired")
     own = {name: np.array([getattr(trace, name) for trace in traces]) for name in names}
     end_points = np.array([trace.end_points for trace in traces]).swapaxes(0, 1)
-    batch = replace(Traces.of(traces[0]), **own, end_points=end_points)
+    batch = replace(traces[0][None], **own, end_points=end_points)
     arrays = {name: np.array([own[name] for own in metrics]) for name in metrics[0]}
     found = signals_of(batch, arrays)
     for name in vars(found):

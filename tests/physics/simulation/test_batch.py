@@ -33,7 +33,7 @@ def together(configs):
     for found in batcher.simulate(runs):
         if isinstance(found, BatchResult):
             counts.append(len(found.places))
-            traces |= {place: found.traces.run(row) for row, place in enumerate(found.places)}
+            traces |= {place: found.traces[row] for row, place in enumerate(found.places)}
             assert found.context.trajectory is runs[found.places[0]].config.path
         else:
             traces[found[0]] = found[1]

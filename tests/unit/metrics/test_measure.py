@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import SimulationError
-from runner.base.trace import Traces
+from runner.base.trace import Trace
 from runner.metrics import MetricContext, evaluate, measure, of_run
 from runner.trajectories import TRAJECTORIES
 from runner.trajectories.circle import Circle
@@ -42,7 +42,7 @@ def make_traces(runs=40, rows=201, joints=3, stages=("arm",), path="quintic", ow
     size[: runs // 4] = 1e-3
     errors = size[:, None, None] * draw.normal(size=(len(stages), runs, rows, 3)) * np.exp(-5.0 * t)[:, None]
     limits = np.where(draw.random((runs, joints)) < 0.5, np.inf, draw.uniform(0.5, 3.0, (runs, joints)))
-    return Traces(
+    return Trace(
         t=t,
         q=draw.normal(size=(runs, rows, joints)).cumsum(axis=1),
         dq=draw.normal(size=(runs, rows, joints)),
@@ -62,7 +62,7 @@ def chosen(traces, runs):
     """The traces of some runs, in a given order."""
     desired = traces.desired if traces.desired.ndim == 3 else traces.desired[runs]
     parts = {name: getattr(traces, name)[runs] for name in ("q", "dq", "tau", "limits")}
-    return Traces(**{**vars(traces), **parts, "end_points": traces.end_points[:, runs], "desired": desired})
+    return Trace(**{**vars(traces), **parts, "end_points": traces.end_points[:, runs], "desired": desired})
 
 
 def context(path="quintic"):
@@ -74,7 +74,7 @@ def test_a_run_has_its_metrics_in_whatever_company(path, joints):
     units = tuple("m" if joint % 3 == 2 else "rad" for joint in range(joints))
     traces = make_traces(joints=joints, path=path, units=units)
     whole = measure(traces, context(path))
-    order = np.random.default_rng(1).permutation(traces.runs)
+    order = np.random.default_rng(1).permutation(len(traces.q))
     for size in (1, 3, 8, 40):
         for first in range(0, min(len(order), 5 * size), size):
             runs = order[first : first + size]
@@ -101,8 +101,8 @@ def test_so_it_has_with_stages_and_a_path_of_its_own():
     own = make_traces(joints=6, stages=("macro", "mini"), own_paths=True)
     whole, of_own = measure(traces, context()), measure(own, context())
     assert {"macro_settling_time", "macro_rms_tracking_error", "reach_loss_fraction"} < set(whole)
-    for run in range(0, traces.runs, 7):
-        alone = evaluate(own.run(run), context())
+    for run in range(0, len(traces.q), 7):
+        alone = evaluate(own[run], context())
         assert alone == of_run(whole, run) == of_run(of_own, run)
 
 
@@ -110,7 +110,7 @@ def test_the_order_in_memory_does_not_matter():
     traces = make_traces()
     names = ("q", "dq", "tau", "end_points")
     turned = {name: np.ascontiguousarray(getattr(traces, name).swapaxes(-1, -2)).swapaxes(-1, -2) for name in names}
-    first, second = measure(traces, context()), measure(Traces(**{**vars(traces), **turned}), context())
+    first, second = measure(traces, context()), measure(Trace(**{**vars(traces), **turned}), context())
     for name, values in first.items():
         np.testing.assert_array_equal(second[name], values, err_msg=name)
 
@@ -126,9 +126,9 @@ def test_blocks_of_runs_are_put_together_again(monkeypatch):
 
 def test_a_run_that_never_settles_has_no_settling_time_beside_others_that_do():
     traces = make_traces(path="goal")
-    errors = np.zeros((1, traces.runs, len(traces.t), 3))
+    errors = np.zeros((1, len(traces.q), len(traces.t), 3))
     errors[:, ::2, -1, 1] = 0.1
-    found = measure(Traces(**{**vars(traces), "end_points": B - errors}), context("goal"))["settling_time"]
+    found = measure(Trace(**{**vars(traces), "end_points": B - errors}), context("goal"))["settling_time"]
     np.testing.assert_array_equal(found[1::2], 0.0)
     assert np.isnan(found[::2]).all()
 
