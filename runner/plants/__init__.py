@@ -1,7 +1,7 @@
 """Plants (simulated arms): true motion from joint torques or commanded joint positions."""
 
 from runner.plants.kinds import GUARD, PlantConfig, Plants
-from runner.plants.plant import Plant, PositionPlant, unwrapped
+from runner.plants.plant import Plant, PositionPlant
 
 PLANTS = Plants(
     "plant",
@@ -20,5 +20,4 @@ __all__ = [
     "Plant",
     "PlantConfig",
     "PositionPlant",
-    "unwrapped",
 ]

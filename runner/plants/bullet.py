@@ -9,11 +9,10 @@ from runner.base.arrays import FloatArray
 from runner.base.engine_output import quiet_stderr
 from runner.base.lazy_modules import pin
 from runner.plants.bullet_servers import SERVERS
-from runner.plants.compiled_motion import compile_links_torque
-from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.compiled_motion import CompiledLinksTorque
+from runner.plants.decoupled import TorquePlantConfig, assemble_flexible, assemble_plant
 from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.flexible_wrapper import flexible_around
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -34,7 +33,7 @@ class LinksTorque:
     """
 
     def __init__(self, model: RobotModel) -> None:
-        self._compiled = compile_links_torque(model)
+        self._compiled = CompiledLinksTorque.compile(model)
         self._model = pin.Model(model.pin_model)
         self._data, self._armature = self._model.createData(), model.armature
 
@@ -245,7 +244,7 @@ CONFIG = BulletConfig
 def build(config: BulletConfig, robot: Robot, step: float, steps_per_tick: int) -> Plant:
     """Build the plant of a config."""
     if config.flexible_joints is not None:
-        parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
-        return flexible_around(*parts, lambda links: Bullet(robot.urdf, links, step, 1))
+        parts = config, config.flexible_joints, robot, step, steps_per_tick
+        return assemble_flexible(*parts, lambda links: Bullet(robot.urdf, links, step, 1))
     tick = step * steps_per_tick
     return assemble_plant(config, robot, tick, lambda urdf, model: Bullet(urdf, model, step, steps_per_tick))

@@ -1,9 +1,11 @@
-"""Compiled arm motion between two ticks: the classical Runge-Kutta scheme, with joint friction."""
+"""Compiled arm motion between two ticks: the classical Runge-Kutta scheme, with joint friction or flexible joints."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Self
+
+import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
@@ -17,8 +19,9 @@ from runner.symbolic.program import Expressed, Frame, program
 from runner.symbolic.structure import Values, any_number, arm_pattern
 from runner.symbolic.vectors import Matrix, Vector, add, product, scale, subtract, times, transpose
 
-if TYPE_CHECKING:  # plants with springs use this module
+if TYPE_CHECKING:  # these modules use this one
     from runner.plants.decoupled import Motion
+    from runner.plants.flexible_joints import Flexibility
 
 _PIVOTS, _ROUNDING = 100, 1e-12  # as in runner/plants/friction.py
 
@@ -54,6 +57,26 @@ class MotionScalars(NamedTuple):
     tick: Value
     gravity: Vector
     arms: tuple[ArmScalars, ...]
+
+
+class Springs(NamedTuple):
+    """Springs and motors of the m flexible joints of an arm with n joints.
+
+    Attributes:
+        joints: Indices of the flexible joints, shape (m,).
+        stiffness: K, shape (m,), in N m/rad.
+        damping: D, shape (m,), in N m s/rad.
+        motors: B, shape (m,), in kg m^2.
+        load: External torques on the links, shape (n,), in N m.
+        free: 0 for each motor whose brake is closed, else 1, shape (m,).
+    """
+
+    joints: Sequence[int]
+    stiffness: Vector
+    damping: Vector
+    motors: Vector
+    load: Vector
+    free: Vector
 
 
 def motion_scalars(motion: "Motion", step: float, tick: float, number: Callable[[float], Any]) -> MotionScalars:
@@ -115,18 +138,21 @@ def expressed_motion(motion: "Motion", numbers: MotionScalars, at: Slots, torque
 
 
 class Mover:
-    """Motion of one arm.
+    """Motion of one arm; positions are those of its links, followed by those of the motors behind springs.
 
     Args:
         algebra: Algebra of the arm.
-        joint: Index of the arm's first joint among the robot's joints.
-        nq: Number of joints of the robot.
-        count: Number of joints of the arm.
+        joint: Index of the arm's first position among those of the robot.
+        nq: Number of positions of the robot.
+        count: Number of positions of the arm.
         at: Allocator of slots.
+        springs: Springs and motors; None for rigid joints.
     """
 
-    def __init__(self, algebra: ArmAlgebra, joint: int, nq: int, count: int, at: Slots) -> None:
-        self._algebra, self._count, self._at = algebra, count, at
+    def __init__(
+        self, algebra: ArmAlgebra, joint: int, nq: int, count: int, at: Slots, springs: Springs | None = None
+    ) -> None:
+        self._algebra, self._count, self._at, self._springs = algebra, count, at, springs
         self._first = joint, nq + joint
         self._q, self._v = (places(STATE, first, count) for first in self._first)
 
@@ -158,7 +184,20 @@ class Mover:
         parts.append(Repeat([begin, stages, end], "steps"))
 
     def acceleration(self, q: Vector, v: Vector, tau: Vector) -> Vector:
-        """Return the joint accelerations under torques, shapes (n,)."""
+        """Return the accelerations of links and motors under the motors' torques; see FlexibleJoints."""
+        if self._springs is None:
+            return self._accelerate_links(q, v, tau)
+        joints, stiffness, damping, inertias, load, free = self._springs
+        n, acting, motors = len(load), list(tau), []
+        for index, (joint, K, D, B) in enumerate(zip(joints, stiffness, damping, inertias, strict=True)):
+            spring = K * (q[n + index] - q[joint]) + D * (v[n + index] - v[joint])
+            motors.append(free[index] * (tau[joint] - spring) / B)
+            acting[joint] = spring
+        pushed = [torque + own for torque, own in zip(acting, load, strict=True)]
+        return [*self._accelerate_links(q[:n], v[:n], pushed), *motors]
+
+    def _accelerate_links(self, q: Vector, v: Vector, tau: Vector) -> Vector:
+        """Return the accelerations of the links under their torques, shapes (n,)."""
         bias = self._algebra.inverse_dynamics(q, v, [0.0] * len(q))
         return Factors(self._algebra.mass_matrix(q)).solve(subtract(tau, bias))
 
@@ -238,6 +277,12 @@ class ArmCode(ABC):
     def __init__(self, model: RobotModel, step: float = 0.0) -> None:
         self._model, self._step = model.copy(), step
 
+    @classmethod
+    def compile(cls, *args: Any) -> Self | None:
+        """Return the code of an arm, or None if compiled code is unavailable; takes the constructor's arguments."""
+        model: RobotModel = args[0]
+        return cls(*args) if evaluator() and model.nq <= MOST_JOINTS else None
+
     @cached_property
     def _frame(self) -> Frame:
         """The code with its arrays."""
@@ -261,8 +306,9 @@ class ArmCode(ABC):
         """Return the parts of the code; it takes numbers in the order of `_scalars`."""
 
     def _scalars(self, number: Callable[[float], Any]) -> tuple[Any, ...]:
-        """Return the parameters of the code, converted by `number`; gravity comes first."""
-        return step_scalars(self._model, self._step, number)
+        """Return the parameters of the code, converted by `number`: gravity, step, bodies."""
+        gravity = [number(value) for value in self._model.gravity.tolist()]
+        return gravity, number(self._step), constants_of(self._model, number, [0.0] * 3)
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Set the gravity vector in the base frame, shape (3,), in m/s^2."""
@@ -270,24 +316,57 @@ class ArmCode(ABC):
 
 
 class CompiledStep(ArmCode):
-    """Compiled integration steps of one arm without friction."""
+    """Compiled integration steps of one arm without friction; see FlexibleJoints for springs and motors.
+
+    Args:
+        model: Rigid-body model of the links.
+        step: Integration step, in s.
+        flexibility: Springs and motors of the joints; None for rigid joints.
+    """
+
+    def __init__(self, model: RobotModel, step: float, flexibility: "Flexibility | None" = None) -> None:
+        super().__init__(model, step)
+        self._on: list[int] = []
+        self._springs: tuple[FloatArray, ...] = ()
+        if flexibility is not None:
+            on = flexibility.flexible
+            self._springs = flexibility.stiffness[on], flexibility.damping[on], flexibility.motors[on]
+            self._on = np.flatnonzero(on).tolist()
 
     def _names(self) -> tuple[str, str]:
-        return f"step {arm_pattern(self._model)}", f"the motion of {self._model.nq} joints"
+        springs = [to_scalars(own, any_number) for own in self._springs]
+        pattern = f"step {arm_pattern(self._model)} {self._on} {springs!r}"
+        return pattern, f"the motion of {self._model.nq} joints{' with springs' if springs else ''}"
+
+    def _scalars(self, number: Callable[[float], Any]) -> tuple[Any, ...]:
+        return *super()._scalars(number), [to_scalars(own, number) for own in self._springs]
 
     def _express(self, at: Slots) -> list[Part]:
-        parts, n = list[Part](), self._model.nq
-        gravity, h, constants = self._scalars(at.number)
-        at.take(STATE, 2 * n)
+        parts, n, m = list[Part](), self._model.nq, len(self._on)
+        gravity, h, constants, numbers = self._scalars(at.number)
+        at.take(STATE, 2 * (n + m))
+        given = at.take(ROWS, 2 * n + m if numbers else n)[1]
+        springs = None
+        if numbers:
+            stiffness, damping, motors = numbers
+            springs = Springs(self._on, stiffness, damping, motors, given[n : 2 * n], given[2 * n :])
         algebra = ArmAlgebra(constants._replace(gravity=gravity))
-        Mover(algebra, 0, n, n, at).move(at.take(ROWS, n)[1], h, parts)
+        Mover(algebra, 0, n + m, n + m, at, springs).move(given[:n], h, parts)
         return parts
 
-    def advance(self, q: FloatArray, v: FloatArray, tau: FloatArray, steps: int) -> None:
-        """Advance by a number of steps under held torques, in place; shapes (nq,), in rad, rad/s and N m."""
+    def advance(self, q: FloatArray, v: FloatArray, given: FloatArray, steps: int) -> None:
+        """Advance by a number of steps, in place.
+
+        Args:
+            q: Positions of the links, followed by those of the motors behind springs, shape (n + m,), in rad.
+            v: Their velocities, shape (n + m,), in rad/s.
+            given: Held motor torques, shape (n,), in N m. With springs, external torques on the links, shape (n,), and
+                0 for each motor whose brake is closed, else 1, shape (m,), follow them.
+            steps: Number of steps.
+        """
         frame, n = self._frame, len(q)
         state = frame.state[:, 0]
-        state[:n], state[n:], frame.rows[0, :, 0], frame.steps[0] = q, v, tau, steps
+        state[:n], state[n:], frame.rows[0, :, 0], frame.steps[0] = q, v, given, steps
         frame.call()
         q[:], v[:] = state[:n], state[n:]
 
@@ -314,23 +393,3 @@ class CompiledLinksTorque(ArmCode):
         state[:n], state[n:], row[:] = q, v, tau
         frame.call()
         return row
-
-
-def step_scalars(model: RobotModel, step: float, number: Callable[[float], Any]) -> tuple[Vector, Value, ArmConstants]:
-    """Return the parameters of an arm's steps, converted by `number`: gravity, step, bodies."""
-    gravity = [number(value) for value in model.gravity.tolist()]
-    return gravity, number(step), constants_of(model, number, [0.0] * 3)
-
-
-def compile_motion(model: RobotModel, step: float) -> CompiledStep | None:
-    """Return a compiled Runge-Kutta step of an arm, of length `step` in s; None if unavailable."""
-    if not evaluator() or model.nq > MOST_JOINTS:
-        return None
-    return CompiledStep(model, step)
-
-
-def compile_links_torque(model: RobotModel) -> CompiledLinksTorque | None:
-    """Return the compiled link torques of an arm with armature, or None if unavailable."""
-    if not evaluator() or model.nq > MOST_JOINTS:
-        return None
-    return CompiledLinksTorque(model)

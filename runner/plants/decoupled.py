@@ -1,4 +1,4 @@
-"""Torque-driven plants of a robot: one coupled arm, or decoupled stages as in the thesis."""
+"""Torque-driven plants of a robot: one coupled arm, decoupled stages as in the thesis, or flexible joints."""
 
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
@@ -11,6 +11,8 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.plants.computation import ComputationConfig
+from runner.plants.flexible_config import FlexibleJointsConfig
+from runner.plants.flexible_joints import FlexibleJoints, SeriesElastic, links_of
 from runner.plants.friction import with_friction
 from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
@@ -146,6 +148,36 @@ def assemble_plant(
         whole = plants[0] if len(plants) == 1 else Decoupled(robot, plants, motion.ignore_base_rotation)
         on_error.pop_all()
     return whole
+
+
+def assemble_flexible(
+    config: TorquePlantConfig,
+    joints: FlexibleJointsConfig,
+    robot: Robot,
+    step: float,
+    steps_per_tick: int,
+    make: Callable[[RobotModel], Plant] | None = None,
+) -> Plant:
+    """Build the plant of a robot with flexible joints.
+
+    Args:
+        config: Config of coupling (dynamics) and friction, which acts on the motors.
+        joints: Config of springs and motors.
+        robot: The robot.
+        step: Integration step, in s.
+        steps_per_tick: Steps in a tick.
+        make: Function that builds an engine for the links from their model, with one step in a tick; None integrates
+            links and motors by the Runge-Kutta scheme.
+
+    Raises:
+        ConfigError: see find_motion and FlexibleJointsConfig.by_joint.
+    """
+    (arm,) = find_motion(robot, config).arms
+    flexibility = joints.by_joint(robot)
+    links = links_of(arm.model, flexibility.flexible)
+    parts = links, flexibility, step, steps_per_tick
+    plant = FlexibleJoints(*parts) if make is None else SeriesElastic(make(links), *parts)
+    return with_friction(plant, links, arm.viscous, arm.coulomb, step * steps_per_tick)
 
 
 def default_step(tick: float, stages: int) -> float:

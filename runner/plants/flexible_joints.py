@@ -1,4 +1,7 @@
-"""Flexible-joint plant: springs between motors and links, integrated by the Runge-Kutta scheme."""
+"""Flexible joints: springs between motors and links, by the Runge-Kutta scheme or around a physics engine.
+
+It also contains encoders and drives of the motors; see runner/plants/friction.py for their friction.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,7 +10,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
-from runner.plants.compiled_flexible import compile_flexible
+from runner.plants.compiled_motion import CompiledStep
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.modes import largest_rate
@@ -108,8 +111,7 @@ class FlexibleJoints(Plant):
         self._ticks, self._free = 0, np.ones(int(self._on.sum()), dtype=bool)
         self._damping = flexibility.damping[self._on]
         self._step, self._steps_per_tick = step, steps_per_tick
-        numbers = flexibility.stiffness, flexibility.damping, flexibility.motors
-        self._compiled = compile_flexible(model, self._on, *numbers, step)
+        self._compiled = CompiledStep.compile(model, step, flexibility)
         self.q, self.dq = np.zeros(model.nq), np.zeros(model.nq)
         self.theta: FloatArray = np.zeros(model.nq)
         """Motor positions after the gear, shape (nq,), in rad; equal to q for a rigid joint."""
@@ -136,11 +138,11 @@ class FlexibleJoints(Plant):
         on, nq = self._on, len(self.q)
         self._brake(on)
         x = np.concatenate([self.q, self.theta[on], self.dq, self.dtheta[on]])
-        if self._compiled is not None:
-            x = self._compiled.advance(x, tau, self.load, self._free, self._steps_per_tick)
-        else:
+        if self._compiled is None:
             x = runge_kutta(lambda at: self._slope(at, tau), x, self._step, self._steps_per_tick)
         places, speeds = x[: len(x) // 2], x[len(x) // 2 :]
+        if self._compiled is not None:
+            self._compiled.advance(places, speeds, np.concatenate([tau, self.load, self._free]), self._steps_per_tick)
         self.q[:], self.dq[:] = places[:nq], speeds[:nq]
         self.theta[:], self.dtheta[:] = self.q, self.dq
         self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]
@@ -173,3 +175,95 @@ class FlexibleJoints(Plant):
         links = pin.computeMechanicalEnergy(self._model, self._data, self.q, self.dq)
         springs = 0.5 * float(self._stiffness @ bent**2)
         return float(links) + springs + 0.5 * float(self._motors @ self.dtheta[self._on] ** 2)
+
+
+class SeriesElastic(FlexibleJoints):
+    r"""An arm with flexible joints whose links are moved by a physics engine.
+
+    In each step of length h, the torques of springs and dampers at its start act on the links. They also act on the
+    motors, by semi-implicit Euler:
+
+    .. math:: \dot\theta_{n+1} = \dot\theta_n + h B^{-1} (\tau - K (\theta_n - q_n) - D (\dot\theta_n - \dot q_n)),
+        \qquad \theta_{n+1} = \theta_n + h \dot\theta_{n+1}
+
+    With an engine of the same scheme (PyBullet, MuJoCo's Euler), the whole scheme is of first order. Undamped, it is
+    symplectic: a mode is stable up to a rate of 2 / h, and energy is conserved in the long run.
+
+    Args:
+        engine: Plant of the links; one call of `advance` takes one step.
+        model: Rigid-body model of the links.
+        flexibility: Springs, dampers and motors of the joints.
+        step: h, in s.
+        steps_per_tick: Steps for which the torques of one tick are held.
+    """
+
+    def __init__(
+        self, engine: Plant, model: RobotModel, flexibility: Flexibility, step: float, steps_per_tick: int
+    ) -> None:
+        super().__init__(model, flexibility, step, steps_per_tick)
+        self._engine = engine
+        self.q, self.dq = engine.q, engine.dq
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Reset links and motors to a state; see FlexibleJoints."""
+        self._engine.reset(q, dq)
+        super().reset(q, dq)
+
+    def set_gravity(self, gravity: FloatArray) -> None:
+        """Set the gravity vector; see Plant."""
+        super().set_gravity(gravity)
+        self._engine.set_gravity(gravity)
+
+    def advance(self, tau: FloatArray) -> None:
+        """Hold the motors' torques for one tick; see Plant."""
+        on, h = self._on, self._step
+        self._brake(on)
+        for _ in range(self._steps_per_tick):
+            spring = self.spring_torque()
+            self._engine.advance(np.where(on, spring, tau) + self.load)
+            self.dtheta[on] += h * self._free * (tau - spring)[on] / self._motors
+            self.theta[on] += h * self.dtheta[on]
+        self.theta[~on], self.dtheta[~on] = self.q[~on], self.dq[~on]
+
+    def close(self) -> None:
+        """Release the resources of the engine."""
+        self._engine.close()
+
+
+class MotorSide:
+    r"""Encoder readings of flexible joints without noise, and the torques that drives add.
+
+    Encoders at the motors measure
+
+    .. math:: \hat q = \theta - K^{-1} G(\theta), \qquad \hat{\dot q} = \dot\theta
+
+    At rest q-hat differs from q by K^-1 (G(q) - G(theta)), of second order in 1/K. Without correction, it is theta.
+
+    Drives with exact encoders on both sides add the fast part of composite control (Spong, J. Dyn. Syst. Meas. Control
+    109, 1987), at the ticks of each control loop:
+
+    .. math:: \tau = \tau_{law} - K_f (\dot\theta - \dot q)
+
+    It damps the vibration of the springs, which a rigid-arm control law with encoders at the links would excite.
+
+    Args:
+        plant: The plant with the springs.
+        at_motors: True if the controllers read encoders at the motors, False for encoders at the links.
+        weight: Nominal model whose weight deflects the joints; None for readings without correction.
+    """
+
+    def __init__(self, plant: FlexibleJoints, at_motors: bool, weight: RobotModel | None) -> None:
+        self.plant, self._at_motors, self._weight = plant, at_motors, weight
+
+    def read(self) -> tuple[FloatArray, FloatArray]:
+        """Return joint positions and velocities as measured by the encoders, shapes (nq,), in rad and rad/s."""
+        plant = self.plant
+        if not self._at_motors:
+            return plant.q, plant.dq
+        if self._weight is None:
+            return plant.theta, plant.dtheta
+        return plant.theta - plant.flexibility.deflection(self._weight.gravity_torque(plant.theta)), plant.dtheta
+
+    def damping(self) -> FloatArray:
+        """Return the torques that the drives add to the controllers' torques, shape (nq,), in N m."""
+        return self.plant.flexibility.torsion_feedback * (self.plant.dq - self.plant.dtheta)

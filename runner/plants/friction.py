@@ -1,9 +1,10 @@
-"""Dry and viscous joint friction of a torque-driven arm."""
+"""Dry and viscous friction of joints, and of motors behind springs."""
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import lapack, pin
+from runner.plants.flexible_joints import FlexibleJoints
 from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
 
@@ -12,11 +13,45 @@ _ROUNDING = 1e-12  # relative to the acting torques
 
 
 def with_friction(plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> Plant:
-    """Return a plant with friction in its joints, or the plant itself without friction; see Frictional."""
-    return Frictional(plant, model, viscous, coulomb, tick) if viscous.any() or coulomb.any() else plant
+    """Return a plant with friction in its joints or in the motors behind them; the plant itself without friction."""
+    if not (viscous.any() or coulomb.any()):
+        return plant
+    if isinstance(plant, FlexibleJoints):
+        return MotorFriction(plant, viscous, coulomb, tick)
+    return Frictional(plant, model, viscous, coulomb, tick)
 
 
-class Frictional(PlantWrapper):
+class _Friction(PlantWrapper):
+    """A plant whose motor torques are reduced by friction, which is held over a tick.
+
+    Args:
+        plant: The plant without friction; one call of `advance` takes one tick.
+        viscous: b of each joint, shape (nq,), in N m s/rad.
+        coulomb: c of each joint, shape (nq,), in N m.
+        tick: h, in s.
+    """
+
+    def __init__(self, plant: Plant, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
+        super().__init__(plant)
+        self._viscous, self._coulomb, self._tick = viscous, coulomb, tick
+        self._friction = np.zeros(len(plant.q))
+
+    @property
+    def friction(self) -> FloatArray:
+        """Friction torques in the last tick; see Plant."""
+        return self._friction
+
+    def advance(self, tau: FloatArray) -> None:
+        """Hold the torques minus friction for one tick; see Plant."""
+        self._friction = self._find_friction(tau)
+        self.plant.advance(tau - self._friction)
+
+    def _find_friction(self, tau: FloatArray) -> FloatArray:
+        """Return the friction torques under motor torques, shapes (nq,), in N m."""
+        raise NotImplementedError
+
+
+class Frictional(_Friction):
     r"""A plant with friction in its joints, by backward Euler over the plant's tick h.
 
     .. math:: (M + h b) \dot q^+ = M \dot q + h (\tau - V - G - \mu), \quad
@@ -35,19 +70,11 @@ class Frictional(PlantWrapper):
     """
 
     def __init__(self, plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
-        super().__init__(plant)
+        super().__init__(plant, viscous, coulomb, tick)
         self._model = pin.Model(model.pin_model)
         self._data = self._model.createData()
-        self._tick = tick
         self._damping = tick * viscous
-        self._viscous, self._coulomb = viscous, coulomb
         self._direction = np.zeros(model.nq)
-        self._friction = np.zeros(model.nq)
-
-    @property
-    def friction(self) -> FloatArray:
-        """Friction torques in the last tick; see Plant."""
-        return self._friction
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Reset the arm to a state; see Plant."""
@@ -59,8 +86,7 @@ class Frictional(PlantWrapper):
         super().set_gravity(gravity)
         self._model.gravity.linear = gravity
 
-    def advance(self, tau: FloatArray) -> None:
-        """Hold the torques minus friction for one tick; see Plant."""
+    def _find_friction(self, tau: FloatArray) -> FloatArray:
         model, data, h = self._model, self._data, self._tick
         bias = pin.nonLinearEffects(model, data, self.q, self.dq).copy()
         M = np.triu(pin.crba(model, data, self.q))  # crba fills the upper triangle only
@@ -69,8 +95,8 @@ class Frictional(PlantWrapper):
         _, columns, _ = lapack.dposv(M + np.diag(self._damping), np.column_stack([pushed, h * np.eye(len(tau))]))
         speed, mobility = columns[:, 0], columns[:, 1:]
         mu, self._direction = stopping_torques(mobility, speed, self._coulomb, self._direction)
-        self._friction = self._viscous * (speed - mobility @ mu) + mu
-        self.plant.advance(tau - self._friction)
+        friction: FloatArray = self._viscous * (speed - mobility @ mu) + mu
+        return friction
 
     def _contact_torque(self) -> FloatArray:
         """Return the joint torques of the plant's contacts in the last tick, shape (nq,), in N m."""
@@ -80,6 +106,36 @@ class Frictional(PlantWrapper):
         pin.computeJointJacobians(self._model, self._data, self.q)
         torque: FloatArray = pin.getJointJacobian(self._model, self._data, self._model.nq, pin.WORLD).T @ wrench
         return torque
+
+
+class MotorFriction(_Friction):
+    r"""Flexible joints with motor friction, by backward Euler over the tick h; see Frictional.
+
+    .. math:: (B + h b) \dot\theta^+ = B \dot\theta + h (\tau - K (\theta - q) - D (\dot\theta - \dot q) - \mu), \quad
+        \mu \in c \, \mathrm{sgn}(\dot\theta^+), \qquad \tau_f = -b \dot\theta^+ - \mu
+
+    The motors do not act on each other, so mu is the torque that stops a motor within the tick, clipped at c. The
+    springs' torques are held over the tick.
+
+    Args:
+        plant: The plant without friction.
+        viscous: b of each joint's motor, shape (nq,), in N m s/rad; 0 for a rigid joint.
+        coulomb: c of each joint's motor, shape (nq,), in N m; 0 for a rigid joint.
+        tick: h, in s.
+    """
+
+    def __init__(self, plant: FlexibleJoints, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
+        super().__init__(plant, viscous, coulomb, tick)
+        self._springs = plant
+
+    def _find_friction(self, tau: FloatArray) -> FloatArray:
+        plant, h, on = self._springs, self._tick, self._springs.flexibility.flexible
+        B, b, c = plant.flexibility.motors[on], self._viscous[on], self._coulomb[on]
+        free = (B * plant.dtheta[on] + h * (tau - plant.spring_torque())[on]) / (B + h * b)
+        mu = np.clip(free * (B + h * b) / h, -c, c)
+        friction = np.zeros(len(tau))
+        friction[on] = b * (free - h * mu / (B + h * b)) + mu
+        return friction
 
 
 def stopping_torques(

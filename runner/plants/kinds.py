@@ -13,7 +13,7 @@ from runner.base.errors import ConfigError, SimulationError
 from runner.plants.computation import ComputationConfig
 from runner.plants.decoupled import Motion
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.plant import Plant
+from runner.plants.plant import Plant, unwrapped
 from runner.plants.servo import ServoConfig
 from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Asked, Attribute, Guard, Method, checked, refuse
@@ -104,13 +104,6 @@ def _check_wrench(answer: Any, asked: Asked) -> FloatArray | None:
     return None if answer is None else checked(answer, (6,), asked)
 
 
-def _innermost(part: Any) -> Any:
-    """Return the user-supplied plant that moves the arm, inside all wrappers."""
-    while hasattr(part, "plant"):
-        part = part.plant
-    return part
-
-
 GUARD = Guard(
     "plant",
     Plant,
@@ -122,9 +115,9 @@ GUARD = Guard(
     set_gravity=Method(),
     advance=Method(),
     close=Attribute(),
-    add_wall=Method(lambda answer, *_: answer is not False, optional=True, owner=_innermost, fail=refuse),
-    contact_wrench=Method(_check_wrench, optional=True, owner=_innermost),
-    tool_reaction=Method(_check_wrench, optional=True, owner=_innermost),
+    add_wall=Method(lambda answer, *_: answer is not False, optional=True, owner=unwrapped, fail=refuse),
+    contact_wrench=Method(_check_wrench, optional=True, owner=unwrapped),
+    tool_reaction=Method(_check_wrench, optional=True, owner=unwrapped),
 )
 """Checks of a user-supplied plant."""
 

@@ -1,6 +1,8 @@
 """MuJoCo plant: composite-rigid-body algorithm with a choice of integrators."""
 
-from typing import Literal
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from typing import Any, Literal
 
 import mujoco
 import numpy as np
@@ -9,11 +11,9 @@ from pydantic import Field
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
-from runner.plants.decoupled import TorquePlantConfig, assemble_plant
+from runner.plants.decoupled import TorquePlantConfig, assemble_flexible, assemble_plant
 from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.flexible_wrapper import flexible_around
-from runner.plants.mujoco_model import FORCE, MOMENT, WALL, compiled, read_spec
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -30,6 +30,13 @@ _INTEGRATORS = {
 mujoco.set_mju_user_warning(lambda text: None)  # MuJoCo would print, and write to a file, what the loop reports
 _TOLERANCE = 1e-12  # of the solver for contact forces
 _IMPEDANCE = 1e-4, 0.9999  # MuJoCo's range
+# Links stay separate bodies, so that the mount of a tool has a reaction.
+_COMPILER = {"fusestatic": "false", "discardvisual": "false", "inertiafromgeom": "false"}
+_LEFT_OUT = {"joint": "dynamics", "link": "visual"}
+_ROUNDING = 1e-15  # relative to a moment of inertia
+_LEAST_OF_TENSOR = 1e-14  # kg m^2
+# Names of elements besides the arm: the reaction sensors in a tool's mount, and the wall.
+_FORCE, _MOMENT, _WALL = "reaction_force", "reaction_moment", "wall"
 
 
 class MujocoConfig(TorquePlantConfig):
@@ -79,7 +86,9 @@ class Mujoco(Plant):
         integrator: Integrator,
         min_inertia: float,
     ) -> None:
-        self._model = compiled(read_spec(urdf, min_inertia, dict(zip(model.joint_names, model.armature, strict=True))))
+        self._model = _compiled(
+            _read_spec(urdf, min_inertia, dict(zip(model.joint_names, model.armature, strict=True)))
+        )
         self._data = data = mujoco.MjData(self._model)
         self._steps_per_tick = steps_per_tick
         options = self._model.opt
@@ -121,7 +130,7 @@ class Mujoco(Plant):
         with an estimate A of the contact's inverse mass. It takes the rest as stiffness and damping of an acceleration.
         """
         model, h = self._model, self._model.opt.timestep
-        wall = model.geom(WALL).id
+        wall = model.geom(_WALL).id
         turn = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), normal)
         model.geom_pos[wall], model.geom_quat[wall] = point, [turn.w, turn.x, turn.y, turn.z]
         model.geom_sameframe[wall] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # it is no longer at the base's origin
@@ -153,7 +162,7 @@ class Mujoco(Plant):
             return None
         data = self._data
         turned = data.site(TOOL_MOUNT).xmat.reshape(3, 3)
-        return -np.concatenate([turned @ data.sensor(name).data for name in (FORCE, MOMENT)])
+        return -np.concatenate([turned @ data.sensor(name).data for name in (_FORCE, _MOMENT)])
 
     def mass_matrix(self, q: FloatArray) -> FloatArray:
         """Return MuJoCo's joint-space mass matrix, shape (nq, nq), in kg m^2."""
@@ -164,6 +173,106 @@ class Mujoco(Plant):
         return M
 
 
+def _read_spec(urdf: str, min_inertia: float, armature: Mapping[str, float]) -> Any:
+    """Return an arm as MuJoCo's specification, which can be changed before it is compiled.
+
+    Damping and friction in the URDF are ignored. The arm's shapes collide only with a wall.
+
+    Args:
+        urdf: URDF of the arm, as a string.
+        min_inertia: Smallest mass and principal moment of inertia of a moving link, in kg and kg m^2; smaller values
+            are raised to this one.
+        armature: Armature of each joint by name, in kg m^2.
+
+    Raises:
+        ConfigError: if MuJoCo cannot read the URDF.
+    """
+    root = ET.fromstring(urdf)  # noqa: S314 - text from the runner, checked when it was read
+    for own in root.findall("mujoco"):  # a file may contain settings for MuJoCo's parser
+        root.remove(own)
+    ET.SubElement(ET.SubElement(root, "mujoco"), "compiler", _COMPILER)
+    for whole, part in _LEFT_OUT.items():
+        for element in root.iter(whole):
+            for left_out in element.findall(part):
+                element.remove(left_out)
+    try:
+        spec = mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
+    except ValueError as error:
+        raise _refused(error) from error
+    for body in spec.bodies:
+        if body.joints:
+            _give_inertia(body, min_inertia)
+        elif _is_flat(body):
+            _give_inertia(body, 0.0)
+    for joint in spec.joints:
+        joint.armature = armature.get(joint.name, 0.0)
+    _add_wall(spec)
+    for mounted in root.iterfind(f"joint[@name='{TOOL_MOUNT}']/child"):
+        _add_tool_sensors(spec, mounted.get("link", ""))
+    return spec
+
+
+def _compiled(spec: Any) -> Any:
+    """Return the compiled model of a specification.
+
+    Raises:
+        ConfigError: if MuJoCo rejects it.
+    """
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise _refused(error) from error
+
+
+def _refused(error: ValueError) -> ConfigError:
+    return ConfigError(f"robot.urdf: MuJoCo does not take it as it is: {' '.join(str(error).split())}")
+
+
+def _is_flat(body: Any) -> bool:
+    """Return True if a body's inertia about an axis is nearly zero, which MuJoCo rejects in a tensor."""
+    moments = np.linalg.eigvalsh(_tensor(body))
+    return bool(moments[0] < _LEAST_OF_TENSOR and moments.any())
+
+
+def _tensor(body: Any) -> Any:
+    xx, yy, zz, xy, xz, yz = np.nan_to_num(body.fullinertia)  # NaN if all are zero
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def _give_inertia(body: Any, least: float) -> None:
+    """Raise a moving link's mass and inertia to a minimum; let no moment exceed the sum of the others.
+
+    A disc's moment may exceed it by rounding, which MuJoCo rejects.
+    """
+    moments, axes = np.linalg.eigh(_tensor(body))
+    moments = np.maximum(moments, least)
+    moments[0] = max(moments[0], (1.0 + _ROUNDING) * moments[2] - moments[1])
+    axes[:, 0] *= np.linalg.det(axes)  # right-handed
+    along = pin.Quaternion(*body.iquat.tolist()) * pin.Quaternion(axes)
+    body.mass = max(body.mass, least)
+    body.fullinertia[0] = np.nan  # the principal moments replace it
+    body.inertia, body.iquat = moments, [along.w, along.x, along.y, along.z]
+
+
+def _add_wall(spec: Any) -> None:
+    """Add a frictionless wall, the only body in contact with the arm's shapes: the plane z = 0 until it is moved."""
+    for number, geom in enumerate(spec.geoms):
+        geom.name, geom.contype, geom.conaffinity = f"{_WALL} {number}", 0, 0
+    touching = [geom.name for geom in spec.geoms]
+    spec.worldbody.add_geom(
+        name=_WALL, type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0.0, 0.0, 1.0], contype=0, conaffinity=0
+    )
+    for name in touching:
+        spec.add_pair(name=name, geomname1=_WALL, geomname2=name, condim=1)
+
+
+def _add_tool_sensors(spec: Any, tool: str) -> None:
+    """Add reaction sensors to a tool's mount, at its origin."""
+    spec.body(tool).add_site(name=TOOL_MOUNT)
+    for name, kind in ((_FORCE, mujoco.mjtSensor.mjSENS_FORCE), (_MOMENT, mujoco.mjtSensor.mjSENS_TORQUE)):
+        spec.add_sensor(name=name, type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname=TOOL_MOUNT)
+
+
 CONFIG = MujocoConfig
 
 
@@ -171,8 +280,8 @@ def build(config: MujocoConfig, robot: Robot, step: float, steps_per_tick: int) 
     """Build the plant of a config."""
     tick, chosen = step * steps_per_tick, (config.integrator, config.min_inertia)
     if config.flexible_joints is not None:
-        parts = config.flexible_joints, config.friction, robot, step, steps_per_tick
-        return flexible_around(*parts, lambda links: Mujoco(robot.urdf, links, step, 1, *chosen))
+        parts = config, config.flexible_joints, robot, step, steps_per_tick
+        return assemble_flexible(*parts, lambda links: Mujoco(robot.urdf, links, step, 1, *chosen))
     return assemble_plant(config, robot, tick, lambda urdf, model: Mujoco(urdf, model, step, steps_per_tick, *chosen))
 
 

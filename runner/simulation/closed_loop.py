@@ -6,7 +6,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers import Loop
 from runner.environments.external_wrench import Interaction
 from runner.plants import Plant
-from runner.plants.motors import MotorSide
+from runner.plants.flexible_joints import MotorSide
 from runner.plugins.features import Commands
 from runner.robots.robot import Robot
 from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram

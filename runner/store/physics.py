@@ -43,10 +43,9 @@ _TABLE = """
         hand link_forces=pushed_links push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary
         tracking
-    plants: __init__=plants.__init__ bullet bullet_servers compiled_flexible=flexible compiled_motion=compiled.motion
+    plants: __init__=plants.__init__ bullet bullet_servers compiled_motion=compiled.motion
         computation=plants.computation contact_plant=touched decoupled flexible_config
-        flexible_joints=plants.flexible_joints flexible_links=plants.flexible_links flexible_wrapper=flexible_around
-        friction kinds=plants.kinds kinematic motors=sensing.motors mujoco mujoco_model payload_changes
+        flexible_joints=plants.flexible_joints friction kinds=plants.kinds kinematic mujoco payload_changes
         plant=plants.plant rk4 rk4_flexible_links servo
     plugins: features guard metric_units registry
     robots: __init__=robots.__init__ chain description

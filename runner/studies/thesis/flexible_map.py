@@ -9,8 +9,6 @@ from runner.base.arrays import FloatArray
 from runner.config.composed import Composed
 from runner.config.validation import validate
 from runner.controllers import Controller
-from runner.plants.flexible_joints import FlexibleJoints
-from runner.plants.plant import unwrapped
 from runner.reporting.document import Series
 from runner.simulation.assembly import assemble
 from runner.store import Run
@@ -27,9 +25,9 @@ def radius(run: Run, changes: Mapping[str, Any]) -> float:
     """
     closed = assemble(validate(Composed(_changed(run.config, changes))))
     try:
-        plant, side, (loop,) = unwrapped(closed.plant), closed.motor_side, closed.loops
-        assert isinstance(plant, FlexibleJoints)  # noqa: S101 - the caller says so
-        assert side is not None  # noqa: S101 - as above
+        side, (loop,) = closed.motor_side, closed.loops
+        assert side is not None  # noqa: S101 - the caller says so
+        plant = side.plant
         law, on, nq = cast(Controller, loop.controller), plant.flexibility.flexible, len(closed.q_start)
         law.reset()
         still = np.zeros((3, 3))

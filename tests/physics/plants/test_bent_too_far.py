@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import SimulationError
-from runner.plants.flexible_links import FlexibleLinks
+from runner.plants.rk4_flexible_links import FlexibleLinks
 from runner.robots.chain import Beam, cut
 from runner.studies.thesis.cantilever import clamped_arm
 

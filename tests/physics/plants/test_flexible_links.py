@@ -10,9 +10,8 @@ from support.physics import assert_energy_kept
 from runner.base.errors import SimulationError
 from runner.plants import PLANTS
 from runner.plants.computation import EXACT
-from runner.plants.flexible_links import FlexibleLinks
 from runner.plants.rk4 import Rk4
-from runner.plants.rk4_flexible_links import BeamConfig, Rk4FlexibleLinksConfig
+from runner.plants.rk4_flexible_links import BeamConfig, FlexibleLinks, Rk4FlexibleLinksConfig
 from runner.robots.chain import Beam, cut, stiffen_robot
 from runner.studies.thesis.cantilever import clamped_arm
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.physics import assert_order
 
-from runner.plants.flexible_wrapper import SeriesElastic
+from runner.plants.flexible_joints import SeriesElastic
 from runner.plants.plant import unwrapped
 
 KEY = "plant.flexible_joints"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
-from runner.plants.motors import MotorFriction
+from runner.plants.friction import MotorFriction, stopping_torques
 from runner.robots import RobotModel
 
 ONE_JOINT = """<robot name="one"><link name="base"/><link name="arm"><inertial><mass value="1"/><origin xyz="0 0 0"/>
@@ -84,3 +84,15 @@ def test_a_brake_that_closes_on_the_way_leaves_the_link_its_speed():
         q.append(plant.q[0] - 0.02)
     assert plant.theta[0] == pytest.approx(0.02, rel=1e-9)
     assert np.max(q) == pytest.approx(0.2 / np.sqrt(K / 3.0), rel=1e-3)
+
+
+@pytest.mark.parametrize("torque", [0.3, 0.9, -2.5])
+@pytest.mark.parametrize("viscous", [0.0, 4.0])
+def test_motors_have_the_friction_law_of_joints(torque, viscous):
+    plant, around = rubbed(viscous, coulomb=1.0)
+    around.reset(np.zeros(1), np.full(1, 0.001))
+    mobility = np.array([[TICK / (B + TICK * viscous)]])
+    speed = mobility[0] * (B * plant.dtheta / TICK + torque - plant.spring_torque())
+    mu, _ = stopping_torques(mobility, speed, np.ones(1), np.zeros(1))
+    around.advance(np.array([torque]))
+    assert around.friction == pytest.approx(viscous * (speed - mobility @ mu) + mu, rel=1e-12)

@@ -252,7 +252,7 @@ def test_arms_of_many_joints_run_through_pinocchio(capsys):
     compile._tell.cache_clear()
     law = law_of("snake", "operational_space")
     assert found(law, 30) is None
-    assert compiled_motion.compile_motion(law.models[0], 0.01) is None
+    assert compiled_motion.CompiledStep.compile(law.models[0], 0.01) is None
     assert "the arm has 30 joints" in capsys.readouterr().err
 
 
@@ -261,4 +261,4 @@ def test_without_the_library_laws_run_as_they_are(monkeypatch):
     monkeypatch.setattr(compiled_motion, "evaluator", dict)
     law = law_of("macro", "operational_space")
     assert found(law) is None
-    assert compiled_motion.compile_motion(law.models[0], 0.01) is None
+    assert compiled_motion.CompiledStep.compile(law.models[0], 0.01) is None

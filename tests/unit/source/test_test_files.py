@@ -66,7 +66,6 @@ SHARED = {
     "metrics/family": "contract/plugins/test_metrics.py",
     "plants/flexible_config": "physics/plants/test_flexible_joints.py",
     "plants/kinds": "physics/plants/test_plant_kinds.py",
-    "plants/mujoco_model": "physics/plants/test_mujoco.py",
     "plants/rk4_flexible_links": "physics/plants/test_flexible_links.py",
     "robots/mjcf_urdf": "physics/robots/test_mjcf.py",
     "sensing/endpoint": "physics/simulation/test_endpoint_sensing.py",
