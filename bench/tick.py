@@ -28,6 +28,7 @@ _MACRO = ("robot=macro", "trajectory.duration=19")
 _CASES = {
     "bullet, 10 substeps": (*_MACRO, "plant=bullet", "plant.step=0.001"),
     "bullet, 1 substep": (*_MACRO, "plant=bullet", "plant.step=0.01"),
+    "impedance, 10 substeps": (*_MACRO, "plant=bullet", "plant.step=0.001", "controller=impedance"),
     "rk4, 1 step": (*_MACRO, "plant=rk4", "plant.step=0.01"),
     "armature, 10 substeps": (*_MACRO, "plant=bullet", "plant.step=0.001", "robot.armature=0.5"),
     "armature, 1 substep": (*_MACRO, "plant=bullet", "plant.step=0.01", "robot.armature=0.5"),
@@ -47,7 +48,7 @@ def main() -> bool:
     times = measure({name: Block(work, TICKS) for name, work in blocks.items()})
 
     F10, F1 = times["F: bullet, 10 substeps"], times["F: bullet, 1 substep"]
-    bullet10, bullet1, rk4, armature10, armature1, combined = (times[name] for name in _CASES)
+    bullet10, bullet1, impedance10, rk4, armature10, armature1, combined = (times[name] for name in _CASES)
     F6 = times["F: combined, 4 substeps"]
     print(
         f"CPU time of a control tick, 3 joints (combined: 6), median of the quieter {ROUNDS // 2} of {ROUNDS} rounds "
@@ -57,6 +58,7 @@ def main() -> bool:
         print(f"  {name:26} {median(values):6.2f} us  (quickest round {min(values):.2f})")
     within = [
         _judge("bullet, 10 substeps / F", ratio(bullet10, F10), 1.5),
+        _judge("impedance, 10 substeps / F", ratio(impedance10, F10), 2.0),
         _judge("with armature / without, 10", ratio(armature10, bullet10), 4.0),
         _judge("with armature / without, 1", ratio(armature1, bullet1), 2.5),
         _judge("rk4 / F, 10 substeps", ratio(rk4, F10), 0.9),

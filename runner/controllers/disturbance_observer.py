@@ -124,14 +124,27 @@ class MomentumObserver(TorqueFilter):
         n, h, less = len(numbers.limits), numbers.period, arm.backend.less
         r, before, acted, to_come = memory[:n], memory[n : 2 * n], memory[2 * n : 3 * n], memory[3 * n :]
         p, b = (values[self._first : self._end] for values in arm.momentum(q, dq, numbers.gravity))
-        d = (p - 0.5 * h * b - before) / h - acted
+        d, before = momentum_balance(p, b, h, before, acted)
         r = r + numbers.gain * (d - r)
         asked = torque - r
         held = np.array([_within(arm, *pair) for pair in zip(asked, numbers.limits, strict=True)])
         if self._late:  # the first torque acts from the start
             first = np.concatenate([held] * self._late)
             to_come = arm.backend.choose(less(time, 0.5 * h), lambda: first, lambda: to_come)
-        return asked, np.concatenate([r, p + 0.5 * h * b, to_come, held])
+        return asked, np.concatenate([r, before, to_come, held])
+
+
+def momentum_balance(p: Array, b: Array, h: Scalar, before: Array, acted: Array) -> tuple[Array, Array]:
+    """Return the mean disturbance over the last period h, and p + h b / 2, for the next tick; see MomentumObserver.
+
+    Args:
+        p: Generalised momenta, shape (n,).
+        b: Their rate without torques, shape (n,); see Arm.momentum.
+        h: Period, in s.
+        before: p + h b / 2 at the last tick.
+        acted: Mean torques since the last tick, shape (n,), in N m.
+    """
+    return (p - 0.5 * h * b - before) / h - acted, p + 0.5 * h * b
 
 
 class MeasuringController(FilteredController):

@@ -189,7 +189,10 @@ class TorqueLaw(Controller, ABC, Generic[N]):
         gravity_compensation: As above.
         numbers: As above.
         measured: Number of measured joints.
+        compilable: False if the law is evaluated only on floats.
     """
+
+    compilable = True
 
     def __init__(
         self, models: Sequence[RobotModel], gravity_compensation: bool, numbers: N, measured: int | None = None

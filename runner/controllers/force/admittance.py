@@ -9,7 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.controllers.controller import Loop, PositionController
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
-from runner.controllers.force.wrist import Compensation, ToolCompensation
+from runner.controllers.force.force_reading import Compensation, ToolCompensation
 from runner.controllers.kinematic.limited_motion import Approach, LimitedMotion
 from runner.controllers.operational_space.tip_task import task_start
 from runner.robots.robot import Robot

@@ -1,18 +1,20 @@
 """Hybrid force/motion control: force normal to a wall, motion along it."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.controller import Controller, Loop, VelocityGain
+from runner.controllers.controller import Loop, VelocityGain
 from runner.controllers.force.force_reading import ForceReading, JointTorqueReading, ReadingName, WristReading
-from runner.controllers.force.tip_force import ForceTask, TipForceConfig, find_force_task
+from runner.controllers.force.tip_force import ForceTask, TipForce, TipForceConfig, TipMotion, find_force_task
+from runner.controllers.operational_space.whole_body import WholeBodyNumbers
 from runner.robots.robot import Robot
 from runner.schema.units import Newtons, PerSecond, Stiffness
 from runner.sensing.force_torque import ForceTorqueConfig
+from runner.symbolic.maths import Array, Backend, Scalar
 
 
 class HybridForceConfig(TipForceConfig):
@@ -41,7 +43,21 @@ class HybridForceConfig(TipForceConfig):
     sensor: ForceTorqueConfig
 
 
-class HybridForce(Controller):
+class HybridForceNumbers(NamedTuple):
+    """The numbers of hybrid force and motion control."""
+
+    law: WholeBodyNumbers
+    gravity: Array  # in the robot's base frame, shape (3,), in m/s^2
+    normal: Array  # n, shape (3,)
+    wall_stiffness: Scalar  # k, in N/m
+    force: Scalar  # f_d, in N
+    force_gain: Scalar  # k_f
+    integral_gain: Scalar  # k_i, in 1/s
+    force_damping: Scalar  # xi
+    period: Scalar  # in s
+
+
+class HybridForce(TipForce[HybridForceNumbers]):
     r"""Force along a wall's normal n, motion along its face (Khatib 1987; Raibert and Craig 1981).
 
     .. math::
@@ -66,24 +82,36 @@ class HybridForce(Controller):
     """
 
     reads_joint_torques = True
+    compilable = False  # the reading needs the measured joints, which a compiled tick computes itself
 
     def __init__(self, task: ForceTask, config: HybridForceConfig, reading: ForceReading) -> None:
-        self._tip, self._config, self._period, self._reading = task.tip, config, task.period, reading
-        self._normal = _unit(config.normal)
-        _check_directions(task, self._normal)
+        normal, self._reading = _unit(config.normal), reading
+        _check_directions(task, normal)
+        numbers = HybridForceNumbers(
+            task.law.numbers,
+            task.robot.model.gravity,
+            normal,
+            config.wall_stiffness,
+            config.force,
+            config.force_gain,
+            config.integral_gain,
+            config.force_damping,
+            task.period,
+        )
+        super().__init__(task, numbers)
         self.external_wrench: FloatArray = np.zeros(6)
         """See WrenchFeedbackController."""
-        self.reset()
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v of the motion along the wall."""
-        return self._tip.velocity_gain
+        return VelocityGain(0.0, self.numbers.law.tip.k_v)
 
     def reset(self) -> None:
         """Clear the state of an earlier run; see Controller."""
+        super().reset()
         self._reading.reset()
-        self._sum, self.external_wrench = 0.0, np.zeros(6)
+        self.external_wrench = np.zeros(6)
 
     def update_wrench(self, reading: FloatArray) -> None:
         """Store the wrist sensor's reading; see WrenchFeedbackController."""
@@ -93,20 +121,31 @@ class HybridForce(Controller):
         """Store the readings of the joint torque sensors; see ControlLaw."""
         self._reading.read_joint_torques(reading)
 
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return the measured force along the normal, in N, and the integral of its error, in N s; see TorqueLaw."""
+        return np.zeros(2)
+
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the torques of the law above; see Controller.torque."""
-        config = self._config
+        """Return the torques for the present reading; see Controller.torque."""
         self.external_wrench = self._reading.wrench(q, dq)
-        f = float(self.external_wrench[:3] @ self._normal)
-        state = self._tip.task_state(q, dq, reference)
-        n = state.axes @ self._normal
-        if f > 0.0:
-            self._sum += self._period * (config.force - f)
-        mass = 1.0 / float(n @ state.mobility @ n)
-        rate = np.sqrt(config.wall_stiffness * (1.0 + config.force_gain) / mass)
-        push = config.force + config.force_gain * (config.force - f) + config.integral_gain * self._sum
-        push += 2.0 * config.force_damping * mass * rate * float(n @ state.velocity)
-        return self._tip.torque(state, state.asked - n * (n @ state.asked), -push * n)
+        memory = self.start(q) if self.memory is None else self.memory
+        self.memory = np.array([self.external_wrench[:3] @ self.numbers.normal, memory[1]])
+        return super().torque(time, q, dq, reference)
+
+    def command(
+        self, backend: Backend, numbers: HybridForceNumbers, tip: TipMotion, memory: Array
+    ) -> tuple[Array, Array, Array]:
+        """Return the acceleration along the wall and the force into it; see TipForce."""
+        f, n, k_f = memory[0], tip.axes.dot(numbers.normal), numbers.force_gain
+        off = numbers.force - f
+        memory = backend.choose(
+            backend.less(0.0, f), lambda: np.array([f, memory[1] + numbers.period * off]), lambda: memory
+        )
+        mass = 1.0 / n.dot(tip.mobility).dot(n)
+        rate = backend.sqrt(numbers.wall_stiffness * (1.0 + k_f) / mass)
+        push = numbers.force + k_f * off + numbers.integral_gain * memory[1]
+        push = push + 2.0 * numbers.force_damping * mass * rate * n.dot(tip.velocity)
+        return tip.asked - n * n.dot(tip.asked), -push * n, memory
 
     def messages(self) -> list[str]:
         """Return nothing; see WrenchFeedbackController."""
@@ -139,18 +178,18 @@ def _unit(normal: list[float]) -> FloatArray:
 
 
 def _check_directions(task: ForceTask, normal: FloatArray) -> None:
-    directions = task.tip.directions
+    directions = task.law.numbers.tip.directions
     if len(directions) == 3:
         return
     along = float(np.linalg.norm(directions @ normal))
     names = "; ".join(str(np.round(row, 6).tolist()) for row in directions)
     if along < 1.0 - 1e-6:
         raise ConfigError(
-            f"controller.normal: {task.name} cannot push along {normal.tolist()}, as its tip goes along "
-            f"{names} alone; take a normal among these"
+            f"controller.normal: {task.name} cannot push along {normal.tolist()}: its tip can only move "
+            f"along {names}; take one of these as normal"
         )
     if len(directions) < 2:
         raise ConfigError(
-            f"controller.normal: a force along {normal.tolist()} leaves no direction to move in, as the tip of "
-            f"{task.name} goes along {names} alone; take an arm whose tip has two directions or more"
+            f"controller.normal: a force along {normal.tolist()} leaves no direction of motion: the tip of "
+            f"{task.name} can only move along {names}; take an arm whose tip has two directions or more"
         )

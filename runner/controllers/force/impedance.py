@@ -1,15 +1,16 @@
 """Impedance control without a force sensor: the tip's own mass on a spring and a damper."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field, NonNegativeFloat
 
-from runner.base.arrays import FloatArray
-from runner.controllers.controller import Controller, Loop
-from runner.controllers.force.tip_force import TipForce, TipForceConfig, find_force_task
+from runner.controllers.controller import Loop
+from runner.controllers.force.tip_force import ForceTask, TipForce, TipForceConfig, TipMotion, find_force_task
+from runner.controllers.operational_space.whole_body import WholeBodyNumbers
 from runner.robots.robot import Robot
 from runner.schema.units import Damping, Stiffness
+from runner.symbolic.maths import Array, Backend
 
 Three = Annotated[list[NonNegativeFloat], Field(min_length=3, max_length=3)]
 
@@ -30,7 +31,16 @@ class ImpedanceConfig(TipForceConfig):
     tip_damping: Damping[Three]
 
 
-class Impedance(Controller):
+class ImpedanceNumbers(NamedTuple):
+    """The numbers of impedance control."""
+
+    law: WholeBodyNumbers
+    gravity: Array  # in the robot's base frame, shape (3,), in m/s^2
+    stiffness: Array  # K_d along the base's axes, shape (3,), in N/m
+    damping: Array  # D_d, shape (3,), in N s/m
+
+
+class Impedance(TipForce[ImpedanceNumbers]):
     r"""Spring and damper at the tip, with its natural inertia (Hogan 1985).
 
     .. math::
@@ -44,23 +54,21 @@ class Impedance(Controller):
     Another M_d would require a measurement of f.
 
     Args:
-        tip: TipForce of the compliant stage.
+        task: Force task of the robot.
         config: Config of the law.
     """
 
-    def __init__(self, tip: TipForce, config: ImpedanceConfig) -> None:
-        self._tip = tip
-        self._stiffness, self._damping = np.diag(config.tip_stiffness), np.diag(config.tip_damping)
+    def __init__(self, task: ForceTask, config: ImpedanceConfig) -> None:
+        values = np.array(config.tip_stiffness), np.array(config.tip_damping)
+        super().__init__(task, ImpedanceNumbers(task.law.numbers, task.robot.model.gravity, *values))
 
-    def reset(self) -> None:
-        """Do nothing: the law has no state."""
-
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the torques of the law above; see Controller.torque."""
-        state = self._tip.task_state(q, dq, reference)
-        axes = state.axes
-        force = axes @ self._stiffness @ axes.T @ state.error + axes @ self._damping @ axes.T @ state.lag
-        return self._tip.torque(state, state.desired, force)
+    def command(
+        self, backend: Backend, numbers: ImpedanceNumbers, tip: TipMotion, memory: Array
+    ) -> tuple[Array, Array, Array]:
+        """Return the desired acceleration and the force of spring and damper; see TipForce."""
+        axes = tip.axes
+        spring = (axes * numbers.stiffness).dot(axes.T).dot(tip.error)
+        return tip.desired, spring + (axes * numbers.damping).dot(axes.T).dot(tip.lag), memory
 
 
 CONFIG = ImpedanceConfig
@@ -73,4 +81,4 @@ def build(config: ImpedanceConfig, robot: Robot) -> tuple[Loop, ...]:
         ConfigError: if a value is missing for a stage, or the arm has too few joints.
     """
     task = find_force_task(config, robot)
-    return task.loops(Impedance(task.tip, config), uses_wrench=False)
+    return task.loops(Impedance(task, config), uses_wrench=False)

@@ -59,8 +59,8 @@ class StageLaw:
     def move(
         self, arm: Arm, numbers: StageNumbers, q: Array, dq: Array, reference: Array, gravity: Array | None = None
     ) -> Array:
-        """Return the torques that move the tip to a reference in the stage's base frame; see OperationalSpace.lead."""
-        torque: Array = self._tip.lead(arm, numbers.tip, q, dq, reference, gravity)
+        """Return the torques that move the tip to a reference in the base frame of the stage; see WholeBody.control."""
+        torque: Array = self._tip.control(arm, numbers.tip, q, dq, reference, gravity)
         return torque
 
     def hold(

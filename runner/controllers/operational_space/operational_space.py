@@ -130,9 +130,9 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see TorqueLaw."""
         (arm,) = arms
-        return self.lead(arm, numbers, q, dq, reference), memory
+        return self.control(arm, numbers, q, dq, reference), memory
 
-    def lead(
+    def control(
         self,
         arm: Arm,
         numbers: OperationalSpaceNumbers,

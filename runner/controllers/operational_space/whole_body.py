@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
+import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
@@ -58,6 +59,35 @@ class WholeBodyNumbers(NamedTuple):
 
     tip: TipNumbers
     posture: PostureNumbers
+
+
+class TaskState(NamedTuple):
+    """State of the tip task of an arm, along the rows of the task.
+
+    Attributes:
+        q: Joint positions of the arm, shape (n,), in rad.
+        dq: Joint velocities of the arm, shape (n,), in rad/s.
+        x: Position of the tip in the base frame, shape (3,), in m.
+        J: Jacobian, shape (rows, n).
+        dJ_dq: dJ/dt dq, shape (rows,), in m/s^2 and rad/s^2.
+        M_inverse_J: M^-1 J^T, shape (n, rows).
+        error: Desired less actual position and orientation, shape (rows,), in m and rad.
+        velocity: Velocity of the tip, shape (rows,), in m/s and rad/s.
+    """
+
+    q: Array
+    dq: Array
+    x: Array
+    J: Array
+    dJ_dq: Array  # noqa: N815 - as the papers write it
+    M_inverse_J: Array
+    error: Array
+    velocity: Array
+
+    @property
+    def mobility(self) -> Array:
+        """Lambda^-1 = J M^-1 J^T, shape (rows, rows), in 1/kg."""
+        return np.asarray(self.J.dot(self.M_inverse_J))
 
 
 class WholeBody(TorqueLaw[WholeBodyNumbers]):
@@ -120,9 +150,9 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see TorqueLaw."""
         (arm,) = arms
-        return self.lead(arm, numbers, q, dq, reference), memory
+        return self.control(arm, numbers, q, dq, reference), memory
 
-    def lead(
+    def control(
         self,
         arm: Arm,
         numbers: WholeBodyNumbers,
@@ -132,19 +162,54 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         gravity: Array | None = None,
     ) -> Array:
         """Return the torques of the law above; see Arm.inverse_dynamics for gravity, TorqueLaw for the others."""
-        backend, task, tip = arm.backend, self._task, arm.tip(q, dq)
-        J, dJ_dq = task.jacobian(numbers.tip, tip)
-        error = task.error(backend, numbers.tip, tip, reference)
-        M_inverse_J = backend.solve_symmetric(arm.mass_matrix(q), J.T, "the mass matrix is singular")
-        F = task.acceleration(backend, numbers.tip, error, J.dot(dq), reference) - dJ_dq
+        task = self.task_state(arm, numbers, q, dq, reference)
+        return self.joint_torques(arm, numbers, task, self.acceleration(arm, numbers, task, reference), None, gravity)
+
+    def task_state(self, arm: Arm, numbers: WholeBodyNumbers, q: Array, dq: Array, reference: Array) -> TaskState:
+        """Return the state of the tip task; see TorqueLaw for the arguments."""
+        tip = arm.tip(q, dq)
+        J, dJ_dq = self._task.jacobian(numbers.tip, tip)
+        error = self._task.error(arm.backend, numbers.tip, tip, reference)
+        M_inverse_J = arm.backend.solve_symmetric(arm.mass_matrix(q), J.T, "the mass matrix is singular")
+        return TaskState(q, dq, tip.x, J, dJ_dq, M_inverse_J, error, J.dot(dq))
+
+    def acceleration(self, arm: Arm, numbers: WholeBodyNumbers, task: TaskState, reference: Array) -> Array:
+        """Return F* of TipTask, shape (rows,), in m/s^2 and rad/s^2."""
+        return self._task.acceleration(arm.backend, numbers.tip, task.error, task.velocity, reference)
+
+    def joint_torques(
+        self,
+        arm: Arm,
+        numbers: WholeBodyNumbers,
+        task: TaskState,
+        acceleration: Array,
+        force: Array | None = None,
+        gravity: Array | None = None,
+    ) -> Array:
+        r"""Return the torques for an acceleration a and an additional force F of the tip.
+
+        .. math:: \tau = h + J^T (\Lambda (a - \dot J \dot q) + F) + N^T \tau_0
+
+        Args:
+            arm: The arm.
+            numbers: Numbers of the law.
+            task: State of the tip task.
+            acceleration: a along the rows of the task, shape (rows,).
+            force: F along the rows of the task, shape (rows,), in N; None for no force.
+            gravity: See Arm.inverse_dynamics.
+        """
+        backend, J = arm.backend, task.J
+        F = acceleration - task.dJ_dq
         # N^T tau_0 = tau_0 - J^T Lambda J M^-1 tau_0, and tau_0 = M ddq_0 + spring.
-        ddq_0, spring = self._posture.acceleration_and_torque(backend, numbers.posture, J, q, dq)
+        ddq_0, spring = self._posture.acceleration_and_torque(backend, numbers.posture, J, task.q, task.dq)
         F = F - J.dot(ddq_0)
         if spring is not None:
-            F = F - M_inverse_J.T.dot(spring)
-        mobility = task.damp(backend, numbers.tip, J, error, J.dot(M_inverse_J))
-        force = backend.solve_symmetric(mobility, F, "the tip's Jacobian is singular")
-        torque: Array = arm.inverse_dynamics(q, dq, ddq_0, gravity) + J.T.dot(force)
+            F = F - task.M_inverse_J.T.dot(spring)
+        mobility = self._task.damp(backend, numbers.tip, J, task.error, task.mobility)
+        moving = backend.solve_symmetric(mobility, F, "the tip's Jacobian is singular")
+        if force is not None:
+            moving = moving + force
+        torque: Array = arm.inverse_dynamics(task.q, task.dq, ddq_0, gravity) + J.T.dot(moving)
         return torque if spring is None else torque + spring
 
 

@@ -26,7 +26,7 @@ def find_commands(
     noise: EncoderNoise,
     limits: FloatArray,
 ) -> Commands | None:
-    """Return control loops for compilation; None if one of them is not a torque law.
+    """Return control loops for compilation; None if one of them has no compiled form.
 
     Args:
         robot: The robot of the loops.
@@ -37,7 +37,7 @@ def find_commands(
         limits: Torque limits, shape (nq,), in N m; infinite without a limit.
     """
     laws = [unguarded(loop.controller) for loop in loops]
-    if not evaluator() or not all(isinstance(law, TorqueLaw) for law in laws):
+    if not evaluator() or not all(isinstance(law, TorqueLaw) and law.compilable for law in laws):
         return None
     if len(limits) > MOST_JOINTS:
         _tell(f"the arm has {len(limits)} joints, and code is made for {MOST_JOINTS} or fewer: laws are not compiled")

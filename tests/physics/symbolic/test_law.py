@@ -29,6 +29,7 @@ CASES = [
     *((robot, "computed_torque") for robot in ("macro", "xarm7", "mixed", "planar")),
     *((robot, "joint_pd") for robot in ("macro", "xarm7")),
     ("macro", "motor_pd"),
+    *((robot, "impedance") for robot in ("mini", "planar")),
     *((robot, "adaptive") for robot in ("meca500", "mixed")),
     *(("macro", law) for law in LAWS),
     # Costly to express; the session has each law on the Macro, and seven joints under three others.

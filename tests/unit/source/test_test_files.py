@@ -45,7 +45,6 @@ SHARED = {
     "config/robot": "contract/config/test_stage_defaults.py",
     "config/run": "contract/config/test_validation.py",
     "config/settings": "contract/config/test_validation.py",
-    "controllers/force/force_reading": "physics/controllers/test_hybrid_force.py",
     "controllers/joint_space/joint_law": "physics/controllers/test_joint_laws.py",
     "controllers/joint_space/motor_pd": "physics/controllers/test_joint_laws.py",
     "controllers/kinds": "physics/controllers/test_controller_kinds.py",

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.controllers.force.wrist import ToolCompensation
+from runner.controllers.force.force_reading import ToolCompensation
 from runner.sensing.force_torque import IDEAL
 
 MASS, CENTRE, TIP = 0.3, np.array([0.02, -0.01, 0.05]), np.array([0.01, 0.03, 0.12])  # kg, m, m
