@@ -1,6 +1,6 @@
 """Contact stability of an admittance with joint servos, from the linear map of the whole loop.
 
-With ideal joints, only filter and wall determine stability (`runner/controllers/force/admittance_stability.py`). With
+With ideal joints, only filter and wall determine stability (`runner/controllers/stability.py`). With
 servos, the arm's masses and the servo stiffness act between them. The map therefore covers one controller period tick
 by tick, for small motions about the initial configuration. It includes reading, filter, inverse kinematics, set-points,
 servos, arm and wall. It assumes permanent contact, no active limits, no joint friction, and an exact nominal model.
@@ -12,7 +12,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
-from runner.controllers.force.admittance_filter import Admittance, discretise
+from runner.controllers.force.admittance_filter import Admittance, discretise, held_map
+from runner.controllers.stability import critical_value, spectral_radius
 from runner.plants.servo import ServoLaw
 from runner.robots.robot import Robot
 from runner.robots.tool_link import find_tool
@@ -122,7 +123,7 @@ def contact_radius(contact: ServoContact) -> float:
     Raises:
         numpy.linalg.LinAlgError: in a singular configuration.
     """
-    return float(np.abs(np.linalg.eigvals(contact_map(contact))).max())
+    return spectral_radius(contact_map(contact))
 
 
 def stiffest_servo_wall(contact: ServoContact) -> float | None:
@@ -131,16 +132,12 @@ def stiffest_servo_wall(contact: ServoContact) -> float | None:
     Raises:
         numpy.linalg.LinAlgError: in a singular configuration.
     """
-    from scipy.optimize import brentq
 
-    def excess(exponent: float) -> float:
-        return contact_radius(replace(contact, stiffness=10.0**exponent)) - 1.0
+    def radius(exponent: float) -> float:
+        return contact_radius(replace(contact, stiffness=10.0**exponent))
 
-    exponents = np.linspace(2.0, 7.0, 41)
-    first = next((place for place, exponent in enumerate(exponents) if excess(exponent) > _ROUNDING), None)
-    if first is None:
-        return None
-    return 0.0 if first == 0 else float(10.0 ** brentq(excess, exponents[first - 1], exponents[first], xtol=1e-5))
+    exponent = critical_value(radius, np.linspace(2.0, 7.0, 41).tolist(), _ROUNDING, 1e-5)
+    return None if exponent == np.inf else 10.0**exponent
 
 
 def _wrenches(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -184,8 +181,6 @@ def _arm(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
     Returns:
         Shapes (2 nq, 2 nq) and (2 nq, nq).
     """
-    from scipy.linalg import expm  # needed by few configs
-
     model, q = contact.arm.model, contact.q
     n, h = model.nq, contact.step
     M = model.mass_matrix(q)
@@ -195,19 +190,14 @@ def _arm(contact: ServoContact, J: FloatArray) -> tuple[FloatArray, FloatArray]:
             for unit in _STEP * np.eye(n)
         ]
     )
-    whole = np.zeros((3 * n, 3 * n))
-    if contact.implicit:
-        along = contact.normal @ J[:3]
-        projector = np.outer(along, along)
-        inverse = np.linalg.inv(M + h * (h * contact.stiffness + contact.damping) * projector)
-        to_dq = np.hstack([-h * inverse @ (weight + contact.stiffness * projector), inverse @ M, h * inverse])
-        whole[n : 2 * n] = to_dq
-        whole[:n] = h * to_dq
-        whole[:n, :n] += np.eye(n)
-        whole[2 * n :, 2 * n :] = np.eye(n)
-        whole = np.linalg.matrix_power(whole, contact.steps)
-    else:
-        whole[:n, n : 2 * n] = np.eye(n)
-        whole[n : 2 * n] = np.hstack([-np.linalg.solve(M, weight), np.zeros((n, n)), np.linalg.inv(M)])
-        whole = expm(contact.steps * h * whole)
+    if not contact.implicit:
+        A = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, weight), np.zeros((n, n))]])
+        return held_map(A, np.vstack([np.zeros((n, n)), np.linalg.inv(M)]), contact.steps * h)
+    along = contact.normal @ J[:3]
+    projector = np.outer(along, along)
+    inverse = np.linalg.inv(M + h * (h * contact.stiffness + contact.damping) * projector)
+    to_dq = np.hstack([-h * inverse @ (weight + contact.stiffness * projector), inverse @ M, h * inverse])
+    whole = np.vstack([h * to_dq, to_dq, np.eye(n, 3 * n, 2 * n)])
+    whole[:n, :n] += np.eye(n)
+    whole = np.linalg.matrix_power(whole, contact.steps)
     return whole[: 2 * n, : 2 * n], whole[: 2 * n, 2 * n :]

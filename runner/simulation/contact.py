@@ -9,8 +9,8 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.trace import ContactSignals
 from runner.config.run import RunConfig
-from runner.controllers.force.admittance_stability import check_wall
 from runner.controllers.kinds import ChecksStability
+from runner.controllers.stability import check_wall
 from runner.environments import Environment
 from runner.environments.external_wrench import Interaction
 from runner.environments.wall import Wall

@@ -30,9 +30,9 @@ _TABLE = """
         robot=config.robot run settings timing validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer kinds=controllers.kinds notch=controllers.notch
-        sampled_stability torque_filter torque_law
-    controllers/force: admittance admittance_filter admittance_stability force_reading=controllers.force_reading
-        force_stability hybrid_force impedance tip_force
+        torque_filter torque_law
+    controllers/force: admittance admittance_filter force_reading=controllers.force_reading hybrid_force
+        impedance tip_force
     controllers/joint_space: adaptive computed_torque iterative_learning joint_law
         joint_motion=controllers.joint_motion joint_pd joint_pid motor_pd passivity sliding_mode
     controllers/kinematic: differential_inverse_kinematics limited_motion resolved_rate

@@ -49,28 +49,42 @@ class Admittance:
             raise ConfigError(problems)
 
 
-def discretise(law: Admittance, period: float) -> tuple[FloatArray, FloatArray]:
-    r"""Return the law sampled exactly for a load that is constant over a period (zero-order hold).
+def held_map(A: FloatArray, B: FloatArray, period: float) -> tuple[FloatArray, FloatArray]:
+    r"""Return the exact map over a period h of dx/dt = A x + B u with constant u (zero-order hold).
 
     .. math::
 
         \begin{pmatrix} \Phi & \Gamma \\ 0 & 1 \end{pmatrix} = \exp \left( h
-        \begin{pmatrix} 0 & 1 & 0 \\ -K/M & -B/M & 1/M \\ 0 & 0 & 0 \end{pmatrix} \right)
+        \begin{pmatrix} A & B \\ 0 & 0 \end{pmatrix} \right)
 
     Args:
-        law: The law.
+        A: Shape (..., n, n).
+        B: Shape (..., n, m).
         period: h, in s.
+
+    Returns:
+        Phi, shape (..., n, n), and Gamma, shape (..., n, m): x at the end is Phi x + Gamma u.
+    """
+    from scipy.linalg import expm  # only a few configs need it
+
+    n, m = B.shape[-2:]
+    continuous = np.zeros((*A.shape[:-2], n + m, n + m))
+    continuous[..., :n, :n], continuous[..., :n, n:] = A, B
+    sampled: FloatArray = expm(period * continuous)
+    return sampled[..., :n, :n], sampled[..., :n, n:]
+
+
+def discretise(law: Admittance, period: float) -> tuple[FloatArray, FloatArray]:
+    """Return the law sampled exactly for a load that is constant over a period, in s; see held_map.
 
     Returns:
         Phi, shape (6, 2, 2), and Gamma, shape (6, 2): (x, dx) at the next sample is Phi (x, dx) + Gamma f.
     """
-    from scipy.linalg import expm  # only a few configs need it
-
-    continuous = np.zeros((6, 3, 3))
-    continuous[:, 0, 1] = 1.0
-    continuous[:, 1] = np.column_stack([-law.stiffness, -law.damping, np.ones(6)]) / law.mass[:, None]
-    sampled = expm(period * continuous)
-    return sampled[:, :2, :2], sampled[:, :2, 2]
+    rates = np.column_stack([-law.stiffness, -law.damping, np.ones(6)]) / law.mass[:, None]
+    A, B = np.zeros((6, 2, 2)), np.zeros((6, 2, 1))
+    A[:, 0, 1], A[:, 1], B[:, 1, 0] = 1.0, rates[:, :2], rates[:, 2]
+    Phi, Gamma = held_map(A, B, period)
+    return Phi, Gamma[..., 0]
 
 
 class AdmittanceFilter:

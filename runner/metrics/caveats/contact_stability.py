@@ -9,9 +9,9 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.config.run import RunConfig
-from runner.controllers.force.force_stability import touch_radius
 from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.controllers.kinds import CommandsForce
+from runner.controllers.stability import touch_radius
 from runner.environments.wall import WallConfig
 from runner.plants import PLANTS
 from runner.plants.kinds import HasServo

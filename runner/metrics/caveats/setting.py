@@ -14,7 +14,7 @@ from runner.base.trace import Trace
 if TYPE_CHECKING:
     from runner.config.robot import RobotConfig
     from runner.config.run import RunConfig
-    from runner.controllers.sampled_stability import VelocityLoop
+    from runner.controllers.stability import VelocityLoop
     from runner.metrics.caveats.time_constants import TimeConstant
     from runner.plants.servo_contact_stability import ServoContact
     from runner.robots.mismatch import MismatchConfig
@@ -81,7 +81,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         q_start: Joint positions at the start, shape (nq,), in rad. None leaves out contact and otherwise uses the home
             configuration.
     """
-    from runner.controllers.sampled_stability import velocity_loop
+    from runner.controllers.stability import velocity_loop
     from runner.metrics.caveats.contact_stability import force_contact, servo_contact
     from runner.metrics.caveats.mjcf import left_out_of
     from runner.metrics.caveats.time_constants import slowest_part

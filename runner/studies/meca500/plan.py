@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from runner.controllers.force.admittance_filter import Admittance
-from runner.controllers.force.admittance_stability import stiffest_wall
+from runner.controllers.stability import stiffest_wall
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.study.grid import Overrides
 from runner.study.grids import FILE, Grids

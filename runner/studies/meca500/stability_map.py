@@ -10,7 +10,7 @@ import numpy as np
 from runner.base.quantities import number
 from runner.config.composed import Composed
 from runner.config.validation import validate
-from runner.controllers.force.admittance_stability import stiffest_wall
+from runner.controllers.stability import stiffest_wall
 from runner.metrics.caveats.contact_stability import servo_contact
 from runner.plants.servo_contact_stability import ServoContact, contact_radius, stiffest_servo_wall
 from runner.reporting.document import Panel, Series

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from runner.controllers.force.force_stability import delay_limit, miss_limit, pattern_limit
+from runner.controllers.stability import delay_limit, miss_limit, pattern_limit
 from runner.reporting.document import Series
 from runner.store import Run
 from runner.study.prose.patterns import found

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
-from runner.controllers.force.force_stability import force_loop_limit
+from runner.controllers.stability import force_loop_limit
 from runner.reporting.document import Series
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.robots.task_space import mass_along, tip_mobility

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.controllers.force.force_stability import force_loop_limit
+from runner.controllers.stability import force_loop_limit
 from runner.reporting.document import Series
 from runner.reporting.figures import model_of
 from runner.robots.task_space import tip_mobility

@@ -6,7 +6,7 @@ from support.covers import covered
 
 from runner.base.errors import ConfigError
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
-from runner.controllers.force.admittance_stability import check_wall, spectral_radius, stiffest_wall
+from runner.controllers.stability import check_wall, stiffest_wall, wall_radius
 
 LAW = Admittance(np.full(6, 2.0), np.full(6, 60.0), np.array([0.0, 300.0, 300.0, 0.0, 0.0, 0.0]))
 CONTACTS = {
@@ -53,7 +53,7 @@ def test_the_bound_without_spring_and_delay_is_jury_s():
 
 def test_at_the_bound_the_spectral_radius_is_one():
     bound = stiffest_wall(LAW, 0.001, 1, 2.0, 1)
-    assert spectral_radius(LAW, 0.001, 1, bound, 2.0, 1) == pytest.approx(1.0, abs=1e-9)
+    assert wall_radius(LAW, 0.001, 1, bound, 2.0, 1) == pytest.approx(1.0, abs=1e-9)
 
 
 def test_a_shorter_period_more_damping_and_less_delay_stand_a_stiffer_wall():

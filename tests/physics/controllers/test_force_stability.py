@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.controllers.force.force_stability import force_loop_limit, force_loop_radius, touch_radius
+from runner.controllers.stability import force_loop_limit, force_loop_radius, touch_radius
 
 
 @pytest.mark.parametrize("delay", [0, 1, 2])

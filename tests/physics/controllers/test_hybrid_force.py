@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.physics import critically_damped
 
-from runner.controllers.force.force_stability import force_loop_limit
+from runner.controllers.stability import force_loop_limit
 from runner.sweeps.job import run
 
 POSTURE = "[0.3,0.4,-0.5]"

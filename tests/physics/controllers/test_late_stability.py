@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.controllers.force.force_stability import (
+from runner.controllers.stability import (
     delay_limit,
     force_loop_radius,
     miss_limit,

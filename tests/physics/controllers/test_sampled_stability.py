@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.arms import checked
 
-from runner.controllers.sampled_stability import velocity_loop
+from runner.controllers.stability import velocity_loop
 
 LAWS = ("joint_pd", "joint_pid", "passivity", "sliding_mode", "adaptive", "computed_torque", "operational_space",
         "whole_body")  # fmt: skip

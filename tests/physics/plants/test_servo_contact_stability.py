@@ -9,7 +9,7 @@ from support.arms import checked
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.controllers.force.admittance_filter import Admittance, discretise
-from runner.controllers.force.admittance_stability import spectral_radius
+from runner.controllers.stability import wall_radius
 from runner.metrics.caveats import Watch, setting_of
 from runner.metrics.caveats.contact_stability import servo_contact
 from runner.plants.servo import ServoLaw
@@ -43,7 +43,7 @@ def contact():
 
 
 def ideal(contact, stiffness, period=0.01):
-    return max(spectral_radius(contact.law, period, axis, stiffness if axis == 0 else 0.0, 0.0, 0) for axis in range(6))
+    return max(wall_radius(contact.law, period, axis, stiffness if axis == 0 else 0.0, 0.0, 0) for axis in range(6))
 
 
 @pytest.mark.parametrize("stiffness", [1e2, 5e3, 2e4, 4e4])

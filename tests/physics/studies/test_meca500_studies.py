@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.thin_plans import make_runs
 
-from runner.controllers.force.admittance_stability import stiffest_wall
+from runner.controllers.stability import stiffest_wall
 from runner.studies.meca500.figures import (
     bounces,
     displacement,
