@@ -10,7 +10,7 @@ from runner.study.study import load_study
 
 FULL_ALONE = ("late_and_limited.md",)  # chapters of the benchmark's full profile alone
 MOMENT = 0.08  # s
-STUDIES = ("thesis", "xarm7", "meca500", "engines", "benchmark", "precision")
+STUDIES = ("thesis", "thesis_beyond", "xarm7", "meca500", "engines", "benchmark", "precision")
 RECORDED = tuple(study for study in STUDIES if study != "meca500")
 """Studies of which a thin plan is recorded; that of the other is made by each session of tests."""
 _ENGINES_ARM, _ENGINES_STEP = re.compile(r"^((?:open|reference|closed|least)/)(\w+)"), re.compile(r"^(wall/.*/)[^/]+$")
@@ -26,9 +26,9 @@ def cut(overrides: Overrides, duration: float) -> Overrides:
     return (*(o for o in overrides if not o.startswith("duration=")), f"duration={duration}")
 
 
-def thesis_jobs() -> dict[str, Overrides]:
-    """Return all runs of the thesis, with two repetitions in place of forty; the twins of another plant have one."""
-    return {name: _repeated(job) for name, job in load_study("thesis").jobs().items()}
+def thesis_jobs(study: str) -> dict[str, Overrides]:
+    """Return all runs of a study of the thesis, with two repetitions, or with one on another plant."""
+    return {name: _repeated(job) for name, job in load_study(study).jobs().items()}
 
 
 def _repeated(overrides: Overrides) -> Overrides:
@@ -36,10 +36,10 @@ def _repeated(overrides: Overrides) -> Overrides:
     return (*kept, f"repetitions={1 if 'plant=rk4' in overrides else 2}")
 
 
-def thesis_moments() -> dict[str, Overrides]:
-    """Return the same, the runs of six joints and of the Macro beside them cut to a moment, those of the Mini alone."""
+def thesis_moments(study: str) -> dict[str, Overrides]:
+    """Return the same, with the runs of chapter 5 and thesis_beyond cut to a moment, and the Mini's once."""
     moments = {}
-    for name, overrides in thesis_jobs().items():
+    for name, overrides in thesis_jobs(study).items():
         if name.startswith("figure_4"):
             moments[name] = (*(o for o in overrides if not o.startswith("repetitions=")), "repetitions=1")
         elif name.partition("/")[0] in _ONE_ARM or name.startswith("figure_3"):
@@ -119,8 +119,8 @@ def stood_in(study: str) -> tuple[dict[str, Overrides], dict[str, str]]:
     """Return the runs of a study's thin plan by name, and the name of the run that stands for each."""
     jobs = planned(study)
     match study:
-        case "thesis":
-            return thesis_moments(), stand_ins(thesis_moments())
+        case "thesis" | "thesis_beyond":
+            return thesis_moments(study), stand_ins(thesis_moments(study))
         case "xarm7":
             studies = xarm7_moments()
             own = {name: name for name in jobs if name not in studies}

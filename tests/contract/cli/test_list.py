@@ -46,7 +46,7 @@ def test_studies_that_are_not_made_with_all_say_so(cli):
     apart = [name for name, line in lines.items() if line.endswith("(not made by `runner reproduce all`)")]
     assert (apart, sorted(lines)) == (
         ["benchmark", "engines", "precision"],
-        ["benchmark", "engines", "meca500", "precision", "thesis", "xarm7"],
+        ["benchmark", "engines", "meca500", "precision", "thesis", "thesis_beyond", "xarm7"],
     )
 
 

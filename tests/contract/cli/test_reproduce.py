@@ -43,7 +43,8 @@ def small_study(tmp_path):
 def test_an_unknown_study_names_the_nearest(cli, tmp_path):
     ending = cli("reproduce", "thesys")
     assert ending.code == 2
-    studies = "benchmark, engines, meca500, precision, thesis, xarm7, audit, all, or a folder with a study.yaml"
+    studies = "benchmark, engines, meca500, precision, thesis, thesis_beyond, xarm7"
+    studies += ", audit, all, or a folder with a study.yaml"
     assert ending.err == f"runner: no study 'thesys' (did you mean thesis?); studies: {studies}\n"
     assert list(tmp_path.iterdir()) == []
 
@@ -150,7 +151,7 @@ def test_all_reproduces_every_study_the_shortest_first(cli, monkeypatch, tmp_pat
     monkeypatch.setattr(reproduce, "_audit", lambda *_: empty)
     monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
     assert cli("reproduce").out.split() == [
-        f"outputs/reports/{name}" for name in ("audit", "xarm7", "meca500", "thesis")
+        f"outputs/reports/{name}" for name in ("audit", "xarm7", "meca500", "thesis_beyond", "thesis")
     ]
 
 

@@ -25,7 +25,7 @@ def test_it_is_not_made_with_all_studies() -> None:
     names = {
         study.name for study in _chosen(Namespace(study="all", code=False, profile="", parts=())) if study is not None
     }
-    assert names == {"thesis", "xarm7", "meca500"}
+    assert names == {"thesis", "thesis_beyond", "xarm7", "meca500"}
 
 
 def test_the_textbooks_mass_matrix_is_that_of_its_kinetic_energy(runs: Mapping[str, Run]) -> None:

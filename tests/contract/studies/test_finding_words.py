@@ -8,7 +8,7 @@ from runner.study.check import levels_in, typed_numbers
 from runner.study.study import load_study
 
 
-@pytest.mark.parametrize("study", ["thesis", "xarm7", "meca500", "engines", "benchmark"])
+@pytest.mark.parametrize("study", ["thesis", "thesis_beyond", "xarm7", "meca500", "engines", "benchmark"])
 def test_no_number_is_typed_in_the_words_of_a_finding(study):
     made = load_study(study)
     levels = levels_in([*made.jobs(), *made.calibrations()])

@@ -23,6 +23,10 @@ SOME = {
                                 "controller.natural_frequency.mini=30", "noise.bias.macro=0.001"),
         "sampling/0.95": ("experiment=thesis/sampling", "controller.period=0.0316667"),
     },
+    "thesis_beyond": {
+        "computing/late/1/0.3": ("experiment=thesis_beyond/computing", "controller.natural_frequency=30",
+                                 "plant.computation.delay=1"),
+    },
     "meca500": {
         "step/servo, 16.7 ms/rotation x": (
             "experiment=meca500/push", "controller.period=0.0167", "plant=default", "plant.servo.period=0.000835",
@@ -82,7 +86,8 @@ SOME = {
 @pytest.mark.parametrize(
     ("study", "runs", "calibrations"),
     [
-        ("thesis", 593, 0),
+        ("thesis", 326, 0),
+        ("thesis_beyond", 267, 0),
         ("xarm7", 119, 0),
         ("meca500", 244, 36),
         ("engines", 309, 0),
@@ -99,4 +104,4 @@ def test_a_study_has_its_runs(study, runs, calibrations):
 
 
 def test_every_study_is_counted():
-    assert set(study_names()) == {"thesis", "xarm7", "meca500", "engines", "precision", "benchmark"}
+    assert set(study_names()) == {"thesis", "thesis_beyond", "xarm7", "meca500", "engines", "precision", "benchmark"}

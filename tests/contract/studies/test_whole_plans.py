@@ -50,8 +50,9 @@ def test_every_finding_holds(shared_store: Path, study: str) -> None:
     assert faulty(made.document) == []
 
 
-def test_every_finding_of_the_thesis_holds(shared_store: Path) -> None:
-    made = whole("thesis", shared_store, thesis_jobs())
+@pytest.mark.parametrize("study", ["thesis", "thesis_beyond"])
+def test_every_finding_of_the_thesis_holds(shared_store: Path, study: str) -> None:
+    made = whole(study, shared_store, thesis_jobs(study))
     fallen = [found.claim for _, found in findings(made.document) if not found.holds]
     assert [claim for claim in fallen if not claim.startswith(OF_MANY_SEEDS)] == []
     assert never_failing_in(made) == []

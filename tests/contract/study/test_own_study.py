@@ -209,7 +209,8 @@ def test_data_that_do_not_fit_are_refused_with_file_and_key(tmp_path, files, tol
 
 
 def test_what_is_no_study_is_told(tmp_path):
-    told = r"no study 'tesis' \(did you mean thesis\?\); studies: benchmark, engines, meca500, precision, thesis, xarm7"
+    told = r"no study 'tesis' \(did you mean thesis\?\); studies: benchmark, engines, meca500, precision, thesis, "
+    told += "thesis_beyond, xarm7"
     with pytest.raises(RunnerError, match=told):
         find_study("tesis")
     with pytest.raises(RunnerError, match=r"no study: there is no study.yaml in it; `runner study new"):

@@ -13,7 +13,7 @@ from runner.plants.computation import EXACT
 from runner.plants.rk4 import Rk4
 from runner.plants.rk4_flexible_links import BeamConfig, FlexibleLinks, Rk4FlexibleLinksConfig
 from runner.robots.chain import Beam, cut, stiffen_robot
-from runner.studies.thesis.cantilever import clamped_arm
+from runner.studies.thesis_beyond.cantilever import clamped_arm
 
 LENGTH = 1.5  # m
 LOCKED = 1e12  # kg m^2, a motor that does not turn

@@ -66,7 +66,7 @@ def test_a_sensed_tip_errs_by_the_acceleration_and_a_blind_one_as_its_macro(simu
     ],
 )  # fmt: skip
 def test_a_mode_gains_and_loses_damping_as_on_runge_kutta(simulated, law, expected):
-    ring = ("experiment=thesis/flexible_ring", "plant=bullet_flexible", "plant.step=1e-4", "duration=2",
+    ring = ("experiment=thesis_beyond/flexible_ring", "plant=bullet_flexible", "plant.step=1e-4", "duration=2",
             f"{KEY}.stiffness={{macro: 1000, mini: null}}", f"{KEY}.motor_inertia={{macro: 2, mini: null}}",
             f"{KEY}.damping_ratio=0", f"{KEY}.brake_time={{macro: 0}}")  # fmt: skip
     trace = simulated(*ring, *law)

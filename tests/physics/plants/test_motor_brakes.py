@@ -5,7 +5,7 @@ import pytest
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
 from runner.robots import RobotModel, find_urdf, read_urdf
-from runner.studies.thesis.cantilever import clamped_arm
+from runner.studies.thesis_beyond.cantilever import clamped_arm
 
 TICK = 2e-3  # s, of two steps
 SPIN = 0.7  # rad/s

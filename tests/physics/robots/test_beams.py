@@ -8,7 +8,7 @@ import pytest
 from support.arms import checked
 
 from runner.robots.chain import Beam, moving_links, parts_of, span, stiffen_robot
-from runner.studies.thesis.cantilever import cantilever_roots
+from runner.studies.thesis_beyond.cantilever import cantilever_roots
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from support.arms import checked
 
 from runner.robots.chain import Beam, cut, stiffen_robot
 from runner.robots.modes import find_modes
-from runner.studies.thesis.cantilever import cantilever, cantilever_roots, clamped_arm, frequency_errors
+from runner.studies.thesis_beyond.cantilever import cantilever, cantilever_roots, clamped_arm, frequency_errors
 
 EI, LENGTH = 70.0, 1.5  # N m^2, m
 

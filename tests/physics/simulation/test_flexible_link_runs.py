@@ -15,7 +15,7 @@ from runner.robots.modes import Mode
 from runner.robots.robot import with_armature
 from runner.simulation.assembly import assemble
 from runner.store import simulated_part
-from runner.studies.thesis.cantilever import cantilever_roots
+from runner.studies.thesis_beyond.cantilever import cantilever_roots
 from runner.trajectories.impulses import zero_vibration
 
 MACRO = ("robot=macro", "plant=rk4_flexible_links", "noise=none", "torque_limits=none")

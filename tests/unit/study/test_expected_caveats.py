@@ -70,7 +70,7 @@ def test_programs_get_every_caveat_with_why_it_is_expected():
     ]
 
 
-@pytest.mark.parametrize("study", ["thesis", "xarm7", "meca500", "engines"])
+@pytest.mark.parametrize("study", ["thesis", "thesis_beyond", "xarm7", "meca500", "engines"])
 def test_what_a_study_expects_is_of_known_rules_and_of_runs_that_it_has(study):
     made = load_study(study)
     names = made.jobs()

@@ -11,7 +11,7 @@ from runner.reporting.document import Series
 from runner.reporting.figures import model_of
 from runner.robots.task_space import tip_mobility
 from runner.store import Run
-from runner.studies.thesis.force import rise_time
+from runner.studies.thesis_beyond.force import rise_time
 from runner.study.run_values import median
 
 _BANDWIDTH = float(np.sqrt(np.sqrt(2.0) - 1.0))  # over omega_c, of a critically damped loop, at -3 dB

@@ -11,8 +11,8 @@ from runner.reporting.document import Series
 from runner.reporting.figures import columns, joint_columns, model_of
 from runner.robots.modes import Mode
 from runner.store import Run
-from runner.studies.thesis.cantilever import frequency_errors
-from runner.studies.thesis.flexible_map import stable_and_not
+from runner.studies.thesis_beyond.cantilever import frequency_errors
+from runner.studies.thesis_beyond.flexible_map import stable_and_not
 from runner.study.prose.plots import points
 from runner.study.prose.signals import moved, norm, vector
 from runner.study.run_values import clock
