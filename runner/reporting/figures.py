@@ -1,13 +1,11 @@
 """Figures of a stored run in the layout of the thesis, and its picture on the first screen."""
 
 import numpy as np
-import pandas as pd
 
 from runner.reporting.bodies import playback_bodies
 from runner.reporting.charts.arm import arm_motion, moving_arm
 from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Cover, Curves, Origin, Panel, Playback, Series
-from runner.robots import RobotModel
 from runner.store import Calibration, Run
 
 AXES = ("x", "y", "z")
@@ -21,26 +19,9 @@ def origin(job: Run | Calibration, number: str = "") -> Origin:
     return Origin(number, str(job.provenance["command"]), commit[:12] + commit[40:])
 
 
-def model_of(run: Run) -> RobotModel:
-    """Return the rigid-body model of the robot that a run simulated, from the URDF stored with it."""
-    return RobotModel(run.urdf, run.provenance["tip_frame"], run.config["gravity"])
-
-
-def until_time(run: Run, end: float | None) -> pd.DataFrame:
-    """Return the trace of a run up to a time, in s; None returns it all."""
-    trace = run.trace()
-    return trace if end is None else trace[trace["t"] <= end + 1e-9]
-
-
-def columns(trace: pd.DataFrame, stem: str) -> np.ndarray:
-    """Return the columns of one signal, shape (T, 3) for a tip signal: those named stem_x, stem_y, stem_z."""
-    return trace[[f"{stem}_{axis}" for axis in AXES]].to_numpy()
-
-
-def joint_columns(trace: pd.DataFrame, stem: str) -> np.ndarray:
-    """Return the columns of one joint signal, shape (T, nq): those named stem1, stem2, ..."""
-    names = [name for name in trace.columns if name.startswith(stem) and name[len(stem) :].isdigit()]
-    return trace[names].to_numpy()
+def rows_until(run: Run, end: float | None) -> slice:
+    """Return the rows of a run's trace up to a time, in s; None means all."""
+    return slice(None) if end is None else slice(int(np.count_nonzero(run.t <= end + 1e-9)))
 
 
 def torque_and_error(run: Run, caption: str, number: str = "", until: float | None = None) -> Curves:
@@ -52,10 +33,8 @@ def torque_and_error(run: Run, caption: str, number: str = "", until: float | No
         number: Number of the figure in the source.
         until: End of the time axis, in s; None shows the whole run.
     """
-    trace = until_time(run, until)
-    t = trace["t"].to_numpy()
-    torques = joint_columns(trace, "tau")
-    error = columns(trace, "error")
+    rows = rows_until(run, until)
+    t, torques, error = run.t[rows], run.joints("tau")[rows], run.vector("error")[rows]
     force = [run.units[f"tau{joint + 1}"] == "N" for joint in range(torques.shape[1])]
     panels = []
     for title, label, slides in (("Torque", "torque (N m)", False), ("Force", "force (N)", True)):
@@ -74,8 +53,8 @@ def torque_and_error(run: Run, caption: str, number: str = "", until: float | No
 
 def desired_motion(run: Run, caption: str, number: str = "", axes: tuple[str, ...] = AXES) -> Curves:
     """Return desired position, velocity and acceleration of the tip over the motion's time, of a shaped one all."""
-    trace = until_time(run, None if "input_shaper" in run.config else run.config["trajectory"]["duration"])
-    t = trace["t"].to_numpy()
+    rows = rows_until(run, None if "input_shaper" in run.config else run.config["trajectory"]["duration"])
+    trace, t = run.trace()[rows], run.t[rows]
     panels = [
         Panel(
             title,
@@ -101,13 +80,13 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
         until: End of the part shown, in s; None shows it all.
         frames: Largest number of instants.
     """
-    trace = until_time(run, until)
-    trace = trace[np.isfinite(np.hstack([joint_columns(trace, "q"), columns(trace, "tip")])).all(axis=1)]
-    model = model_of(run)
-    q, t, tip = joint_columns(trace, "q"), trace["t"].to_numpy(), columns(trace, "tip")
+    rows, model = rows_until(run, until), run.model
+    finite = np.isfinite(np.hstack([run.joints("q"), run.vector("tip")])[rows]).all(axis=1)
+    t, q, tip, desired = (
+        values[rows][finite] for values in (run.t, run.joints("q"), run.vector("tip"), run.vector("desired"))
+    )
     shown = spaced_indices(len(t), frames)
     stills = spaced_indices(len(t), _STILLS)
-    desired = columns(trace, "desired")
     moving = bool(np.ptp(desired, axis=0).any())
     path = desired if moving else np.vstack([tip[0], desired[0]])
     still = arm_motion(model, q[stills], t[stills].tolist(), path=tip, desired=path, goal=desired[-1])
@@ -126,9 +105,9 @@ def macro_mini_targets(
         until: End of the time axis, in s; None shows the whole run.
         axis: The axis of the base frame: x, y or z.
     """
-    trace = until_time(run, until)
+    rows = rows_until(run, until)
+    trace, t = run.trace()[rows], run.t[rows]
     macro, mini = list(run.provenance["stages"])[:2]
-    t = trace["t"].to_numpy()
     desired, tip, end_point = (trace[f"{stem}_{axis}"].to_numpy() for stem in ("desired", "tip", f"{macro}_tip"))
     big, small = macro.capitalize(), mini.capitalize()
     positions = (
@@ -156,10 +135,11 @@ def cover(run: Run, caption: str, until: float | None = None) -> Cover:
         caption: What moves.
         until: End of the part shown, in s; None shows it all.
     """
-    trace = until_time(run, until)
-    trace = trace[np.isfinite(joint_columns(trace, "q")).all(axis=1)]
-    q, t, tip = joint_columns(trace, "q"), trace["t"].to_numpy(), columns(trace, "tip")
+    rows = rows_until(run, until)
+    finite = np.isfinite(run.joints("q")[rows]).all(axis=1)
+    t, q, tip, desired = (
+        values[rows][finite] for values in (run.t, run.joints("q"), run.vector("tip"), run.vector("desired"))
+    )
     few, path = spaced_indices(len(t), _FRAMES), spaced_indices(len(t), 5 * _FRAMES)
-    desired = columns(trace, "desired")[path]
-    moving = moving_arm(model_of(run), q[few], float(t[-1] - t[0]), tip[path], desired)
+    moving = moving_arm(run.model, q[few], float(t[-1] - t[0]), tip[path], desired[path])
     return Cover(caption, moving, playback(run, caption, until).still)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import StoreError
+from runner.base.errors import RunnerError, StoreError, nearest
 from runner.config.composed import Composed
 from runner.store.kinds import kind_of
 from runner.store.parquet import VALUES_FILE, open_parquet, read_column, read_table
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from runner.config.judgement import Bound
+    from runner.robots import RobotModel
     from runner.statistics.spec import Spec
     from runner.statistics.spec.history import Histories
 
@@ -173,6 +174,37 @@ class Run(Stored):
     def _frame(self) -> "pd.DataFrame":
         frame: pd.DataFrame = self._table.to_pandas()
         return frame
+
+    @property
+    def t(self) -> FloatArray:
+        """Times of the trace's rows, shape (T,), in s."""
+        return self._frame["t"].to_numpy()
+
+    def joints(self, signal: str = "q") -> FloatArray:
+        """Return a signal of each joint in the trace, shape (T, nq): the columns signal1, signal2 and so on."""
+        names = [name for name in self._frame.columns if name.startswith(signal) and name[len(signal) :].isdigit()]
+        return self._frame[names].to_numpy()
+
+    def vector(self, signal: str) -> FloatArray:
+        """Return a vector in the trace, shape (T, 3): the columns signal_x, signal_y and signal_z."""
+        return self._frame[[f"{signal}_{axis}" for axis in "xyz"]].to_numpy()
+
+    def median(self, metric: str) -> float | None:
+        """Return the median of a metric; None if the run failed or the metric has no value.
+
+        Raises:
+            RunnerError: if the run has metrics, but none of that name.
+        """
+        if self.metrics and metric not in self.metrics:
+            raise RunnerError(f"run {self.hash} has no metric '{metric}'{nearest(metric, self.metrics)}")
+        return self.metrics[metric].median if self.metrics else None
+
+    @cached_property
+    def model(self) -> "RobotModel":
+        """Rigid-body model of the simulated robot."""
+        from runner.robots import RobotModel
+
+        return RobotModel(self.urdf, self.provenance["tip_frame"], self.config["gravity"])
 
     @property
     def units(self) -> dict[str, str]:

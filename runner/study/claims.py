@@ -11,7 +11,6 @@ from runner.base.quantities import format_range, quantity
 from runner.metrics.positioning import STEADY_WINDOW
 from runner.reporting.document import Claim, ClaimResult
 from runner.reporting.equation import EquationVerdict
-from runner.reporting.figures import columns
 from runner.reporting.published_claims import (
     CLAIMS,
     CONTRADICTION,
@@ -32,7 +31,6 @@ from runner.store import Run
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
 from runner.study.job import MissingError
-from runner.study.run_values import median
 from runner.study.study import Study
 
 _DIGITS = 4  # at least as many as a source prints
@@ -172,7 +170,7 @@ class _Claimed:
     def _lasting(self, run: Run, preset: str, verdict: Verdict) -> str:
         """Return what becomes of a claim's number in a run that lasts longer; nothing where it stays as it is."""
         longer = self._run(self._claim.longer, preset)
-        value = median(longer, self._claim.metric)
+        value = longer.median(self._claim.metric)
         (end, lost), (_, own_lost) = map(_reach_lost, (longer, run))
         over, other = f"over {quantity(end, 's')}", self._with(preset, value)
         if other != verdict:
@@ -189,12 +187,12 @@ class _Claimed:
         return self._of_number(lambda *key: value if key == own else self._median(preset, *key), preset)
 
     def _of_motion(self, run: Run) -> Verdict:
-        tip, desired = columns(run.trace(), "tip"), columns(run.trace(), "desired")
+        tip, desired = run.vector("tip"), run.vector("desired")
         return judge_motion(self._claim.extents, self._claim.fails, tip, desired)
 
     def _moved(self, run: Run) -> str:
         """Return where the tip moves along the axes that the claim speaks of."""
-        tip = columns(run.trace(), "tip")
+        tip = run.vector("tip")
         paths = {extent.axis: tip[:, "xyz".index(extent.axis)] for extent in self._claim.extents}
         return ", ".join(f"{axis} {path.min():.4f} to {path.max():.4f} m" for axis, path in paths.items())
 
@@ -205,7 +203,7 @@ class _Claimed:
         return verdict
 
     def _median(self, preset: str, experiment: str, metric: str) -> float | None:
-        return median(self._run(experiment, preset), metric)
+        return self._run(experiment, preset).median(metric)
 
     def _reason(self) -> str:
         claim, told = self._claim, [self._claim.reason]
@@ -245,7 +243,7 @@ def _named(claim: PublishedClaim) -> str:
 def _reach_lost(run: Run) -> tuple[float, float]:
     """Return when a run ends, and how long its target is out of a stage's reach, in s."""
     end = float(run.trace()["t"].iloc[-1])
-    return end, end * (median(run, "reach_loss_fraction") or 0.0)
+    return end, end * (run.median("reach_loss_fraction") or 0.0)
 
 
 def _printed(claim: PublishedClaim) -> str:

@@ -11,18 +11,7 @@ from runner.base.quantities import above_rounding, with_powers
 from runner.reporting.document import Block, Notice
 from runner.reporting.words import in_words
 from runner.store import Run
-from runner.store.record import Metric
 from runner.study.measured import Measured
-
-
-def median(run: Run, metric: str) -> float | None:
-    """Return the median of a metric; None where the run failed or the metric has no value.
-
-    Raises:
-        RunnerError: if the run has metrics, and none of that name.
-    """
-    stored = _stored(run, metric)
-    return None if stored is None else stored.median
 
 
 def measured(run: Run, metric: str, name: str) -> Measured:
@@ -36,30 +25,18 @@ def measured(run: Run, metric: str, name: str) -> Measured:
     Raises:
         RunnerError: if the run has metrics, and none of that name.
     """
-    stored = _stored(run, metric)
-    return Measured(name, median(run, metric), "1" if stored is None else stored.unit)
-
-
-def _stored(run: Run, metric: str) -> Metric | None:
-    """Return a metric as stored; None where the run failed."""
-    if run.metrics and metric not in run.metrics:
-        raise RunnerError(f"run {run.hash} has no metric '{metric}'{nearest(metric, run.metrics)}")
-    return run.metrics.get(metric)
+    value = run.median(metric)
+    return Measured(name, value, run.metrics[metric].unit if run.metrics else "1")
 
 
 def cell(run: Run, metric: str, digits: int = 3) -> str:
     """Return the median of a metric for a table: "failed" for a failed run, a dash for a value that is missing."""
-    return "failed" if run.status == "failed" else above_rounding(median(run, metric), digits=digits)
+    return "failed" if run.status == "failed" else above_rounding(run.median(metric), digits=digits)
 
 
 def values(runs: Iterable[Run], metric: str) -> FloatArray:
     """Return the medians of a metric, NaN where there is none."""
-    return np.array([np.nan if (m := median(run, metric)) is None else m for run in runs])
-
-
-def clock(run: Run) -> FloatArray:
-    """Return the times of a trace's rows, in s."""
-    return np.asarray(run.trace()["t"].to_numpy())
+    return np.array([np.nan if (m := run.median(metric)) is None else m for run in runs])
 
 
 def delay_of(run: Run) -> int:
@@ -101,13 +78,13 @@ def trace_of(signal: Signal, *runs: Run) -> FloatArray:
 
 def times_of(run: Run, rows: int) -> FloatArray:
     """Return the first times of a run's rows, in s."""
-    return clock(run)[:rows]
+    return run.t[:rows]
 
 
 def number_of(what: Signal, *runs: Run) -> float | None:
     """Return a number of a run: the median of a metric by its name, or what a function of the run gives; or None."""
     if isinstance(what, str):
-        return median(runs[0], what)
+        return runs[0].median(what)
     value = what(*runs)
     return value.value if isinstance(value, Measured) else value if value is None else float(value)
 

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 
 _ALONG = 1  # the hammer's joint that hits, counted from 0
@@ -23,7 +22,7 @@ def impact(run: Run) -> dict[str, float]:
     touching = np.flatnonzero(force > 0.0)
     first = int(touching[0])
     last = first + int(np.argmax(force[first:] <= 0.0)) - 1
-    speed, h = joint_columns(run.trace(), "dq")[:, _ALONG], float(run.config["controller"]["period"])
+    speed, h = run.joints("dq")[:, _ALONG], float(run.config["controller"]["period"])
     before, after = float(speed[first - 1]), float(speed[last + 1])
     peak, drive = float(force[first : last + 1].max()), float(run.config["controller"]["torques"][_ALONG])
     asked = mass(run) * (before - after) + drive * h * (last + 1 - (first - 1))
@@ -40,7 +39,7 @@ def impact(run: Run) -> dict[str, float]:
 
 def mass(run: Run) -> float:
     """Return the mass of the head with its tool, in kg."""
-    return float(model_of(run).mass_matrix(np.zeros(2))[_ALONG, _ALONG])
+    return float(run.model.mass_matrix(np.zeros(2))[_ALONG, _ALONG])
 
 
 def closed_form_peak(run: Run) -> float:
@@ -69,7 +68,7 @@ def spring_force(run: Run) -> float:
     """Return the wall's stiffness times the depth of the tip at the end, in N."""
     wall = run.config["environment"]
     begin = float(run.config["trajectory"]["start"][0]) + float(wall["distance"])
-    return float(wall["stiffness"]) * max(float(columns(run.trace(), "tip")[-1, 0]) - begin, 0.0)
+    return float(wall["stiffness"]) * max(float(run.vector("tip")[-1, 0]) - begin, 0.0)
 
 
 def unrest(run: Run) -> float:

@@ -6,14 +6,12 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from runner.base.quantities import number
-from runner.reporting.figures import model_of
 from runner.store import Run
 from runner.studies.engines.side_by_side import difference, mujoco_of
 from runner.study.measured import Measured
 from runner.study.prose.blocks import of_run
 from runner.study.prose.patterns import found
 from runner.study.prose.signals import distance
-from runner.study.run_values import median
 
 Told = Callable[..., float | None]
 
@@ -51,7 +49,7 @@ def share_of(run: Run, other: Run, reference: Run) -> float:
 
 def acceleration_off(run: Run) -> float:
     """Return how far a MuJoCo run's accelerations are from Pinocchio's at random states at most, as a share."""
-    return difference(model_of(run), mujoco_of(run)).acceleration
+    return difference(run.model, mujoco_of(run)).acceleration
 
 
 def order(coarse: Run, fine: Run, reference: Run) -> float:
@@ -108,6 +106,6 @@ def common_digits(run: Run, other: Run) -> str:
 
 
 def _apart(run: Run, other: Run) -> float:
-    values = [median(each, "max_axis_error") for each in (run, other)]
+    values = [each.median("max_axis_error") for each in (run, other)]
     first, second = (np.nan if value is None else value for value in values)
     return abs(first / second - 1.0)

@@ -9,7 +9,6 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.plants.compiled_motion import CompiledStep
-from runner.reporting.figures import model_of
 from runner.robots import RobotModel
 from runner.store import Run
 from runner.studies.engines.figures import arm_words
@@ -91,7 +90,7 @@ def worst(compared: list[Compared]) -> dict[str, Measured]:
 def textbook(runs: Mapping[str, Run]) -> Measured:
     """Return how far the engines' mass matrices of the two links are from the textbook's formula, as a share."""
     run = runs[f"open/{_TEXTBOOK}/MuJoCo Euler/0.001"]
-    model, bullet, mujoco = model_of(run), bullet_of(run), mujoco_of(run)
+    model, bullet, mujoco = run.model, bullet_of(run), mujoco_of(run)
     try:
         off = max(
             share(ours, _two_links(float(q[1])))
@@ -117,7 +116,7 @@ def _two_links(elbow: float) -> FloatArray:
 
 
 def _compare(name: str, run: Run) -> Compared:
-    model, bullet = model_of(run), bullet_of(run)
+    model, bullet = run.model, bullet_of(run)
     try:
         differences = difference(model, bullet), difference(model, mujoco_of(run))
     finally:

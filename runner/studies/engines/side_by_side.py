@@ -8,7 +8,6 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.plants.bullet import Bullet
 from runner.plants.mujoco import Mujoco
-from runner.reporting.figures import model_of
 from runner.robots import RobotModel
 from runner.store import Run
 
@@ -36,12 +35,12 @@ class Difference:
 
 def bullet_of(run: Run) -> Bullet:
     """Return a run's arm in PyBullet; to be closed."""
-    return Bullet(run.urdf, model_of(run), STEP, 1)
+    return Bullet(run.urdf, run.model, STEP, 1)
 
 
 def mujoco_of(run: Run) -> Mujoco:
     """Return the arm of a run on MuJoCo in MuJoCo, with the run's least inertia, by Euler's scheme."""
-    return Mujoco(run.urdf, model_of(run), STEP, 1, "euler", run.config["plant"]["min_inertia"])
+    return Mujoco(run.urdf, run.model, STEP, 1, "euler", run.config["plant"]["min_inertia"])
 
 
 def random_states(model: RobotModel) -> list[State]:

@@ -16,7 +16,7 @@ from runner.calibration.tool_direction import alignment, alignment_angles
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
 from runner.reporting.document import Series, Verdicts
 from runner.reporting.equation import EquationVerdict
-from runner.reporting.figures import AXES, columns, joint_columns, model_of
+from runner.reporting.figures import AXES
 from runner.reporting.published_claims import Verdict, load_statements
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
@@ -24,7 +24,6 @@ from runner.study.chapters import Concluded
 from runner.study.claims import judged_statements
 from runner.study.measured import ROUNDING, Measured
 from runner.study.prose.tables import Column
-from runner.study.run_values import clock
 
 Calibrations = Mapping[str, Any]  # of Calibration
 Runs = Mapping[str, Run]
@@ -54,14 +53,14 @@ def wrenches(run: Run, signal: str) -> FloatArray:
 @once
 def turns(run: Run) -> FloatArray:
     """Return the rotation vector of the tip since the first row, along the base's axes, shape (T, 3), in rad."""
-    model, rows = model_of(run), joint_columns(run.trace(), "q")
+    model, rows = run.model, run.joints("q")
     first = model.tip_pose(rows[0])[:3, :3]
     return np.array([pin.log3(model.tip_pose(q)[:3, :3] @ first.T) for q in rows])
 
 
 def displacement(run: Run) -> FloatArray:
     """Return how far the tip has gone and turned since the first row, shape (T, 6), in m and rad."""
-    tip = columns(run.trace(), "tip")
+    tip = run.vector("tip")
     return np.hstack([tip - tip[0], turns(run)])
 
 
@@ -80,7 +79,7 @@ def added_inertia(run: Run, shorter: float = 1.0) -> FloatArray:
     """Return h D + h^2 K of each servo, in kg m^2, with a period h so many times that of the run."""
     servo = run.config["plant"]["servo"]
     K, period = float(servo["stiffness"]), shorter * float(servo["period"])
-    inertia = np.diagonal(model_of(run).mass_matrix(np.array(run.config["robot"]["home"])))
+    inertia = np.diagonal(run.model.mass_matrix(np.array(run.config["robot"]["home"])))
     return np.asarray(2.0 * period * float(servo["damping_ratio"]) * np.sqrt(K * inertia) + period**2 * K)
 
 
@@ -92,7 +91,7 @@ def servo_compliance(run: Run) -> FloatArray:
 
     .. math:: K_e = M (M + h D + h^2 K)^{-1} K, \qquad C = J K_e^{-1} J^T
     """
-    model, q = model_of(run), joint_columns(run.trace(), "q")[0]
+    model, q = run.model, run.joints("q")[0]
     M, J = model.mass_matrix(q), model.tip_jacobian(q)
     kept = M @ np.linalg.inv(M + np.diag(added_inertia(run))) * float(run.config["plant"]["servo"]["stiffness"])
     return J @ np.linalg.solve(kept, J.T)
@@ -225,7 +224,7 @@ def forces(run: Run) -> dict[str, float]:
     felt, peak = float(-wrenches(run, "felt")[-1, 0]), float(-wrenches(run, "external")[:, 0].min())
     soft = float(servo_compliance(run)[0, 0]) if run.config["plant"]["kind"] != "kinematic" else 0.0
     series = way / (1.0 / float(law_of(run).stiffness[0]) + 1.0 / stiffness + soft)
-    off_depth = felt / (stiffness * (float(columns(run.trace(), "tip")[-1, 0]) - begin)) - 1.0
+    off_depth = felt / (stiffness * (float(run.vector("tip")[-1, 0]) - begin)) - 1.0
     return {"way": way, "felt": felt, "peak": peak, "first": peak / felt, "series": series, "off_depth": off_depth,
             "off_series": felt / series - 1.0}  # fmt: skip
 
@@ -235,7 +234,7 @@ _PEAK_OVER_MEAN = 1.875  # speed of a quintic from rest to rest
 
 def guided(run: Run) -> dict[str, float]:
     """Return the hand's way and how far from its end the tip is left, in m, and the damping at its peak speed, in N."""
-    hand, tip = run.config["environment"], columns(run.trace(), "tip")
+    hand, tip = run.config["environment"], run.vector("tip")
     way = float(np.linalg.norm(hand["displacement"]))
     damping = _PEAK_OVER_MEAN * way / float(hand["duration"]) * float(run.config["controller"]["damping"][0])
     return {
@@ -247,8 +246,8 @@ def guided(run: Run) -> dict[str, float]:
 
 def joint_speeds(runs: Runs, run: str) -> list[Series]:
     """Return the speeds of joints 1, 2, 3 and 5 as shares of their limits."""
-    shares = joint_columns(runs[run].trace(), "dq") / model_of(runs[run]).velocity_limits
-    return [Series(f"joint {joint}", clock(runs[run]), shares[:, joint - 1]) for joint in (1, 2, 3, 5)]
+    shares = runs[run].joints("dq") / runs[run].model.velocity_limits
+    return [Series(f"joint {joint}", runs[run].t, shares[:, joint - 1]) for joint in (1, 2, 3, 5)]
 
 
 def limits(run: Run) -> dict[str, Any]:
@@ -257,8 +256,8 @@ def limits(run: Run) -> dict[str, Any]:
     margin to a position limit in rad, below zero beyond it; as shares of the speed limit the largest speed and change
     of speed from tick to tick; the smallest singular value of the tip's Jacobian as a share of that at the start.
     """
-    model, q = model_of(run), joint_columns(run.trace(), "q")
-    speeds = joint_columns(run.trace(), "dq") / model.velocity_limits
+    model, q = run.model, run.joints("q")
+    speeds = run.joints("dq") / model.velocity_limits
     singular = [np.linalg.svd(model.tip_jacobian(own), compute_uv=False)[-1] for own in q[::10]]
     said = "; ".join(map(str, run.provenance["warnings"]))
     return {

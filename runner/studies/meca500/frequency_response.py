@@ -11,7 +11,6 @@ from runner.reporting.document import Panel, Series
 from runner.store import Run
 from runner.studies.meca500.figures import Runs, displacement, law_of, loads_of, once, servo_compliance
 from runner.studies.meca500.plan import FREQUENCIES, REPORTED, SINE_CASES
-from runner.study.run_values import clock
 
 ComplexArray = NDArray[np.complex128]
 
@@ -71,7 +70,7 @@ def settled() -> float:
 @once
 def fitted_response(run: Run) -> ComplexArray:
     """Return x / f of each axis of a run under a sine, shape (6,), in m/N and rad/(N m)."""
-    environment, times = run.config["environment"], clock(run)
+    environment, times = run.config["environment"], run.t
     late = times >= _SETTLED
     angle = 2.0 * np.pi * float(environment["frequency"]) * (times[late] - float(environment["start_time"]))
     basis = np.column_stack([np.sin(angle), np.cos(angle)])

@@ -9,7 +9,7 @@ from runner.calibration import identify_gravity
 from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
 from runner.calibration.procedures.gravity import even_postures
 from runner.reporting.document import Panel, Series, Table
-from runner.reporting.figures import joint_columns, origin
+from runner.reporting.figures import origin
 from runner.robots import RobotModel
 from runner.store import Calibration
 from runner.studies.meca500.figures import Calibrations, Runs, degrees, error, flange_of, predicted, refusal, wrenches
@@ -125,7 +125,7 @@ def weighed(runs: Runs, pattern: str, caption: str) -> Table:
     at_rest = [each.run for each in found(runs, pattern)]
     first = at_rest[0]
     flange = RobotModel(first.urdf, first.config["robot"]["tip"], first.config["gravity"])
-    orientations = np.array([flange.tip_pose(joint_columns(run.trace(), "q")[-1])[:3, :3] for run in at_rest])
+    orientations = np.array([flange.tip_pose(run.joints("q")[-1])[:3, :3] for run in at_rest])
     reactions = np.array([wrenches(run, "reaction")[-1] for run in at_rest])
     no_errors = np.zeros((len(at_rest), 3, 3))
     done = identify_gravity(reactions, orientations, float(first.config["gravity"]), np.zeros(6), no_errors)

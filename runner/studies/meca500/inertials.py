@@ -7,11 +7,9 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
-from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.meca500.figures import Runs
 from runner.study.measured import ROUNDING
-from runner.study.run_values import median
 
 _COUNT = 1000
 _LIGHT = 0.1  # kg and N m, below which a share means little
@@ -47,8 +45,8 @@ def torques(runs: Runs) -> list[list[str]]:
         [
             f"joint {joint + 1}",
             *(number(float(np.abs(torque[:, joint]).max()), rounding=ROUNDING) for torque in (held, more)),
-            *(number(median(run, f"peak_torque_q{joint + 1}")) for run in (first, second)),
-            number(float(model_of(first).effort_limits[joint])),
+            *(number(run.median(f"peak_torque_q{joint + 1}")) for run in (first, second)),
+            number(float(first.model.effort_limits[joint])),
         ]
         for joint in range(6)
     ]
@@ -83,7 +81,7 @@ def _masses(run: Run) -> dict[str, float]:
 
 def _gravity(run: Run) -> FloatArray:
     """Return gravity torques at random postures, the same for every run, shape (count, nq), in N m."""
-    model = model_of(run)
+    model = run.model
     low, high = np.clip(model.position_limits, -np.pi, np.pi)
-    postures = np.random.default_rng(0).uniform(low, high, (_COUNT, joint_columns(run.trace(), "q").shape[1]))
+    postures = np.random.default_rng(0).uniform(low, high, (_COUNT, run.joints("q").shape[1]))
     return np.array([model.gravity_torque(q) for q in postures])

@@ -13,7 +13,6 @@ from runner.audit.verdict import Judge, Judged
 from runner.base.expressions.parser import parse
 from runner.base.quantities import number
 from runner.reporting.document import Table
-from runner.reporting.figures import model_of
 from runner.robots.model import RobotModel
 from runner.studies.meca500.equations.truths.meca500 import TABLE
 from runner.studies.meca500.figures import Runs
@@ -66,7 +65,7 @@ def frame_off(runs: Runs, case: str) -> list[Measured]:
     """Return mean and largest distance and mean turn of frame 6 by Table 1 with or without its lost turns."""
     run = runs[_RUN]
     flange = RobotModel(run.urdf, run.config["robot"]["tip"], run.config["gravity"])
-    low, high = np.clip(model_of(run).position_limits, -np.pi, np.pi)
+    low, high = np.clip(run.model.position_limits, -np.pi, np.pi)
     drawn = np.random.default_rng(0).uniform(low, high, (_COUNT, len(TABLE)))
     true = np.array([flange.tip_pose(q) for q in drawn])
     table = [replace(row, theta=0.0) if index in _TURNED[case] else row for index, row in enumerate(TABLE)]

@@ -14,7 +14,6 @@ from runner.controllers.stability import stiffest_wall
 from runner.metrics.caveats.contact_stability import servo_contact
 from runner.plants.servo_contact_stability import ServoContact, contact_radius, stiffest_servo_wall
 from runner.reporting.document import Panel, Series
-from runner.reporting.figures import joint_columns
 from runner.store import Run
 from runner.studies.meca500.figures import Runs, bounces, law_of, once
 from runner.studies.meca500.plan import law
@@ -36,7 +35,7 @@ def contact(run: Run) -> dict[str, float]:
     ideal, late = (stiffest_wall(own_law, period, 0, 0.0, delay) for delay in (0, 1))
     bound, radius = ideal, np.nan
     if run.config["plant"]["kind"] != "kinematic":
-        q = tuple(joint_columns(run.trace(), "q")[0].tolist())
+        q = tuple(run.joints("q")[0].tolist())
         radius = contact_radius(_loop(run.config, q))
         any_wall = {**run.config, "environment": {**run.config["environment"], "stiffness": 1.0}}
         bound = _bound(json.dumps(any_wall, sort_keys=True), q)

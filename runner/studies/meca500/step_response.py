@@ -9,11 +9,9 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.controllers.force.admittance_filter import AXES
 from runner.reporting.document import Panel, Series
-from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.meca500.figures import Runs, added_inertia, displacement, law_of, loads_of, once, servo_compliance
 from runner.studies.meca500.frequency_response import step_response
-from runner.study.run_values import clock
 
 _SHOWN = ("kinematic, 1 ms", "kinematic, 16.7 ms", "servo, 1 ms", "servo, 16.7 ms")
 
@@ -25,10 +23,10 @@ def step(run: Run) -> dict[str, Any]:
     The error is that of the answer joined by straight lines, error_at_ticks that at the ticks alone. give is how far
     servos give way at rest by the closed form, and beyond_give how far that and the error are apart.
     """
-    index, times = _pushed(run), np.linspace(0.0, clock(run)[-1], 3001)
+    index, times = _pushed(run), np.linspace(0.0, run.t[-1], 3001)
     answer = displacement(run)[:, index]
-    joined = np.interp(times, clock(run), answer)
-    expected, at_ticks = (_expected(run, own) for own in (times, clock(run)))
+    joined = np.interp(times, run.t, answer)
+    expected, at_ticks = (_expected(run, own) for own in (times, run.t))
     error = float(np.abs(joined - expected).max() / np.abs(expected).max())
     servos = run.config["plant"]["kind"] != "kinematic"
     give = float(servo_compliance(run)[index, index] * law_of(run).stiffness[index]) if servos else 0.0
@@ -45,7 +43,7 @@ def kept(shorter: float) -> Callable[[Run], float]:
     """Return which share of its stiffness the last servo keeps, in per cent, with a period so many times as long."""
 
     def share(run: Run) -> float:
-        inertia = np.diagonal(model_of(run).mass_matrix(joint_columns(run.trace(), "q")[0]))
+        inertia = np.diagonal(run.model.mass_matrix(run.joints("q")[0]))
         return float((100.0 * inertia / (inertia + added_inertia(run, shorter)))[-1])
 
     return share
@@ -58,12 +56,12 @@ def answers(runs: Runs) -> list[Panel]:
         found = {case: runs[f"step/{case}/{axis}"] for case in _SHOWN}
         begins = {case: float(run.config["environment"]["start_time"]) for case, run in found.items()}
         first, begin = found[_SHOWN[0]], begins[_SHOWN[0]]
-        times = np.linspace(0.0, clock(first)[-1], 3001)
+        times = np.linspace(0.0, first.t[-1], 3001)
         series = [Series("analytic", times - begin, 1e3 * _expected(first, times), "dashed")]
         for case, run in found.items():
             moved = 1e3 * displacement(run)[:, index]
             style = "points" if case == "kinematic, 16.7 ms" else "line"  # of which the line would hide the others
-            series.append(Series(case, clock(run) - begins[case], moved, style))  # type: ignore[arg-type]
+            series.append(Series(case, run.t - begins[case], moved, style))  # type: ignore[arg-type]
         label = f"displacement ({'mm' if index < 3 else 'mrad'})"
         panels.append(Panel(axis, "time since the push (s)", label, series, x_range=(-0.02, 0.4)))
     return panels

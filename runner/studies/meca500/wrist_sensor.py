@@ -7,7 +7,7 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.controllers.force.admittance_filter import AXES, discretise
 from runner.reporting.document import Series, Table
-from runner.reporting.figures import joint_columns, origin
+from runner.reporting.figures import origin
 from runner.sensing.force_torque import AXES as SENSOR_AXES
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.wrench import wrench_transform
@@ -47,7 +47,7 @@ def parting(runs: Runs, pattern: str) -> list[Series]:
     """Return how far the forces are apart over the speed of the fastest joint, tick by tick."""
     series = []
     for each in found(runs, pattern):
-        speed = np.abs(joint_columns(each.run.trace(), "dq")).max(axis=1)[1:]
+        speed = np.abs(each.run.joints("dq")).max(axis=1)[1:]
         apart = np.linalg.norm(_apart(each.run)[1:, :3], axis=1)
         moving = (speed > 1e-2) & (apart > 0.0)
         series.append(Series(f"{float(each.levels['lap']):g} s", speed[moving], apart[moving], "points"))

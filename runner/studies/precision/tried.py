@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from runner.reporting.figures import columns, joint_columns
 from runner.store import Run
 from runner.studies.precision.measure import FILE, PLANT, load
 from runner.study.job import MissingError
@@ -50,8 +49,8 @@ def by_steps(runs: Mapping[str, Run], case: str, arm: str, plant: str) -> list[T
         if one.run.status == "failed":
             tried.append(Tried(float(step), np.nan, np.nan, np.nan))
             continue
-        joints = np.abs(joint_columns(one.run.trace(), "q") - np.array(kept["q"])).max()
-        tip = np.linalg.norm(columns(one.run.trace(), "tip") - np.array(kept["tip"]), axis=1).max()
+        joints = np.abs(one.run.joints("q") - np.array(kept["q"])).max()
+        tip = np.linalg.norm(one.run.vector("tip") - np.array(kept["tip"]), axis=1).max()
         seconds = kept["compiled_seconds"][step] if plant == COMPILED else _seconds(one.run)
         tried.append(Tried(float(step), float(joints), float(tip), seconds))
     return tried

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.reporting.charts.arm import top_view
 from runner.reporting.document import Picture
-from runner.reporting.figures import columns, model_of, origin
+from runner.reporting.figures import origin
 from runner.store import Run
 from runner.study.measured import Measured
 
@@ -15,20 +15,20 @@ from runner.study.measured import Measured
 def from_above(runs: Mapping[str, Run], name: str, caption: str) -> Picture:
     """Return the tip's path and the desired one, seen from above."""
     run = runs[name]
-    drawing = top_view(model_of(run), columns(run.trace(), "tip"), columns(run.trace(), "desired"))
+    drawing = top_view(run.model, run.vector("tip"), run.vector("desired"))
     return Picture(caption, drawing, "Path of the tip seen from above, passing the base axis", 0.7, origin(run))
 
 
 def distance(signal: str) -> Callable[[Run], FloatArray]:
     """Return the distance of a path of the tip to the base axis at each tick, in m."""
-    return lambda run: np.linalg.norm(columns(run.trace(), signal)[:, :2] - model_of(run).shoulder[:2], axis=1)
+    return lambda run: np.linalg.norm(run.vector(signal)[:, :2] - run.model.shoulder[:2], axis=1)
 
 
 def passes(signal: str) -> Callable[[Run], float]:
     """Return the distance at which a path of the tip passes the base axis, between its ticks too, in m."""
 
     def least(run: Run) -> float:
-        path, point = columns(run.trace(), signal)[:, :2], model_of(run).shoulder[:2]
+        path, point = run.vector(signal)[:, :2], run.model.shoulder[:2]
         start, step = path[:-1], np.diff(path, axis=0)
         squared = np.maximum(np.einsum("ij,ij->i", step, step), 1e-300)
         share = np.clip(np.einsum("ij,ij->i", point - start, step) / squared, 0.0, 1.0)

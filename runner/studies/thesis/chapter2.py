@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.quantities import above_rounding, number
 from runner.reporting.charts.workspace import workspace_sphere
 from runner.reporting.document import Picture, Table
-from runner.reporting.figures import model_of, origin
+from runner.reporting.figures import origin
 from runner.robots.workspace import analyse
 from runner.store import Run
 from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
@@ -19,7 +19,7 @@ def parameters(runs: Mapping[str, Run], caption: str, figure: str, arms: Mapping
     """Return the parameters of some arms, by name, each with a run of it."""
     rows = []
     for name, run in ((name, runs[run]) for name, run in arms.items()):
-        model, robot = model_of(run), run.config["robot"]
+        model, robot = run.model, run.config["robot"]
         rows.append(
             [
                 name,
@@ -40,7 +40,7 @@ def parameters(runs: Mapping[str, Run], caption: str, figure: str, arms: Mapping
 
 def workspace(runs: Mapping[str, Run], run: str, name: str, figure: str) -> Picture:
     """Return the sphere of reach of an arm with sampled tip positions, and a cross-section by manipulability."""
-    found = analyse(model_of(runs[run]), _SAMPLES, np.random.default_rng(0))
+    found = analyse(runs[run].model, _SAMPLES, np.random.default_rng(0))
     return Picture(
         f"Workspace of the {name}: {_SAMPLES} sampled tip positions in the sphere of reach, and a meridian "
         f"cross-section coloured by manipulability. Largest distance from the shoulder {number(found.outer, 4)} "

@@ -12,7 +12,6 @@ from runner.studies.thesis.diagrams.macro_mini import macro_mini_graph
 from runner.studies.thesis.diagrams.whole_body import whole_body_graph
 from runner.studies.thesis.folding import singular_value
 from runner.study.job import PRESETS
-from runner.study.run_values import clock
 
 _OF_COUPLED_LAWS = (
     *("coupling", "macro_target", "mini_reference_velocity", "wrist_rotation", "gravity_compensation", "feedforward"),
@@ -82,7 +81,7 @@ def unfolded(run: Run) -> float:
 
 def folded(run: Run) -> float:
     """Return the largest such value over the last half second, in m."""
-    return float(singular_value(run)[clock(run) >= clock(run)[-1] - 0.5].max())
+    return float(singular_value(run)[run.t >= run.t[-1] - 0.5].max())
 
 
 def spreads(runs: Mapping[str, Run], title: str, name: str, *metrics: str) -> list[str]:

@@ -11,13 +11,12 @@ from runner.base.quantities import above_rounding, format_range, number, quantit
 from runner.metrics.caveats.torques import CHATTER
 from runner.reporting.charts.thinning import envelope
 from runner.reporting.document import Panel, Series
-from runner.reporting.figures import AXES, columns, until_time
+from runner.reporting.figures import AXES, rows_until
 from runner.reporting.metric_titles import title
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.published_claims import PublishedClaim, judge, load_claims
 from runner.reporting.words import PLANT
 from runner.store import Run
-from runner.study.run_values import median
 
 APART = 20.0
 """From which ratio of their largest errors on two presets have axes of their own."""
@@ -44,7 +43,7 @@ class Compared:
 
     def errors_apart(self, signal: str = "error") -> float:
         """Return by which factor the largest errors of a signal differ between the presets."""
-        low, high = sorted(_largest(columns(until_time(run, self.until), signal)) for run in self.runs.values())
+        low, high = sorted(_largest(run.vector(signal)[rows_until(run, self.until)]) for run in self.runs.values())
         return high / low if low > 0.0 else np.inf
 
     def scales(self) -> str:
@@ -100,7 +99,7 @@ class Compared:
 
     @property
     def _end(self) -> float:
-        return max(float(until_time(run, self.until)["t"].iloc[-1]) for run in self.runs.values())
+        return max(float(run.t[rows_until(run, self.until)][-1]) for run in self.runs.values())
 
     def _panel(self, title: str, label: str, curves: Sequence[Series], most: float = 0.0) -> Panel:
         return Panel(title, "time (s)", label, curves, y_range=(-most, most) if most else None)
@@ -109,8 +108,8 @@ class Compared:
         """Return a column of each run; an empty curve for a preset that is left out, so that the legend is one."""
         curves = []
         for color, (words, run) in zip(_COLORS, self.runs.items(), strict=True):
-            trace = until_time(run, self.until)
-            t, y = trace["t"].to_numpy(), trace[column].to_numpy()
+            rows = rows_until(run, self.until)
+            t, y = run.t[rows], run.trace()[column].to_numpy()[rows]
             if only is not None and words not in only:
                 t, y = _EMPTY, _EMPTY
             elif last is not None:
@@ -146,8 +145,8 @@ def _told(claim: PublishedClaim) -> str:
 
 
 def _at_rest(run: Run) -> FloatArray:
-    trace = run.trace()
-    return columns(trace[trace["t"] >= trace["t"].iloc[-1] - 0.5 * _AT_REST], "error")
+    error: FloatArray = run.vector("error")[run.t >= run.t[-1] - 0.5 * _AT_REST]
+    return error
 
 
 def _largest(values: FloatArray) -> float:
@@ -204,7 +203,7 @@ def parting(named: Mapping[str, Run], claims: Mapping[str, int]) -> list[str]:
 
 
 def _parted(words: str, run: Run, error: Mapping[str, Any], claims: Mapping[str, int]) -> str:
-    saturated = median(run, "saturation_fraction")
+    saturated = run.median("saturation_fraction")
     text = (
         f"{words[0].upper()}{words[1:]}: some torque is at its limit for {number(100.0 * (saturated or 0.0), 2)} % of "
         f"the ticks; Runge-Kutta, with the same noise, goes another way from {quantity(error['parted'], 's')} on, "

@@ -9,9 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
-from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
-from runner.study.run_values import clock
 
 _MINI = slice(3, 6)
 _JOINTS = {"macro": slice(0, 3), "mini": _MINI}
@@ -75,8 +73,8 @@ def _averaged(run: Run, torques: FloatArray) -> FloatArray:
 
 
 def _difference(first: Run, second: Run, signal: str) -> FloatArray:
-    rows = min(len(first.trace()), len(second.trace()))
-    return np.asarray(joint_columns(first.trace()[:rows], signal) - joint_columns(second.trace()[:rows], signal))
+    rows = min(len(first.t), len(second.t))
+    return first.joints(signal)[:rows] - second.joints(signal)[:rows]
 
 
 def _inertial_torque(run: Run) -> FloatArray:
@@ -85,10 +83,10 @@ def _inertial_torque(run: Run) -> FloatArray:
     It is the inverse dynamics of the whole arm less that of the Mini on a resting base at the same wrist, where the
     Macro's joints neither move nor accelerate; shape (T, 3), in N m.
     """
-    model = model_of(run).pin_model
+    model = run.model.pin_model
     data = model.createData()
-    q, dq = joint_columns(run.trace(), "q"), joint_columns(run.trace(), "dq")
-    tick = float(np.diff(clock(run)).min()) if len(q) > 1 else 1.0
+    q, dq = run.joints("q"), run.joints("dq")
+    tick = float(np.diff(run.t).min()) if len(q) > 1 else 1.0
     ddq = np.diff(dq, axis=0) / tick  # torques are held, so this is the mean over the tick
     result = np.zeros_like(ddq)
     resting = np.concatenate([np.zeros(3), np.ones(3)])

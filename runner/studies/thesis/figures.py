@@ -8,7 +8,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding
 from runner.reporting.document import Block, Curves, Picture, Series, Table, Text
-from runner.reporting.figures import AXES, columns, joint_columns, model_of, origin
+from runner.reporting.figures import AXES, origin
 from runner.reporting.published_claims import load_claims
 from runner.reporting.words import PRESET, in_words
 from runner.store import Run
@@ -21,7 +21,7 @@ from runner.studies.thesis.equations.truths.thesis_printed import compare
 from runner.study.job import PRESETS
 from runner.study.measured import Condition, Measured, check_caption
 from runner.study.prose.patterns import found
-from runner.study.run_values import cell, clock, measured, median, values
+from runner.study.run_values import cell, measured, values
 
 DIFFERENT = 1.1  # ratio from which on two values are not called the same
 _MEANINGS = {
@@ -39,13 +39,13 @@ def frames(
 ) -> Picture:
     """Return the joint axes and Denavit-Hartenberg frames of an arm at home, from its frame 0 by number to the tip."""
     words = f"{arm} at home with its joint axes and Denavit-Hartenberg frames"
-    return Picture(caption, frame_assignment(model_of(runs[run]), first, tip), words, width, origin(runs[run], number))
+    return Picture(caption, frame_assignment(runs[run].model, first, tip), words, width, origin(runs[run], number))
 
 
 def dh_table(runs: Mapping[str, Run], run: str, caption: str, number: str, first: int) -> Table:
     """Return the Denavit-Hartenberg table of an arm whose frame 0 has a number, angles as multiples of pi."""
     rows = []
-    for link, row in enumerate(denavit_hartenberg(model_of(runs[run])), start=first + 1):
+    for link, row in enumerate(denavit_hartenberg(runs[run].model), start=first + 1):
         turn = f"$q_{link}$" if row.theta == 0.0 else f"{_angle(row.theta)} + $q_{link}$"
         rows.append([str(link), turn, f"{row.d:g}", f"{row.a:g}", _angle(row.alpha)])
     header = ["link", "$theta_i$ (rad)", "$d_i$ (m)", "$a_i$ (m)", "$alpha_i$ (rad)"]
@@ -67,7 +67,7 @@ def _angle(value: float) -> str:
 
 def printed_matrices(runs: Mapping[str, Run], run: str, caption: str, mini: bool, samples: int) -> Table:
     """Return how far the thesis' matrices, mended, and the model of an arm are apart at so many random states."""
-    differences = compare(model_of(runs[run]), mini, samples, np.random.default_rng(0))
+    differences = compare(runs[run].model, mini, samples, np.random.default_rng(0))
     rows = [
         [f"${symbol}$", meaning, above_rounding(differences[symbol], unit)]
         for symbol, (meaning, unit) in _MEANINGS.items()
@@ -162,11 +162,11 @@ def moved_by_bias(run: Run) -> float | None:
     The controllers bring the tip that they believe to the goal: all of the Macro's joints are off by the bias, the
     Mini's are right. The largest axis of J_M b to first order, J_M the Macro's columns of the whole arm's tip Jacobian.
     """
-    q = joint_columns(run.trace(), "q")[-1]
+    q = run.joints("q")[-1]
     if not np.isfinite(q).all():
         return None
     joints = sum(not joint.startswith("mini_") for joint in run.provenance["joints"])
-    moved = model_of(run).tip_jacobian(q)[:3, :joints] @ np.full(joints, run.config["noise"]["bias"]["macro"])
+    moved = run.model.tip_jacobian(q)[:3, :joints] @ np.full(joints, run.config["noise"]["bias"]["macro"])
     return float(np.abs(moved).max())
 
 
@@ -196,8 +196,8 @@ def around_the_break(runs: Mapping[str, Run], payload: str) -> tuple[str, str]:
     is broken, both are one.
     """
     names = [one.name for one in found(runs, f"mass/{{mass}}/{payload}")]
-    limit = median(runs[f"mass/0.2/{payload}"], "max_axis_error")
-    errors = [median(runs[name], "max_axis_error") for name in names]
+    limit = runs[f"mass/0.2/{payload}"].median("max_axis_error")
+    errors = [runs[name].median("max_axis_error") for name in names]
     broken = [error is None or limit is None or error > _BROKEN * limit for error in errors]
     first = broken.index(True) if any(broken) else len(names)
     return names[max(first - 1, 0)], names[min(first, len(names) - 1)]
@@ -205,7 +205,7 @@ def around_the_break(runs: Mapping[str, Run], payload: str) -> tuple[str, str]:
 
 def fastest(runs: Mapping[str, Run], pattern: str) -> str:
     """Return the name of the run that settles first among those of a pattern; the first one where none settles."""
-    times = {one.name: median(one.run, "settling_time") for one in found(runs, pattern)}
+    times = {one.name: one.run.median("settling_time") for one in found(runs, pattern)}
     return min(times, key=lambda name: math.inf if times[name] is None else float(times[name] or 0.0))
 
 
@@ -227,8 +227,8 @@ def excess(simulated: Callable[[Run], float | None], predicted: Callable[[Run], 
 
 def sag(run: Run) -> float:
     """Return |J M^-1 G| / omega_n^2 at the run's final true joint positions, in m."""
-    model = model_of(run)
-    q = joint_columns(run.trace(), "q")[-1]
+    model = run.model
+    q = run.joints("q")[-1]
     fall = model.tip_jacobian(q)[:3] @ np.linalg.solve(model.mass_matrix(q), model.gravity_torque(q))
     return float(np.linalg.norm(fall / run.config["controller"]["natural_frequency"] ** 2))
 
@@ -269,7 +269,7 @@ def heavier_than(runs: Mapping[str, Run], name: str, payload: str) -> list[Measu
 
 def final_difference(run: Run, reference: Run) -> float:
     """Return the distance of the joint positions at the end of two runs, in rad."""
-    last, final = (joint_columns(each.trace(), "q")[-1] for each in (run, reference))
+    last, final = (each.joints("q")[-1] for each in (run, reference))
     return float(np.linalg.norm(last - final))
 
 
@@ -301,13 +301,13 @@ def lag_along(axis: str, signed: bool = False) -> Callable[[Run], float]:
 
 def error_in_z_at_rest(run: Run) -> float:
     """Return the mean error in z at the end of a run, in m."""
-    at_rest = clock(run) > clock(run)[-1] - _REST
-    return float(columns(run.trace(), "error")[at_rest].mean(axis=0)[2])
+    at_rest = run.t > run.t[-1] - _REST
+    return float(run.vector("error")[at_rest].mean(axis=0)[2])
 
 
 def _lag(run: Run) -> FloatArray:
     """Return the largest lag along each axis, desired less true position, shape (3,), in m."""
-    controller, desired = run.config["controller"], columns(run.trace(), "desired")
+    controller, desired = run.config["controller"], run.vector("desired")
     factor = 2.0 * float(controller["damping_ratio"]) / float(controller["natural_frequency"])
     return np.asarray(factor * 1.875 * (desired[-1] - desired[0]) / float(run.config["trajectory"]["duration"]))
 
@@ -335,10 +335,10 @@ def effectiveness(runs: Mapping[str, Run]) -> list[list[str]]:
 
 def encoder_bound(run: Run) -> float | None:
     """Return the largest axis error of the Macro's end point as its encoders tell it at the last posture, in m."""
-    q, frame = joint_columns(run.trace(), "q")[-1], run.provenance["stages"]["mini"]
+    q, frame = run.joints("q")[-1], run.provenance["stages"]["mini"]
     if not np.isfinite(q).all():
         return None
-    model, step = model_of(run), 1e-6
+    model, step = run.model, 1e-6
     at_rest, *moved = (model.frame_poses(q + step * joint, (frame,))[0][:3, 3] for joint in np.eye(4, len(q), -1))
     slopes = np.abs([each - at_rest for each in moved]).sum(axis=0) / step  # the first of four moves no joint
     return float(slopes.max() * run.config["noise"]["position"]["macro"])

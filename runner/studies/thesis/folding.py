@@ -11,11 +11,9 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import format_range, number, quantity
-from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.studies.thesis.figures import at_rest
 from runner.study.measured import ROUNDING
-from runner.study.run_values import clock
 
 _PARTED = 1.0  # rad
 
@@ -42,7 +40,7 @@ def volume_of_closest(run: Run) -> str:
 
 def time_of_closest(run: Run) -> str:
     """Return when that is, in s."""
-    return f"{clock(run)[_row(run)]:.2f}"
+    return f"{run.t[_row(run)]:.2f}"
 
 
 def sag(run: Run) -> float:
@@ -73,7 +71,7 @@ def at_rest_text(run: Run) -> str:
 
 def parting(first: Run, second: Run) -> FloatArray:
     """Return the distance between the joint positions of two runs at their common ticks, shape (T,), in rad."""
-    a, b = (joint_columns(run.trace(), "q") for run in (first, second))
+    a, b = (run.joints("q") for run in (first, second))
     rows = min(len(a), len(b))
     return np.asarray(np.linalg.norm(a[:rows] - b[:rows], axis=1))
 
@@ -81,7 +79,7 @@ def parting(first: Run, second: Run) -> FloatArray:
 def parted_at(first: Run, second: Run) -> float | None:
     """Return from when on two runs have been 1 rad apart, in s; None where they never are."""
     apart = parting(first, second) >= _PARTED
-    return float(clock(first)[int(apart.argmax())]) if apart.any() else None
+    return float(first.t[int(apart.argmax())]) if apart.any() else None
 
 
 def _row(run: Run) -> int:
@@ -91,7 +89,7 @@ def _row(run: Run) -> int:
 
 def _singular_values(run: Run) -> FloatArray:
     """Return those of the Mini's columns of the whole arm's Jacobian, shape (T, 3): they depend on no frame."""
-    model, positions = model_of(run), joint_columns(run.trace(), "q")
+    model, positions = run.model, run.joints("q")
     values, finite = np.full((len(positions), 3), np.nan), np.isfinite(positions).all(axis=1)
     jacobians = [model.tip_jacobian(q)[:3, 3:] for q in positions[finite]]
     values[finite] = np.linalg.svd(np.reshape(jacobians, (-1, 3, 3)), compute_uv=False)
@@ -100,8 +98,8 @@ def _singular_values(run: Run) -> FloatArray:
 
 def missing_acceleration(run: Run, row: int) -> float:
     """Return the acceleration of the Macro's end point by the gravity that its law leaves out, in m/s^2."""
-    whole = model_of(run)
-    q = joint_columns(run.trace(), "q")[row]
+    whole = run.model
+    q = run.joints("q")[row]
     base = whole.pin_model.getFrameId(run.provenance["stages"]["mini"])
     data = whole.pin_model.createData()
     J = pin.computeFrameJacobian(whole.pin_model, data, q, base, pin.LOCAL_WORLD_ALIGNED)[:3, :3]
@@ -119,12 +117,12 @@ def _known_payload(run: Run) -> float:
     """Return the mass of the Mini that the Macro's model knows, in kg."""
     if run.config["controller"]["payload"] != "known":
         return 0.0
-    return float(sum(inertia.mass for inertia in list(model_of(run).pin_model.inertias)[4:]))
+    return float(sum(inertia.mass for inertia in list(run.model.pin_model.inertias)[4:]))
 
 
 def _macro_alone(run: Run, payload: float) -> pin.Model:
     """Return the arm with a Mini without mass, and a point mass at the Macro's end point."""
-    model = pin.Model(model_of(run).pin_model)
+    model = pin.Model(run.model.pin_model)
     for joint in range(4, model.njoints):
         model.inertias[joint] = pin.Inertia.Zero()
     frame = model.frames[model.getFrameId(run.provenance["stages"]["mini"])]

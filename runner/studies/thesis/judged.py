@@ -11,7 +11,6 @@ from runner.metrics.summary import over_repetitions
 from runner.reporting.published_claims import PublishedClaim, Verdict, compared_with, simulated_by, verdict_on
 from runner.store import Run
 from runner.study.claims import run_name
-from runner.study.run_values import median
 
 DRAWN = 2000
 """Groups of seeds drawn with replacement."""
@@ -107,10 +106,10 @@ def judge_by_seeds(
         return [verdict_on(claim, claims, lambda *key, at=at: simulated(at, *key)) for at in range(len(groups))]
 
     def of_study(experiment: str, metric: str) -> float | None:
-        return median(own[run_name(experiment, "")], metric)
+        return own[run_name(experiment, "")].median(metric)
 
     def of_seeds(experiment: str, metric: str) -> float | None:
-        return median(seeds[run_name(experiment, "")], metric)
+        return seeds[run_name(experiment, "")].median(metric)
 
     values = stored(*simulated_by(claim))
     count = values.size

@@ -4,10 +4,8 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
-from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study.prose.signals import largest_of
-from runner.study.run_values import clock
 
 
 def speed_seen(run: Run) -> FloatArray:
@@ -29,18 +27,18 @@ def lag(run: Run) -> float | None:
 
 def _speeds(run: Run, frames: FloatArray) -> FloatArray:
     """Return the speed of x_d - x_E in frames with these rotations into the robot's, shape (T, 3, 3)."""
-    rest = columns(run.trace(), "desired") - columns(run.trace(), "macro_tip")
+    rest = run.vector("desired") - run.vector("macro_tip")
     steps = np.diff(np.einsum("tji,tj->ti", frames, rest), axis=0)
-    return np.asarray(np.linalg.norm(steps / np.diff(clock(run))[:, None], axis=1))
+    return np.asarray(np.linalg.norm(steps / np.diff(run.t)[:, None], axis=1))
 
 
 def _wrist_rotations(run: Run) -> FloatArray:
     """Return the true rotation from the Mini's base frame into the robot's at each tick, shape (T, 3, 3)."""
-    model = model_of(run)
+    model = run.model
     base = model.pin_model.getFrameId(run.provenance["stages"]["mini"])
     data = model.pin_model.createData()
     rotations = np.full((len(run.trace()), 3, 3), np.nan)
-    for row, q in zip(rotations, joint_columns(run.trace(), "q"), strict=True):
+    for row, q in zip(rotations, run.joints("q"), strict=True):
         if np.isfinite(q).all():
             pin.forwardKinematics(model.pin_model, data, q)
             row[:] = pin.updateFramePlacement(model.pin_model, data, base).rotation

@@ -8,11 +8,11 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.reporting.document import Block, Table, Text
-from runner.reporting.figures import columns, origin
+from runner.reporting.figures import origin
 from runner.store import Run
 from runner.study.measured import Condition, Measured
 from runner.study.prose.patterns import found
-from runner.study.run_values import clock, failures
+from runner.study.run_values import failures
 
 _FLOOR, _CEILING = 1e-13, 1e-2  # m, within which a decay or growth is exponential
 _STEP = 1e-3  # m, the goal step
@@ -134,10 +134,10 @@ def _range(last: Measured, first: Measured) -> str:
 
 def _changes(run: Run, stage: str) -> FloatArray:
     """Return how far the stage's end point moves in each of its periods, in m: it has no rest value to subtract."""
-    t = clock(run)
+    t = run.t
     period = float(run.config["controller"]["period"][stage])
     every = max(1, round(period / float(np.diff(t).min()))) if len(t) > 1 else 1
-    error = columns(run.trace(), "macro_error" if stage == "macro" else "error")[::every]
+    error = run.vector("macro_error" if stage == "macro" else "error")[::every]
     return np.asarray(np.linalg.norm(np.diff(error, axis=0), axis=1))
 
 

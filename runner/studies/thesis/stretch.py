@@ -2,11 +2,9 @@
 
 import numpy as np
 
-from runner.reporting.figures import columns
 from runner.store import Run
 from runner.studies.thesis.folding import missing_acceleration
 from runner.study.prose.signals import norm, vector
-from runner.study.run_values import clock
 
 _SETTLED = 1e-3  # m, of the tip error, from where on the drift is measured
 _WAY_LEFT = norm(vector("desired") - vector("macro_tip"))  # m, from the Macro's end point to the target
@@ -19,7 +17,7 @@ def lost_from(run: Run) -> float | None:
     if not beyond[-1]:
         return None
     inside = np.flatnonzero(~beyond)
-    return float(clock(run)[inside[-1] + 1]) if len(inside) else 0.0
+    return float(run.t[inside[-1] + 1]) if len(inside) else 0.0
 
 
 def lost_from_text(run: Run) -> str:
@@ -51,7 +49,7 @@ def drift(run: Run) -> float | None:
     window = _window(run)
     if window is None:
         return None
-    (first, last), t, moved = window, clock(run), columns(run.trace(), "macro_tip")
+    (first, last), t, moved = window, run.t, run.vector("macro_tip")
     return float(np.linalg.norm(moved[last] - moved[first]) / (t[last] - t[first]))
 
 
@@ -61,8 +59,8 @@ def _reach(run: Run) -> float:
 
 def _window(run: Run) -> tuple[int, int] | None:
     """Return first and last row of the time over which the drift is measured; None where the tip never rests."""
-    t, lost = clock(run), lost_from(run)
-    good = (np.linalg.norm(columns(run.trace(), "error"), axis=1) < _SETTLED) & (t <= (t[-1] if lost is None else lost))
+    t, lost = run.t, lost_from(run)
+    good = (np.linalg.norm(run.vector("error"), axis=1) < _SETTLED) & (t <= (t[-1] if lost is None else lost))
     resting = t[good]
     if not len(resting):
         return None

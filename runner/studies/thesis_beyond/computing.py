@@ -9,7 +9,6 @@ from runner.reporting.document import Series
 from runner.store import Run
 from runner.study.prose.patterns import found
 from runner.study.prose.signals import failed
-from runner.study.run_values import clock
 
 _TOP = 1.0  # m, of the lines in figures
 _LOW = 1e-5
@@ -54,5 +53,5 @@ def borne(run: Run) -> float:
 
 def fastest(run: Run) -> float:
     """Return the fastest period of a run, in s."""
-    t = clock(run)
+    t = run.t
     return float(t[1] - t[0])

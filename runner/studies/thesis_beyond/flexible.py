@@ -8,14 +8,12 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.reporting.document import Series
-from runner.reporting.figures import columns, joint_columns, model_of
 from runner.robots.modes import Mode
 from runner.store import Run
 from runner.studies.thesis_beyond.cantilever import frequency_errors
 from runner.studies.thesis_beyond.flexible_map import stable_and_not
 from runner.study.prose.plots import points
 from runner.study.prose.signals import moved, norm, vector
-from runner.study.run_values import clock
 from runner.trajectories.impulses import zero_vibration
 
 _MACRO = 3  # its joints
@@ -50,7 +48,7 @@ def grows(run: Run) -> bool:
     """Tell whether what moves at the end moves faster than half-way, as it does where a law is unstable."""
     if run.status == "failed":
         return True
-    speed = np.abs(joint_columns(run.trace(), "dq")).max(axis=1)
+    speed = np.abs(run.joints("dq")).max(axis=1)
     tenth = max(1, len(speed) // 10)
     return bool(speed[-tenth:].max() > speed[5 * tenth : 6 * tenth].max())
 
@@ -101,7 +99,7 @@ def most(of: Callable[[Run], FloatArray], after: bool) -> Callable[[Run], float]
     """Return the largest distance while the desired motion lasts, or after it, in m; NaN of a run that ends before."""
 
     def worst(run: Run) -> float:
-        moving = clock(run) <= float(run.config["trajectory"]["duration"]) + 1e-9
+        moving = run.t <= float(run.config["trajectory"]["duration"]) + 1e-9
         return float(np.max(of(run)[~moving if after else moving], initial=np.nan if moving.all() and after else 0.0))
 
     return worst
@@ -109,14 +107,14 @@ def most(of: Callable[[Run], FloatArray], after: bool) -> Callable[[Run], float]
 
 def rings_until(run: Run) -> float:
     """Return when the Macro's end point is last 2 mm away from where it began, in s; NaN where it rings on."""
-    t, away = clock(run), _DISPLACED(run) > _SETTLED
+    t, away = run.t, _DISPLACED(run) > _SETTLED
     last = np.flatnonzero(away)
     return float("nan") if away[t > 0.9 * t[-1]].any() or not len(last) else float(t[last[-1]])
 
 
 def damping_ratio(run: Run, bare: Run) -> float:
     """Return the damping ratio of the first mode of the bare Macro as its peaks rise or fall; NaN of fewer than two."""
-    phi, t, q = _shape(bare), clock(run), joint_columns(run.trace(), "q")[:, :_MACRO]
+    phi, t, q = _shape(bare), run.t, run.joints("q")[:, :_MACRO]
     y = (q - q[0]) @ _mass(bare) @ phi
     peaks = 1 + np.flatnonzero((y[1:-1] > y[:-2]) & (y[1:-1] >= y[2:]))
     peaks = peaks[t[peaks] > _KICK]
@@ -169,7 +167,7 @@ def off_the_line(runs: Mapping[str, Run], pattern: str, unshaped: str, kind: Lit
 
 def rings_after(run: Run) -> float:
     """Return how far the tip is from where it rests, at most, once its desired motion has ended, in m; NaN before."""
-    error, t, ended = columns(run.trace(), "error"), clock(run), _first_at_rest(run)
+    error, t, ended = run.vector("error"), run.t, _first_at_rest(run)
     if ended is None:
         return float("nan")
     away = error[ended:] - error[t > t[-1] - _REST].mean(axis=0)
@@ -192,14 +190,14 @@ def order_of_chains(tip_ratio: float) -> float:
 def _rings(run: Run) -> float:
     """Return the amplitude of joint 1's vibration once its desired motion has ended, in rad; NaN before."""
     stiffness = float(run.config["plant"]["flexible_joints"]["stiffness"])
-    mode, t = Mode(float(np.sqrt(stiffness / _mass(run)[0, 0]) / (2.0 * np.pi)), 0.0), clock(run)
+    mode, t = Mode(float(np.sqrt(stiffness / _mass(run)[0, 0]) / (2.0 * np.pi)), 0.0), run.t
     ended = _first_at_rest(run)
-    return float("nan") if ended is None else mode.amplitude(t, joint_columns(run.trace(), "q")[:, 0], float(t[ended]))
+    return float("nan") if ended is None else mode.amplitude(t, run.joints("q")[:, 0], float(t[ended]))
 
 
 def _first_at_rest(run: Run) -> int | None:
     """Return the first row after the desired motion; None of a run that ends before."""
-    moving = np.flatnonzero(np.abs(columns(run.trace(), "desired_velocity")).max(axis=1) > _STILL)
+    moving = np.flatnonzero(np.abs(run.vector("desired_velocity")).max(axis=1) > _STILL)
     return int(moving[-1]) + 1 if len(moving) and moving[-1] + 1 < len(run.trace()) else None
 
 
@@ -211,8 +209,8 @@ def _first_mode(run: Run, bare: Run) -> tuple[float, float]:
 
     .. math:: m / m_1 = \phi^T M_{Mm} J_m^{-1} J_M \phi / (\phi^T M \phi)
     """
-    phi, M, model, q = _shape(bare), _mass(bare), model_of(run), joint_columns(run.trace(), "q")[0]
-    whole, moves = model.tip_jacobian(q)[:3], model_of(bare).tip_jacobian(np.zeros(_MACRO))[:3] @ phi
+    phi, M, model, q = _shape(bare), _mass(bare), run.model, run.joints("q")[0]
+    whole, moves = model.tip_jacobian(q)[:3], bare.model.tip_jacobian(np.zeros(_MACRO))[:3] @ phi
     couples = model.mass_matrix(q)[:_MACRO, _MACRO:]
     stiffness = float(run.config["plant"]["flexible_joints"]["stiffness"]["macro"])
     weight = float(phi @ M @ phi)
@@ -227,5 +225,5 @@ def _shape(bare: Run) -> FloatArray:
 
 def _mass(run: Run) -> NDArray[np.float64]:
     """Return the mass matrix of the Macro's joints at home, with what rides on it held, shape (3, 3)."""
-    model = model_of(run)
+    model = run.model
     return model.mass_matrix(np.zeros(model.nq))[:_MACRO, :_MACRO]

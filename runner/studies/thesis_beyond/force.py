@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.controllers.stability import force_loop_limit
 from runner.reporting.document import Series
-from runner.reporting.figures import columns, joint_columns, model_of
 from runner.robots.task_space import mass_along, tip_mobility
 from runner.store import Run
 from runner.study.prose.patterns import found
-from runner.study.run_values import clock, delay_of
+from runner.study.run_values import delay_of
 
 _RISE = 3.3579  # of omega_c times the time from 10 % to 90 % of a critically damped step
 _BOUNCES = 0.05  # of the force that is asked for, from which it differs at the end
@@ -22,12 +21,12 @@ _SLIDES = (0.3, 0.6)  # s, in the middle of the motion along the wall
 
 def push(run: Run) -> FloatArray:
     """Return the force of the tip on the wall at each row, in N."""
-    return np.asarray(columns(run.trace(), "external_force") @ np.array(run.config["environment"]["normal"]))
+    return np.asarray(run.vector("external_force") @ np.array(run.config["environment"]["normal"]))
 
 
 def rise_time(run: Run) -> float:
     """Return how long the force takes from 10 % to 90 % of what is asked, in s; NaN where it never does."""
-    force, asked, t = push(run), float(run.config["controller"]["force"]), clock(run)
+    force, asked, t = push(run), float(run.config["controller"]["force"]), run.t
     if not (force >= 0.9 * asked).any():
         return float("nan")
     low, high = (_first_at(t, force, share * asked) for share in (0.1, 0.9))
@@ -70,7 +69,7 @@ def speed_at_touch(run: Run) -> float:
     row = _touch(run)
     if row is None:
         return float("nan")
-    t, tip = clock(run), columns(run.trace(), "tip") @ np.array(run.config["environment"]["normal"])
+    t, tip = run.t, run.vector("tip") @ np.array(run.config["environment"]["normal"])
     return float((tip[row - 1] - tip[row]) / (t[row] - t[row - 1]))
 
 
@@ -88,20 +87,20 @@ def worst_while_sliding(run: Run) -> float | None:
 
 def friction_while_sliding(run: Run) -> float | None:
     """Return the mean force along the wall over that into it, in the middle of the motion along a wall."""
-    slides, force, along = _slides(run), push(run), columns(run.trace(), "external_force")
+    slides, force, along = _slides(run), push(run), run.vector("external_force")
     beside = np.linalg.norm(along - force[:, None] * np.array(run.config["environment"]["normal"]), axis=1)
     return float(np.mean(beside[slides] / force[slides])) if slides.any() else None
 
 
 def along_the_push(run: Run) -> FloatArray:
     """Return how far the tip has gone along a push at each row, in m."""
-    tip, way = columns(run.trace(), "tip"), _way(run)
+    tip, way = run.vector("tip"), _way(run)
     return np.asarray((tip - tip[0]) @ way)
 
 
 def beside_the_push(run: Run) -> float:
     """Return how far the tip is beside the line of a push in the end, in m."""
-    tip, way = columns(run.trace(), "tip"), _way(run)
+    tip, way = run.vector("tip"), _way(run)
     moved = tip[-1] - tip[0]
     return float(np.linalg.norm(moved - way * (moved @ way)))
 
@@ -120,7 +119,7 @@ def _way(run: Run) -> FloatArray:
 
 def _slides(run: Run) -> NDArray[np.bool_]:
     """Return which rows are in the middle of the motion along a wall."""
-    t = clock(run)
+    t = run.t
     return np.asarray((t >= _SLIDES[0]) & (t <= _SLIDES[1]))
 
 
@@ -137,9 +136,9 @@ def _touch(run: Run) -> int | None:
 
 
 def _mass(run: Run, row: int) -> float:
-    q = joint_columns(run.trace(), "q")[row]
+    q = run.joints("q")[row]
     return mass_along(
-        tip_mobility(model_of(run), q, _first_that_pushes(run)), np.array(run.config["environment"]["normal"])
+        tip_mobility(run.model, q, _first_that_pushes(run)), np.array(run.config["environment"]["normal"])
     )
 
 
@@ -166,13 +165,13 @@ def walls_tried(runs: Mapping[str, Run], name: str, bounce: bool, color: int) ->
 
 def beside_the_wall(run: Run) -> FloatArray:
     """Return the tip's error along the wall at each row, in m."""
-    error, n = columns(run.trace(), "error"), np.array(run.config["environment"]["normal"])
+    error, n = run.vector("error"), np.array(run.config["environment"]["normal"])
     return np.asarray(np.linalg.norm(error - np.outer(error @ n, n), axis=1))
 
 
 def masses_around(runs: Mapping[str, Run], run: str, name: str, color: int) -> list[Series]:
     """Return the mass of what pushes in each direction of the plane x = 0 where a run starts, as a curve in kg."""
-    model, q = model_of(runs[run]), joint_columns(runs[run].trace(), "q")[0]
+    model, q = runs[run].model, runs[run].joints("q")[0]
     yields = tip_mobility(model, q, _first_that_pushes(runs[run]))
     turns = np.linspace(0.0, 2.0 * np.pi, 181)
     ways = np.array([np.zeros_like(turns), np.cos(turns), np.sin(turns)])

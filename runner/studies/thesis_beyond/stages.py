@@ -8,11 +8,9 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.controllers.stability import force_loop_limit
 from runner.reporting.document import Series
-from runner.reporting.figures import model_of
 from runner.robots.task_space import tip_mobility
 from runner.store import Run
 from runner.studies.thesis_beyond.force import rise_time
-from runner.study.run_values import median
 
 _BANDWIDTH = float(np.sqrt(np.sqrt(2.0) - 1.0))  # over omega_c, of a critically damped loop, at -3 dB
 _POSTURES = 1000
@@ -20,13 +18,13 @@ _POSTURES = 1000
 
 def rungs(runs: Mapping[str, Run], run: str, name: str, color: int) -> list[Series]:
     """Return the largest axis error of each stage's end point of a run, in m, as points at 1, 2, ..."""
-    errors = [median(runs[run], metric) for metric in _errors(runs[run])]
+    errors = [runs[run].median(metric) for metric in _errors(runs[run])]
     return [Series(name, np.arange(1.0, 1.0 + len(errors)), np.array(errors), "points_line", color=color)]
 
 
 def mass_of_stage(stage: int, which: int) -> Callable[[Run], float]:
     """Return the lightest (0) to heaviest (2) mass of the tip at home when a stage and all after it move, in kg."""
-    return lambda run: float(1.0 / np.linalg.eigvalsh(tip_mobility(model_of(run), *_from(run, stage)))[2 - which])
+    return lambda run: float(1.0 / np.linalg.eigvalsh(tip_mobility(run.model, *_from(run, stage)))[2 - which])
 
 
 def force_bandwidth(stage: int) -> Callable[[Run], float]:
@@ -41,7 +39,7 @@ def force_bandwidth(stage: int) -> Callable[[Run], float]:
 
 def least_gain(run: Run) -> float:
     """Return the least that a stage more adds to how the tip yields, over all, in random postures (Khatib)."""
-    model, draw, least = model_of(run), np.random.default_rng(0), np.inf
+    model, draw, least = run.model, np.random.default_rng(0), np.inf
     firsts = _firsts(run)
     for _ in range(_POSTURES):
         q = draw.uniform(-1.5, 1.5, model.nq)
@@ -64,7 +62,7 @@ def felt_by_the_tip(consistent: bool) -> Callable[[Run], float]:
     """
 
     def share(run: Run) -> float:
-        model, draw, most = model_of(run), np.random.default_rng(0), 0.0
+        model, draw, most = run.model, np.random.default_rng(0), 0.0
         for _ in range(_POSTURES // 10):
             q, tau = draw.uniform(-1.5, 1.5, model.nq), draw.uniform(-1.0, 1.0, model.nq)
             J, M = model.tip_jacobian(q)[:3], model.mass_matrix(q)

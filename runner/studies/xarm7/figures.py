@@ -7,10 +7,9 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.quantities import number
-from runner.reporting.figures import joint_columns, model_of
 from runner.store import Run
 from runner.study.prose.signals import limit_margin
-from runner.study.run_values import clock, values
+from runner.study.run_values import values
 
 ROWS = {"position": 3, "pose": 6}  # of the Jacobian, by the tip's task
 SHOULDER = 1  # counted from 0: the joint that lifts the arm
@@ -18,7 +17,7 @@ SHOULDER = 1  # counted from 0: the joint that lifts the arm
 
 def smallest_margin(run: Run) -> str:
     """Return the same with the joint that it is, as a cell of a table."""
-    joint = int(np.argmin(model_of(run).limit_margins(joint_columns(run.trace(), "q")).min(axis=0)))
+    joint = int(np.argmin(run.model.limit_margins(run.joints("q")).min(axis=0)))
     return f"{number(float(limit_margin(run).min()))} (q{joint + 1})"
 
 
@@ -89,14 +88,14 @@ def last_clipped(run: Run) -> float | None:
 
 def _at_limits(run: Run) -> np.ndarray:
     """Return at which ticks each joint is at its effort limit, shape (T, nq)."""
-    torques = np.abs(joint_columns(run.trace(), "tau"))[:-1]
-    return np.asarray(torques >= model_of(run).effort_limits * (1.0 - 1e-9))
+    torques = np.abs(run.joints("tau"))[:-1]
+    return np.asarray(torques >= run.model.effort_limits * (1.0 - 1e-9))
 
 
 def nearest_to_its_limit(run: Run) -> str:
     """Return which joint comes closest to its effort limit, or is the first at it, and how close, as a cell."""
-    torques = np.abs(joint_columns(run.trace(), "tau"))[:-1].max(axis=0, initial=0.0)
-    shares = torques / model_of(run).effort_limits
+    torques = np.abs(run.joints("tau"))[:-1].max(axis=0, initial=0.0)
+    shares = torques / run.model.effort_limits
     saturated = first_saturation(run)
     joint = int(np.argmax(shares)) if saturated is None else saturated[0]
     return f"q{joint + 1}, {100.0 * shares[joint]:.3g} %"
@@ -104,26 +103,26 @@ def nearest_to_its_limit(run: Run) -> str:
 
 def sag(run: Run) -> float:
     """Return |J K^-1 G|, the tip's sag by the arm's weight, its largest axis over the postures of a run, in m."""
-    model = model_of(run)
+    model = run.model
     stiffness = float(run.config["plant"]["servo"]["stiffness"])
-    rows = joint_columns(run.trace(), "q")[::50]
+    rows = run.joints("q")[::50]
     return max(float(np.abs(model.tip_jacobian(q)[:3] @ model.gravity_torque(q)).max()) / stiffness for q in rows)
 
 
 def flange_turn(run: Run) -> float:
     """Return the largest angle between the flange's orientation and the one it starts with, in rad."""
-    model, q = model_of(run), joint_columns(run.trace(), "q")
+    model, q = run.model, run.joints("q")
     first = model.tip_pose(q[0])[:3, :3]
     return max(float(np.linalg.norm(pin.log3(first.T @ model.tip_pose(row)[:3, :3]))) for row in q[::10])
 
 
 def second_drift(run: Run) -> float:
     """Return how far the joints are in the end from where they were after the first period, the largest, in rad."""
-    q = joint_columns(run.trace(), "q")
-    after = int(np.searchsorted(clock(run), float(run.config["trajectory"]["duration"]) - 1e-9))
+    q = run.joints("q")
+    after = int(np.searchsorted(run.t, float(run.config["trajectory"]["duration"]) - 1e-9))
     return float(np.abs(q[-1] - q[after]).max())
 
 
 def moving_mass(run: Run) -> float:
     """Return the mass of a run's arm that moves, in kg."""
-    return model_of(run).mass
+    return run.model.mass

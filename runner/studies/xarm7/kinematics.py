@@ -10,7 +10,6 @@ from runner.audit.evaluation import evaluate
 from runner.base.arrays import FloatArray
 from runner.base.expressions.parser import parse
 from runner.base.quantities import number
-from runner.reporting.figures import model_of
 from runner.robots.model import RobotModel
 from runner.store import Run
 from runner.studies.xarm7.equations.truths.xarm7 import JOINTS, constants
@@ -80,7 +79,7 @@ _MENDED: dict[str, tuple[tuple[str, ...], float]] = {  # which formulas are put 
 
 def off_the_model(runs: Mapping[str, Run], run: str, right: bool, count: int) -> tuple[float, float]:
     """Return the largest and the median distance of the printed tip, or of the right one, from a run's model, in m."""
-    model = model_of(runs[run])
+    model = runs[run].model
     postures = random_postures(model, count)
     distances = np.linalg.norm(printed_tip(postures, right) - model.tip_positions(postures), axis=1)
     return float(distances.max()), float(np.median(distances))
@@ -120,7 +119,7 @@ def branch_rooms(runs: Mapping[str, Run], *names: str) -> list[list[float]]:
 def branches_miss(*lines: Run) -> float:
     """Return the largest distance between the tip of any branch and the lines of some runs, in m."""
     return max(
-        float(np.abs(model_of(run).tip_positions(_branch(run, branch)[0]) - _line(run)).max())
+        float(np.abs(run.model.tip_positions(_branch(run, branch)[0]) - _line(run)).max())
         for run in lines
         for branch in BRANCHES
     )
@@ -130,11 +129,11 @@ def _branch(run: Run, branch: Branch) -> tuple[FloatArray, FloatArray]:
     """Return the joint positions along a run's line, shape (K, nq), and the margin of each to its limits, (nq,)."""
     arm = _arm(run)
     q = np.array([arm.solve(point, branch) for point in _line(run)])
-    return q, model_of(run).limit_margins(q).min(axis=0)
+    return q, run.model.limit_margins(q).min(axis=0)
 
 
 def _arm(run: Run) -> ThreeJointArm:
-    return ThreeJointArm(model_of(run), float(run.config["controller"]["wrist"]))
+    return ThreeJointArm(run.model, float(run.config["controller"]["wrist"]))
 
 
 def _line(run: Run) -> FloatArray:

@@ -7,12 +7,11 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.reporting.document import Series
-from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.prose.patterns import called, found
 from runner.study.prose.signals import manipulability
-from runner.study.run_values import Signal, clock, trace_of
+from runner.study.run_values import Signal, trace_of
 
 _ASIDE = [2, 4]  # the joints that lead the elbow out of the arm's vertical plane
 _ELBOW = 4  # the one of them that shows it
@@ -25,14 +24,14 @@ def between_commands(run: Run) -> float | None:
     """
     if run.config["plant"]["kind"] != "kinematic":
         return None
-    model, q = model_of(run), joint_columns(run.trace(), "q")
+    model, q = run.model, run.joints("q")
     between = model.tip_positions(0.5 * (q[1:] + q[:-1]))
-    return float(np.linalg.norm(between - columns(run.trace(), "tip")[0], axis=1).max(initial=0.0))
+    return float(np.linalg.norm(between - run.vector("tip")[0], axis=1).max(initial=0.0))
 
 
 def drifts(run: Run) -> FloatArray:
     """Return how far the joints are from where they were a cycle before, after each, shape (cycles,), in rad."""
-    return np.asarray(np.linalg.norm(np.diff(joint_columns(run.trace(), "q")[:: _cycle(run)], axis=0), axis=1))
+    return np.asarray(np.linalg.norm(np.diff(run.joints("q")[:: _cycle(run)], axis=0), axis=1))
 
 
 def _cycle(run: Run) -> int:
@@ -65,14 +64,14 @@ def gain(sought: Measured, plain: Measured) -> Measured:
 
 def aside(run: Run) -> float:
     """Return how far the joints that lead the elbow out of the arm's vertical plane are from zero at the start."""
-    return float(np.abs(joint_columns(run.trace(), "q")[0, _ASIDE]).max())
+    return float(np.abs(run.joints("q")[0, _ASIDE]).max())
 
 
 def elbow_half_way(run: Run) -> float:
     """Return when it has gone half of that, in s."""
-    return float(clock(run)[int(np.argmax(_elbow(run) > 0.5 * _elbow(run)[-1]))])
+    return float(run.t[int(np.argmax(_elbow(run) > 0.5 * _elbow(run)[-1]))])
 
 
 def _elbow(run: Run) -> FloatArray:
-    q = joint_columns(run.trace(), "q")[:, _ELBOW]
+    q = run.joints("q")[:, _ELBOW]
     return np.asarray(np.abs(q - q[0]))

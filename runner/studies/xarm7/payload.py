@@ -8,7 +8,6 @@ from scipy.optimize import minimize
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.reporting.document import Block, Notice, Series
-from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
 from runner.studies.xarm7.figures import SHOULDER
 from runner.study.prose.patterns import found
@@ -33,7 +32,7 @@ def stretched(run: Run) -> tuple[float, FloatArray]:
 
     The distance is in m; the payload with which a joint's static torque is its limit in kg, shape (nq,), inf for none.
     """
-    model = model_of(run)
+    model = run.model
     lower, upper = model.position_limits[:, _PLANE]
 
     def posture(angles: FloatArray) -> FloatArray:
@@ -60,7 +59,7 @@ def stretched(run: Run) -> tuple[float, FloatArray]:
 def along_the_line(runs: Mapping[str, Run], group: str) -> FloatArray:
     """Return the payload with which each joint meets its effort limit along a line, shape (nq,), in kg; see asked."""
     light, torque, added = _torques(runs, group)
-    return largest_payloads(torque, added, model_of(light).effort_limits)
+    return largest_payloads(torque, added, light.model.effort_limits)
 
 
 def others(payloads: FloatArray) -> float:
@@ -72,7 +71,7 @@ def limit_rows(runs: Mapping[str, Run], run: str, *payloads: FloatArray) -> list
     """Return the effort limit of each joint of a run's arm and payloads with which it is met: a row for each."""
     return [
         [f"q{joint + 1}", f"{limit:g}", *(_kilograms(each[joint]) for each in payloads)]
-        for joint, limit in enumerate(model_of(runs[run]).effort_limits)
+        for joint, limit in enumerate(runs[run].model.effort_limits)
     ]
 
 
@@ -87,14 +86,14 @@ def asked(runs: Mapping[str, Run], group: str, largest: float) -> list[Series]:
     """
     light, torque, added = _torques(runs, group)
     masses = np.linspace(0.0, largest, 51)
-    shares = np.array([np.abs(torque + m * added).max(axis=0) / model_of(light).effort_limits for m in masses])
+    shares = np.array([np.abs(torque + m * added).max(axis=0) / light.model.effort_limits for m in masses])
     return [Series(f"q{joint + 1}", masses, share) for joint, share in enumerate(shares.T)]
 
 
 def _torques(runs: Mapping[str, Run], group: str) -> tuple[Run, FloatArray, FloatArray]:
     """Return the run without payload, the torques asked of it, and what each kilogram adds, shapes (T, nq)."""
     light, heavy = (one.run for one in found(runs, f"{group}/{{mass}}"))
-    unloaded, loaded = (joint_columns(run.trace(), "tau") for run in (light, heavy))
+    unloaded, loaded = (run.joints("tau") for run in (light, heavy))
     rows = min(len(unloaded), len(loaded))
     kilograms = heavy.config["robot"]["payload"]["mass"] - light.config["robot"]["payload"]["mass"]
     return light, unloaded[:rows], (loaded[:rows] - unloaded[:rows]) / kilograms
@@ -102,7 +101,7 @@ def _torques(runs: Mapping[str, Run], group: str) -> tuple[Run, FloatArray, Floa
 
 def lost_when(run: Run) -> str:
     """Return when an axis error of the tip leaves the settling band for the first time, in s, as a cell of a table."""
-    beyond = (np.abs(columns(run.trace(), "error")) > run.config["robot"]["settling_band"]).any(axis=1)
+    beyond = (np.abs(run.vector("error")) > run.config["robot"]["settling_band"]).any(axis=1)
     return f"{run.trace()['t'].to_numpy()[int(np.argmax(beyond))]:.3g}" if beyond.any() else "not lost"
 
 

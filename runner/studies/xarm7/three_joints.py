@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.reporting.charts.arm import arm_motion
 from runner.reporting.document import Picture
-from runner.reporting.figures import columns, joint_columns, model_of, origin
+from runner.reporting.figures import origin
 from runner.store import Run
 from runner.study.run_values import trace_of
 
@@ -16,11 +16,10 @@ _STILLS = (0.0, 0.25, 0.5)  # of the period: at A, half way, at B
 
 def sketch(runs: Mapping[str, Run], run: str) -> Picture:
     """Return the arm at A, half way and at B in one picture."""
-    trace, period = runs[run].trace(), float(runs[run].config["trajectory"]["duration"])
-    rows = [int(np.searchsorted(trace["t"].to_numpy(), share * period - 1e-9)) for share in _STILLS]
-    tip, desired = columns(trace, "tip"), columns(trace, "desired")
-    times = trace["t"].to_numpy()[rows].tolist()
-    svg = arm_motion(model_of(runs[run]), joint_columns(trace, "q")[rows], times, tip, desired, desired[rows[-1]])
+    shown, period = runs[run], float(runs[run].config["trajectory"]["duration"])
+    rows = [int(np.searchsorted(shown.t, share * period - 1e-9)) for share in _STILLS]
+    tip, desired = shown.vector("tip"), shown.vector("desired")
+    svg = arm_motion(shown.model, shown.joints()[rows], shown.t[rows].tolist(), tip, desired, desired[rows[-1]])
     return Picture(
         "The arm moves its tip from A, over half the way, to B (goal) in a level line; drawn from the simulation.",
         svg,
@@ -42,13 +41,13 @@ def apart_in(*signals: str) -> Callable[[Run, Run], float]:
 
 def home_tip(runs: Mapping[str, Run], run: str) -> list[float]:
     """Return where the tip is at home, in m."""
-    home: list[float] = model_of(runs[run]).tip_position(np.array(runs[run].config["robot"]["home"])).tolist()
+    home: list[float] = runs[run].model.tip_position(np.array(runs[run].config["robot"]["home"])).tolist()
     return home
 
 
 def reach(run: Run) -> float:
     """Return the largest distance of a run's tip from the shoulder, in m."""
-    return float(np.linalg.norm(columns(run.trace(), "tip") - model_of(run).shoulder, axis=1).max())
+    return float(np.linalg.norm(run.vector("tip") - run.model.shoulder, axis=1).max())
 
 
 def joint_range(runs: Mapping[str, Run], run: str, joint: str) -> str:

@@ -9,14 +9,13 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding, number
 from runner.reporting.document import Series
-from runner.reporting.figures import joint_columns, model_of
 from runner.robots import RobotModel
 from runner.store import Run
 from runner.studies.xarm7.figures import ROWS, line_length, smallest_margin
 from runner.studies.xarm7.kinematics import random_postures
 from runner.studies.xarm7.parts.xarm7_as_printed import PrintedJacobian
 from runner.study.prose.patterns import found
-from runner.study.run_values import cell, median
+from runner.study.run_values import cell
 
 _COUNT, _SEED = 1000, 7  # of the random postures
 _ZERO = 7  # palette index of singular values that are zero but for rounding
@@ -56,7 +55,7 @@ def invert(jacobians: FloatArray) -> Inversion:
 
 def inversions(runs: Mapping[str, Run]) -> dict[tuple[str, str], Inversion]:
     """Return what comes of it by the tip's task and by where the postures are: random, or on the line."""
-    model = model_of(runs["printed/position/working"])
+    model = runs["printed/position/working"].model
     everywhere = _true(model, random_postures(model, _COUNT, _SEED))
     return {
         (task, where): invert(jacobians[:, :rows])
@@ -127,7 +126,7 @@ def _all_singular_values(runs: Mapping[str, Run]) -> list[Series]:
 def _along(runs: Mapping[str, Run], task: str) -> FloatArray:
     """Return the right Jacobians along the line, from A to B, shape (N, 6, 7)."""
     run = runs[f"printed/{task}/working"]
-    return _true(model_of(run), joint_columns(run.trace(), "q")[_to_b(run)])
+    return _true(run.model, run.joints("q")[_to_b(run)])
 
 
 def _true(model: RobotModel, postures: FloatArray) -> FloatArray:
@@ -157,8 +156,8 @@ def compare(runs: Mapping[str, Run], run: str) -> dict[str, FloatArray]:
     Those `as_printed`, with `angles` alone wrong, with the columns `shifted` alone, `mended`, and the `true` ones;
     `line_printed` and `line_true` along the line.
     """
-    model = model_of(runs[run])
-    everywhere, line = random_postures(model, _COUNT, _SEED), joint_columns(runs[run].trace(), "q")[::5]
+    model = runs[run].model
+    everywhere, line = random_postures(model, _COUNT, _SEED), runs[run].joints("q")[::5]
     forms = {"as_printed": (True, True), "angles": (False, True), "shifted": (True, False), "mended": (False, False)}
     return {name: jacobians(model, everywhere, *wrong) for name, wrong in forms.items()} | {
         "true": _true(model, everywhere),
@@ -197,7 +196,7 @@ def _largest(difference: FloatArray) -> str:
 
 def column_errors(runs: Mapping[str, Run], run: str, shifted: bool) -> list[Series]:
     """Return the error of each column's linear part with mistaken angles from A to B, over the tip's y in m."""
-    model, line = model_of(runs[run]), joint_columns(runs[run].trace(), "q")[_to_b(runs[run])]
+    model, line = runs[run].model, runs[run].joints("q")[_to_b(runs[run])]
     off = np.linalg.norm((jacobians(model, line, shifted, True) - jacobians(model, line, False, False))[:, :3], axis=1)
     return [Series(f"column {k + 1}", _y(runs[run]), own) for k, own in enumerate(off.T)]
 
@@ -253,6 +252,6 @@ def _outcome(run: Run) -> list[str]:
 def with_the_inverse(runs: Mapping[str, Run]) -> dict[str, int]:
     """Return how many runs take the inverse as printed, how many of them follow the line, and how many end early."""
     ours = [one.run for one in found(runs, "printed/{task}/{case=as printed|inverse alone}")]
-    errors = [(median(run, "max_axis_error"), line_length(run)) for run in ours]
+    errors = [(run.median("max_axis_error"), line_length(run)) for run in ours]
     following = sum(error is not None and error < 0.1 * length for error, length in errors)
     return {"many": len(ours), "following": following, "ended": sum(run.failure is not None for run in ours)}

@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.reporting.document import Curves, Map, Maps, Panel, Series
-from runner.reporting.figures import AXES, joint_columns, origin
+from runner.reporting.figures import AXES, origin
 from runner.store import Run
 from runner.study.prose.patterns import axes_of, called, found, other
 from runner.study.run_values import Signal, number_of, times_of, trace_of
@@ -60,7 +60,7 @@ def line(
 
 def joints(runs: Mapping[str, Run], run: str, stem: str = "q", name: str = "q") -> list[Series]:
     """Return a signal of each joint over time: q, qd, tau or another that has a column for each joint."""
-    values = joint_columns(runs[run].trace(), stem)
+    values = runs[run].joints(stem)
     t = times_of(runs[run], len(values))
     return [Series(f"{name}{joint + 1}", t, column) for joint, column in enumerate(values.T)]
 

@@ -8,9 +8,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
-from runner.reporting.figures import columns, joint_columns, model_of
 from runner.store import Run
-from runner.study.run_values import Signal, check_signal, config_value, median, trace_of
+from runner.study.run_values import Signal, check_signal, config_value, trace_of
 
 
 def _operation(work: Callable[[Any, Any], Any], swapped: bool = False) -> Callable[["Quantity", Any], "Quantity"]:
@@ -67,14 +66,14 @@ def vector(name: str) -> Quantity:
 
     def rows(run: Run, *_: Run) -> FloatArray:
         check_signal(run, f"{name}_x")
-        return columns(run.trace(), name)
+        return run.vector(name)
 
     return Quantity(rows)
 
 
 def of_joints(name: str = "q", first: int = 0, last: int | None = None) -> Quantity:
     """Return a signal of each joint at each row: of all, or from one to before another, counted from 0."""
-    return Quantity(lambda run, *_: joint_columns(run.trace(), name)[:, first:last])
+    return Quantity(lambda run, *_: run.joints(name)[:, first:last])
 
 
 def norm(what: Signal) -> Quantity:
@@ -184,7 +183,7 @@ def setting(key: str, factor: float = 1.0) -> Quantity:
 
 def metric_of(name: str, factor: float = 1.0) -> Quantity:
     """Return so many times the median of a metric."""
-    return factor * Quantity(lambda run, *_: median(run, name))
+    return factor * Quantity(lambda run, *_: run.median(name))
 
 
 def recorded(key: str, factor: float = 1.0) -> Quantity:
@@ -215,10 +214,10 @@ def smallest_singular_value(run: Run) -> FloatArray:
 
 def limit_margin(run: Run) -> FloatArray:
     """Return the smallest distance of a joint position from one of its limits at each row, in rad or m."""
-    return np.asarray(model_of(run).limit_margins(joint_columns(run.trace(), "q")).min(axis=1))
+    return np.asarray(run.model.limit_margins(run.joints("q")).min(axis=1))
 
 
 def _singular(run: Run) -> Sequence[FloatArray]:
-    model, rows = model_of(run), 6 if run.config["controller"].get("task") == "pose" else 3
-    q = joint_columns(run.trace(), "q")
+    model, rows = run.model, 6 if run.config["controller"].get("task") == "pose" else 3
+    q = run.joints("q")
     return [np.asarray(np.linalg.svd(model.tip_jacobian(row)[:rows], compute_uv=False), dtype=float) for row in q]

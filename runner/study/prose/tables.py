@@ -11,7 +11,7 @@ from runner.reporting.metric_titles import title
 from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.prose.patterns import Found, axes_of, called, found, other
-from runner.study.run_values import Signal, cell, median
+from runner.study.run_values import Signal, cell
 
 _DASH, _NEVER = "–", "never"
 
@@ -154,7 +154,7 @@ def _text(what: Signal, runs: Sequence[Run], digits: int, though_failed: bool = 
     if not though_failed and any(run.status == "failed" for run in runs):
         return "failed"
     if isinstance(what, str):
-        never = what.startswith("settling_time") and median(runs[0], what) is None
+        never = what.startswith("settling_time") and runs[0].median(what) is None
         return _NEVER if never else cell(runs[0], what, digits)
     return _told(what(*runs), digits)
 
@@ -167,7 +167,7 @@ def _told(value: str | float | Measured | None, digits: int) -> str:
 
 def _with_unit(metric: str, run: Run) -> str:
     text = _text(metric, [run], 3)
-    return above_rounding(median(run, metric), _unit(run, metric)) if isinstance(text, Shown) else text
+    return above_rounding(run.median(metric), _unit(run, metric)) if isinstance(text, Shown) else text
 
 
 def _header(given: Column, rows: Sequence[Found]) -> str:

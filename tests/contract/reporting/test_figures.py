@@ -7,10 +7,7 @@ import pytest
 from fixtures.stored import RUNS
 
 from runner.reporting.figures import (
-    columns,
     desired_motion,
-    joint_columns,
-    model_of,
     origin,
     playback,
     torque_and_error,
@@ -31,13 +28,13 @@ def test_an_origin_names_the_command_that_makes_the_run(stored):
 
 
 def test_the_model_is_that_of_the_stored_urdf(stored):
-    q = joint_columns(stored.trace(), "q")
-    assert np.allclose(model_of(stored).tip_positions(q), columns(stored.trace(), "tip"), atol=1e-12)
+    q = stored.joints()
+    assert np.allclose(stored.model.tip_positions(q), stored.vector("tip"), atol=1e-12)
 
 
-def test_joint_columns_leave_out_signals_with_the_same_beginning(stored):
-    assert joint_columns(stored.trace(), "q").shape == (201, 3)
-    assert np.array_equal(joint_columns(stored.trace(), "dq")[:, 2], stored.trace()["dq3"])
+def test_joint_signals_leave_out_signals_with_the_same_beginning(stored):
+    assert stored.joints().shape == (201, 3)
+    assert np.array_equal(stored.joints("dq")[:, 2], stored.trace()["dq3"])
 
 
 def test_torque_and_error_are_the_trace(stored):

@@ -11,7 +11,6 @@ from fixtures.studies import Made
 pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
 from runner.cli.reproduce import _chosen
-from runner.reporting.figures import model_of
 from runner.store import Run
 from runner.studies.engines import contact, same_arm, side_by_side
 
@@ -46,10 +45,10 @@ def test_a_changed_arm_is_found_to_be_another(runs: Mapping[str, Run]) -> None:
     heavier = run.urdf.replace('<mass value="1"', '<mass value="1.001"', 1)
     assert heavier != run.urdf
     least = run.config["plant"]["min_inertia"]
-    other = side_by_side.Mujoco(heavier, model_of(run), 1e-3, 1, "euler", least)
-    off = side_by_side.difference(model_of(run), other)
+    other = side_by_side.Mujoco(heavier, run.model, 1e-3, 1, "euler", least)
+    off = side_by_side.difference(run.model, other)
     assert min(off.mass, off.acceleration, off.torque) > 1e-5
-    own = side_by_side.difference(model_of(run), side_by_side.mujoco_of(run))
+    own = side_by_side.difference(run.model, side_by_side.mujoco_of(run))
     assert max(own.mass, own.acceleration, own.torque) < 1e-12
 
 

@@ -2,10 +2,9 @@
 
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
-from support.made_up_runs import made_up_run
+from support.made_up_runs import made_up_metric, made_up_run
 
 from runner.base.errors import RunnerError
 from runner.config.judgement import THRESHOLDS
@@ -91,15 +90,14 @@ def test_a_run_that_a_study_does_not_have_is_refused_with_the_nearest_name():
 
 
 def test_a_metric_that_a_run_does_not_have_is_refused_with_the_nearest_name():
-    metrics = {"settling_time": {"median": 1.0, "unit": "s"}}
-    ran = SimpleNamespace(metrics=metrics, hash="0a1b", status="ok")
-    with pytest.raises(RunnerError, match=r"run 0a1b has no metric 'setling_time' \(did you mean settling_time\?\)"):
+    ran = made_up_run({"settling_time": made_up_metric(1.0, unit="s")})
+    with pytest.raises(RunnerError, match=r"run run has no metric 'setling_time' \(did you mean settling_time\?\)"):
         measured(ran, "setling_time", "time")
     with pytest.raises(RunnerError, match="no metric 'reach'"):
         cell(ran, "reach")
 
 
 def test_a_failed_run_has_no_values():
-    failed = SimpleNamespace(metrics={}, hash="0a1b", status="failed")
+    failed = made_up_run(failed=True)
     assert measured(failed, "settling_time", "time").value is None
     assert cell(failed, "settling_time") == "failed"
