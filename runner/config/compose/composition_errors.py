@@ -17,6 +17,7 @@ from runner.config.compose.overrides import explain_parser
 
 _AMBIGUOUS = re.compile(r"Ambiguous value for argument '(.*)'$", re.M)
 _LACKING = re.compile(r"Interpolation key '(.*)' not found")
+_NO_GROUP = re.compile(r".* trying to access (\S+): node `(\S+)` is not a container")
 # Exceptions of Hydra for a config that it cannot compose. ValueError and OSError: a file that is not text, or not a
 # mapping. RecursionError: OmegaConf, for a value that refers to itself.
 COMPOSITION_ERRORS = (HydraException, OmegaConfBaseException, yaml.YAMLError, ValueError, OSError, RecursionError)
@@ -45,6 +46,8 @@ def explain(error: Exception, config_dirs: Sequence[Path] = ()) -> ConfigError:
         group = missing[1].partition(".")[0]
         lacks = f"it refers to {missing[1]}, which the chosen {group} lacks"
         return ConfigError(f"{error.full_key}: {lacks}; give a value, or take another {group}")
+    if not_group := _NO_GROUP.match(str(error)):
+        return ConfigError(f"{not_group[2]}: must be a group of keys, such as {not_group[1]}; found a single value")
     if isinstance(error, OmegaConfBaseException) and error.full_key:
         return ConfigError(f"{error.full_key}: {str(error).splitlines()[0]}")
     if isinstance(error, RecursionError):

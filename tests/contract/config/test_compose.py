@@ -84,6 +84,10 @@ def test_what_was_chosen_is_kept():
         ("noise=1", "noise: no '1'; known: none, thesis"),
         ("experiment=figure_3_5", "experiment: no 'figure_3_5' (did you mean thesis/figure_3_5?); known: "),
         ("trajectory.goal=${robot.nope}", "trajectory.goal: it refers to robot.nope, which the chosen robot lacks"),
+        (
+            "robot.friction=3",
+            "robot.friction: must be a group of keys, such as robot.friction.viscous; found a single value",
+        ),
         ("noise.position=[1,", "'noise.position=[1,' is not a valid override: "),
         ("foo", "'foo' is not a valid override: it must read KEY=VALUE; a value with signs such as"),
         ("foo\x1b]0;t\x07[", r"'foo\x1b]0;t\x07[' is not a valid override: "),
