@@ -54,7 +54,7 @@ On arms of up to 12 joints, where llvmlite is installed. A *whole run* is machin
 and advances together with others that differ in numbers alone: repetitions, seeds, gains, limits, noise, masses, goals,
 durations. *The law*: machine code gives the torques, in a loop of Python. *Python*: nothing is compiled. The config
 alone decides; where metrics of yours are installed, whole runs advance one by one. For laws and plants of yours see
-[controllers](controller.md) and [plants](plant.md).
+[controllers](plugins.md#controller) and [plants](plugins.md#plant).
 
 """
 _BASE = ("robot=macro", "controller=operational_space", "trajectory=quintic")
