@@ -10,9 +10,8 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
-from runner.controllers.torque_filter import FilteredController, TorqueFilter, with_filter
-from runner.controllers.torque_law import Arm, PinocchioArm
-from runner.robots.model import RobotModel
+from runner.controllers.torque_filter import TorqueFilter, with_filter
+from runner.controllers.torque_law import Arm, PinocchioArm, clip
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import RadiansPerSecond
@@ -52,19 +51,12 @@ class DisturbanceObserverConfig(StrictModel):
 
 
 class ObserverNumbers(NamedTuple):
-    """The numbers of an observer.
+    """The numbers of an observer."""
 
-    Attributes:
-        gain: Filter gain per tick, 1 - exp(-L h).
-        period: Time h between two ticks, in s.
-        limits: Torque limits of the commanded joints, shape (n,), in N m; infinite if there is none.
-        gravity: Nominal gravity in the base frame, shape (3,), in m/s^2.
-    """
-
-    gain: Scalar
-    period: Scalar
-    limits: Array
-    gravity: Array
+    gain: Scalar  # filter gain per tick, 1 - exp(-L h)
+    period: Scalar  # time h between two ticks, in s
+    limits: Array  # torque limits of the commanded joints, shape (n,), in N m; infinite if there is none
+    gravity: Array  # nominal gravity in the base frame, shape (3,), in m/s^2
 
 
 class MomentumObserver(TorqueFilter):
@@ -92,11 +84,20 @@ class MomentumObserver(TorqueFilter):
         period: Time between two ticks of the law, in s.
         limits: Torque limits of these joints, shape (n,), in N m; infinite if there is none.
         late: Delay of commands, in ticks of the law.
+        reads_joint_torques: True if tau is measured by the joint torque sensors.
     """
 
     def __init__(
-        self, robot: Robot, joints: slice, bandwidth: float, period: float, limits: FloatArray, late: int
+        self,
+        robot: Robot,
+        joints: slice,
+        bandwidth: float,
+        period: float,
+        limits: FloatArray,
+        late: int,
+        reads_joint_torques: bool = False,
     ) -> None:
+        self.reads_joint_torques = reads_joint_torques
         self.models = (robot.model,)
         self._first, self._end, self._late = joints.start, joints.stop, late
         gain = float(-np.expm1(-bandwidth * period))
@@ -127,7 +128,7 @@ class MomentumObserver(TorqueFilter):
         d, before = momentum_balance(p, b, h, before, acted)
         r = r + numbers.gain * (d - r)
         asked = torque - r
-        held = np.array([_within(arm, *pair) for pair in zip(asked, numbers.limits, strict=True)])
+        held = np.array([clip(arm.backend, *pair) for pair in zip(asked, numbers.limits, strict=True)])
         if self._late:  # the first torque acts from the start
             first = np.concatenate([held] * self._late)
             to_come = arm.backend.choose(less(time, 0.5 * h), lambda: first, lambda: to_come)
@@ -145,27 +146,6 @@ def momentum_balance(p: Array, b: Array, h: Scalar, before: Array, acted: Array)
         acted: Mean torques since the last tick, shape (n,), in N m.
     """
     return (p - 0.5 * h * b - before) / h - acted, p + 0.5 * h * b
-
-
-class MeasuringController(FilteredController):
-    """A controller whose observer uses the joint torque sensors.
-
-    Args:
-        controller: The controller.
-        observer: The observer.
-        model: The nominal robot.
-    """
-
-    reads_joint_torques = True
-
-    def __init__(self, controller: Controller, observer: "MomentumObserver", model: RobotModel) -> None:
-        super().__init__(controller, observer, model)
-        self._observer = observer
-
-    def read_joint_torques(self, reading: FloatArray) -> None:
-        """Store the mean torques on the links since the last tick; see ControlLaw."""
-        if self._memory is not None:
-            self._memory = self._observer.measured(self._memory, reading)
 
 
 class Ticks(Protocol):
@@ -205,13 +185,7 @@ def add_observers(
     measures, carried = config.torque == "measured", []
     for loop, bandwidth, delay in zip(loops, bandwidths, ticks.late, strict=True):
         late = 0 if measures else delay // round(loop.period / ticks.tick)
-        observer = MomentumObserver(robot, loop.joints, bandwidth, loop.period, limits[loop.joints], late)
-        wrap = MeasuringController if measures else with_filter  # a law with torque sensors is not compiled
-        carried.append(replace(loop, controller=wrap(cast(Controller, loop.controller), observer, robot.model)))
+        observer = MomentumObserver(robot, loop.joints, bandwidth, loop.period, limits[loop.joints], late, measures)
+        law = with_filter(cast(Controller, loop.controller), observer, robot.model)
+        carried.append(replace(loop, controller=law))
     return tuple(carried)
-
-
-def _within(arm: Arm, torque: Scalar, limit: Scalar) -> Scalar:
-    """Return a torque clipped to its limit."""
-    most = arm.backend.maximum
-    return -most(-most(torque, -limit), -limit)

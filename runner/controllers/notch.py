@@ -46,17 +46,11 @@ class NotchConfig(StrictModel):
 
 
 class NotchNumbers(NamedTuple):
-    """The numbers of a notch.
+    """The numbers of a notch."""
 
-    Attributes:
-        period: Time between two ticks, in s.
-        b: Coefficients of the unfiltered torques now, one and two ticks ago, shape (3, n).
-        a: Coefficients of the filtered torques one and two ticks ago, shape (2, n).
-    """
-
-    period: Scalar
-    b: Array
-    a: Array
+    period: Scalar  # time between two ticks, in s
+    b: Array  # coefficients of the unfiltered torques now, one and two ticks ago, shape (3, n)
+    a: Array  # coefficients of the filtered torques one and two ticks ago, shape (2, n)
 
 
 class Notch(TorqueFilter):

@@ -8,7 +8,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import Controller
-from runner.controllers.torque_law import Arm, PinocchioArm, TorqueLaw, structure_of
+from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
 from runner.plugins.guard import guarded_like, unguarded
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
@@ -20,10 +20,12 @@ class TorqueFilter(ABC):
     Attributes:
         models: The arms of the filter, in addition to those of the law.
         numbers: Numbers of the filter; see TorqueLaw.
+        reads_joint_torques: True if the filter uses the joint torque sensors, by `measured`.
     """
 
     models: tuple[RobotModel, ...] = ()
     numbers: Any
+    reads_joint_torques = False
 
     def structure(self) -> dict[str, Any]:
         """Return the structure of the filter, without its numbers; see TorqueLaw.structure."""
@@ -37,6 +39,10 @@ class TorqueFilter(ABC):
     def start(self, q: FloatArray) -> FloatArray:
         """Return the memory before the first tick, from the measured joint positions, shape (nq,), in rad."""
         return np.zeros(self.remembers)
+
+    def measured(self, memory: FloatArray, reading: FloatArray) -> FloatArray:
+        """Return the memory with the torques measured since the last tick, of every joint, shape (nq,)."""
+        return memory
 
     @abstractmethod
     def filter(
@@ -56,19 +62,46 @@ class TorqueFilter(ABC):
 
 
 class FilteredNumbers(NamedTuple):
-    """The numbers of a law with a filter.
-
-    Attributes:
-        law: Numbers of the law.
-        filter: Numbers of the filter.
-    """
+    """The numbers of a law with a filter."""
 
     law: Any
     filter: Any
 
 
+class AnyLaw(TorqueLaw[tuple[()]]):
+    """A controller of any kind as a torque law, which is not compiled.
+
+    Args:
+        controller: The controller.
+        model: The nominal robot.
+    """
+
+    compilable = False
+
+    def __init__(self, controller: Controller, model: RobotModel) -> None:
+        super().__init__([model], True, ())
+        self._controller = controller
+
+    def reset(self) -> None:
+        """Clear the state of an earlier run."""
+        self._controller.reset()
+
+    def evaluate(
+        self,
+        arms: Sequence[Arm],
+        numbers: tuple[()],
+        time: Scalar,
+        q: Array,
+        dq: Array,
+        reference: Array,
+        memory: Array,
+    ) -> tuple[Array, Array]:
+        """Return the torques of the controller; see TorqueLaw."""
+        return self._controller.torque(time, q, dq, reference), memory
+
+
 class FilteredLaw(TorqueLaw[FilteredNumbers]):
-    """A torque law with a filter; compiled if the law can be.
+    """A torque law with a filter, which is compiled if the law can be.
 
     Args:
         law: The law.
@@ -79,6 +112,19 @@ class FilteredLaw(TorqueLaw[FilteredNumbers]):
         numbers = FilteredNumbers(law.numbers, torque_filter.numbers)
         super().__init__([*law.models, *torque_filter.models], law.gravity_compensation, numbers, law.measured)
         self._law, self._filter = law, torque_filter
+        self.reads_joint_torques = torque_filter.reads_joint_torques
+        self.compilable = law.compilable
+
+    def reset(self) -> None:
+        """Clear the state of an earlier run."""
+        super().reset()
+        self._law.reset()
+
+    def read_joint_torques(self, reading: FloatArray) -> None:
+        """Store the mean torques on the links since the last tick; see ControlLaw."""
+        if self.memory is not None:
+            own = len(self.memory) - self._filter.remembers
+            self.memory = np.concatenate([self.memory[:own], self._filter.measured(self.memory[own:], reading)])
 
     def start(self, q: FloatArray) -> FloatArray:
         """Return the memories of law and filter at the first tick; see TorqueLaw."""
@@ -101,33 +147,6 @@ class FilteredLaw(TorqueLaw[FilteredNumbers]):
         return passed, np.concatenate([kept, seen])
 
 
-class FilteredController(Controller):
-    """A controller of any kind with a filter; see Controller.
-
-    Args:
-        controller: The controller.
-        torque_filter: The filter.
-        model: The nominal robot.
-    """
-
-    def __init__(self, controller: Controller, torque_filter: TorqueFilter, model: RobotModel) -> None:
-        self._controller, self._filter = controller, torque_filter
-        self._arm = PinocchioArm(model)
-        self._memory: FloatArray | None = None
-
-    def reset(self) -> None:
-        """Clear the state of an earlier run."""
-        self._controller.reset()
-        self._memory = None
-
-    def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
-        """Return the filtered torques of the controller; see Controller."""
-        torque, filtered = self._controller.torque(time, q, dq, reference), self._filter
-        memory = filtered.start(q) if self._memory is None else self._memory
-        passed, self._memory = filtered.filter(self._arm, filtered.numbers, time, q, dq, torque, memory)
-        return passed
-
-
 def with_filter(controller: Controller, torque_filter: TorqueFilter, model: RobotModel) -> Controller:
     """Return a controller with a filter; a guarded law stays guarded.
 
@@ -137,7 +156,7 @@ def with_filter(controller: Controller, torque_filter: TorqueFilter, model: Robo
         model: The nominal robot.
     """
     law = unguarded(controller)
-    if not isinstance(law, TorqueLaw):
-        return FilteredController(controller, torque_filter, model)
+    if torque_filter.reads_joint_torques or not isinstance(law, TorqueLaw):
+        return FilteredLaw(AnyLaw(controller, model), torque_filter)
     filtered: Controller = guarded_like(controller, FilteredLaw(law, torque_filter))
     return filtered

@@ -80,6 +80,16 @@ class Arm(Protocol):
         ...
 
 
+def second_order(natural_frequency: float, damping_ratio: float) -> tuple[float, float]:
+    """Return k_p = omega_n^2, in 1/s^2, and k_v = 2 xi omega_n, in 1/s, of a linear second-order error equation."""
+    return natural_frequency**2, 2.0 * damping_ratio * natural_frequency
+
+
+def clip(backend: Backend, value: Scalar, limit: Scalar) -> Scalar:
+    """Return a scalar clipped to the range from -limit to limit."""
+    return -backend.maximum(-backend.maximum(value, -limit), -limit)
+
+
 class PinocchioArm:
     """An arm with any number of joints, over floats; see Arm.
 
@@ -263,4 +273,16 @@ def _described(part: Any) -> tuple[str, dict[str, Any]]:
 
 
 _NOTHING = np.zeros(0)
-_COMMON = frozenset({"model", "models", "numbers", "gravity_compensation", "measured", "memory", "_arms"})
+_COMMON = frozenset(
+    {
+        "model",
+        "models",
+        "numbers",
+        "gravity_compensation",
+        "measured",
+        "memory",
+        "compilable",
+        "reads_joint_torques",
+        "_arms",
+    }
+)

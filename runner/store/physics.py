@@ -33,8 +33,8 @@ _TABLE = """
         torque_filter torque_law
     controllers/force: admittance admittance_filter force_reading=controllers.force_reading hybrid_force
         impedance tip_force
-    controllers/joint_space: adaptive computed_torque iterative_learning joint_law
-        joint_motion=controllers.joint_motion joint_pd joint_pid motor_pd passivity sliding_mode
+    controllers/joint_space: adaptive computed_torque iterative_learning joint_law joint_pd joint_pid
+        motor_pd passivity sliding_mode
     controllers/kinematic: differential_inverse_kinematics limited_motion resolved_rate
     controllers/macro_mini: inertial_damping macro_mini stage_law stage_loops
     controllers/operational_space: null_space operational_space tip_task whole_body

@@ -7,9 +7,8 @@ from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import VelocityGain
-from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import DesiredJoints, JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.torque_law import Arm, PinocchioArm
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
@@ -39,27 +38,15 @@ class AdaptiveConfig(JointLawConfig):
 
 
 class AdaptiveNumbers(NamedTuple):
-    """The numbers of adaptive control.
+    """The numbers of adaptive control."""
 
-    Attributes:
-        motion: Numbers of the JointMotion.
-        rate: lambda, in 1/s.
-        damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
-        armature: Diagonal of A, shape (nq,), in kg m^2.
-        adaptation_gain: Diagonal of Gamma, shape (P,).
-        initial_parameters: theta^ at the first tick, shape (P,).
-        swings: a omega_n^2 / 4, above which a direction of s oscillates, in 1/s^2.
-        limits: Torque limits, shape (nq,), in N m; infinite if there is none.
-    """
-
-    motion: JointMotionNumbers
-    rate: Scalar
-    damping: Array
-    armature: Array
-    adaptation_gain: Array
-    initial_parameters: FloatArray
-    swings: Scalar
-    limits: Array
+    rate: Scalar  # lambda, in 1/s
+    damping: Array  # diagonal of K_D, shape (nq,), in kg m^2/s
+    armature: Array  # diagonal of A, shape (nq,), in kg m^2
+    adaptation_gain: Array  # diagonal of Gamma, shape (P,)
+    initial_parameters: FloatArray  # theta^ at the first tick, shape (P,)
+    swings: Scalar  # a omega_n^2 / 4, above which a direction of s oscillates, in 1/s^2
+    limits: Array  # torque limits, shape (nq,), in N m; infinite if there is none
 
 
 class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
@@ -89,22 +76,19 @@ class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
     much faster motions. The s of a joint is ignored while its torque is beyond its limit. V can increase in both cases.
     """
 
-    def choose_numbers(
-        self, model: RobotModel, config: AdaptiveConfig, rest: FloatArray, motion: JointMotionNumbers
-    ) -> AdaptiveNumbers:
+    def choose_numbers(self, model: RobotModel, config: AdaptiveConfig, inertia: FloatArray) -> AdaptiveNumbers:
         """Return the numbers of the law above; see JointLaw."""
         self._friction = config.friction
         theta = np.concatenate([model.inertial_parameters, np.zeros(2 * model.nq if config.friction else 0)])
-        D = model.mass_matrix(rest).diagonal()
         gains = np.full(len(theta), config.adaptation_gain)
         self._bounded = config.scale == "parameter"
         if self._bounded:
-            gains *= config.natural_frequency**2 * self._scales(model, config.gravity_compensation, rest, D)
+            arm, home = PinocchioArm(model, config.gravity_compensation), self._motion.numbers.posture.rest
+            gains *= config.natural_frequency**2 * self._scales(arm, home, inertia)
         self._remembers = len(gains)
         return AdaptiveNumbers(
-            motion=motion,
             rate=config.natural_frequency,
-            damping=config.natural_frequency * D,
+            damping=config.natural_frequency * inertia,
             armature=model.armature,
             adaptation_gain=gains,
             initial_parameters=theta,
@@ -115,22 +99,17 @@ class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.rate, self.numbers.rate)
-
-    def with_limits(self, limits: FloatArray) -> "Adaptive":
-        """Return the law with its torque limits set; see ControlLaw."""
-        return self.with_numbers(limits=limits)
+        return VelocityGain(self.numbers.own.rate, self.numbers.own.rate)
 
     def own_start(self) -> FloatArray:
         """Return the nominal parameters, shape (P,)."""
-        return self.numbers.initial_parameters
+        return self.numbers.own.initial_parameters
 
     def command(
         self, arm: Arm, numbers: AdaptiveNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above, and the parameter estimates at the next tick; see JointLaw."""
-        dq_r = desired.dq + numbers.rate * (desired.q - q)
-        ddq_r = desired.ddq + numbers.rate * (desired.dq - dq)
+        dq_r, ddq_r = desired.reference(numbers.rate, q, dq)
         s = dq_r - dq
         Y = arm.regressor(q, dq, dq_r, ddq_r)
         if self._friction:
@@ -138,17 +117,17 @@ class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
         torque = Y.dot(memory) + numbers.armature * ddq_r + numbers.damping * s
         teaches = np.array([_taught(arm, *of) for of in zip(torque, numbers.limits, s, strict=True)])
         gradient = Y.T.dot(teaches)
-        change = numbers.motion.period * numbers.adaptation_gain * gradient
+        change = desired.period * numbers.adaptation_gain * gradient
         if self._bounded:
             braked = numbers.swings / numbers.rate * (numbers.damping * teaches).dot(teaches) + _NOTHING
             needed = (numbers.adaptation_gain * gradient).dot(gradient)
             change = change * (braked / arm.backend.maximum(braked, needed))
         return torque, memory + change
 
-    def _scales(self, model: RobotModel, gravity_compensation: bool, home: FloatArray, D: FloatArray) -> FloatArray:
+    def _scales(self, arm: PinocchioArm, home: FloatArray, D: FloatArray) -> FloatArray:
         """Return 1 / (N max |D^-1/2 Y_p|^2) of each parameter, shape (P,); 0 for one that is not excited."""
-        arm, largest = PinocchioArm(model, gravity_compensation), np.zeros(1)
-        for way in (*np.eye(model.nq), np.ones(model.nq)):
+        largest = np.zeros(1)
+        for way in (*np.eye(len(home)), np.ones(len(home))):
             speed = _SPEED * way
             Y = arm.regressor(home, speed, speed, _ACCELERATION * way)
             if self._friction:

@@ -6,10 +6,9 @@ from pydantic import NonNegativeFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import VelocityGain
-from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import DesiredJoints, JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
-from runner.controllers.torque_law import Arm
+from runner.controllers.torque_law import Arm, second_order
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
 
@@ -27,19 +26,11 @@ class ComputedTorqueConfig(JointLawConfig):
 
 
 class ComputedTorqueNumbers(NamedTuple):
-    """The numbers of computed-torque control.
+    """The numbers of computed-torque control."""
 
-    Attributes:
-        motion: Numbers of the JointMotion.
-        k_p: omega_n^2, in 1/s^2.
-        k_v: 2 xi omega_n, in 1/s.
-        k_i: Integral gain, in 1/s^3.
-    """
-
-    motion: JointMotionNumbers
-    k_p: Scalar
-    k_v: Scalar
-    k_i: Scalar
+    k_p: Scalar  # omega_n^2, in 1/s^2
+    k_v: Scalar  # 2 xi omega_n, in 1/s
+    k_i: Scalar  # integral gain, in 1/s^3
 
 
 class ComputedTorque(JointLaw[ComputedTorqueNumbers, ComputedTorqueConfig]):
@@ -54,21 +45,21 @@ class ComputedTorque(JointLaw[ComputedTorqueNumbers, ComputedTorqueConfig]):
     """
 
     def choose_numbers(
-        self, model: RobotModel, config: ComputedTorqueConfig, rest: FloatArray, motion: JointMotionNumbers
+        self, model: RobotModel, config: ComputedTorqueConfig, inertia: FloatArray
     ) -> ComputedTorqueNumbers:
         """Return the numbers of the law above; see JointLaw."""
+        k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
         self._remembers = model.nq if config.integral_gain > 0.0 else 0
         return ComputedTorqueNumbers(
-            motion=motion,
-            k_p=config.natural_frequency**2,
-            k_v=2.0 * config.damping_ratio * config.natural_frequency,
+            k_p=k_p,
+            k_v=k_v,
             k_i=config.integral_gain,
         )
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(0.0, self.numbers.k_v)
+        return VelocityGain(0.0, self.numbers.own.k_v)
 
     def command(
         self, arm: Arm, numbers: ComputedTorqueNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
@@ -77,7 +68,7 @@ class ComputedTorque(JointLaw[ComputedTorqueNumbers, ComputedTorqueConfig]):
         error = desired.q - q
         ddq = desired.ddq + numbers.k_v * (desired.dq - dq) + numbers.k_p * error
         if self._remembers:
-            ddq, memory = ddq + numbers.k_i * memory, memory + numbers.motion.period * error
+            ddq, memory = ddq + numbers.k_i * memory, memory + desired.period * error
         return arm.inverse_dynamics(q, dq, ddq), memory
 
 

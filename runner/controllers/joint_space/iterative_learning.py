@@ -10,9 +10,8 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, VelocityGain
 from runner.controllers.joint_space.computed_torque import ComputedTorque, ComputedTorqueConfig
-from runner.controllers.joint_space.joint_law import JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import JointLawConfig, JointMotion, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import JointMotion
 from runner.controllers.torque_law import PinocchioArm
 from runner.robots.model import RobotModel
 from runner.schema.units import Seconds
@@ -117,7 +116,7 @@ class IterativeLearning(Controller):
         numbers = self._law.numbers
         desired, self._memory = self._motion.follow(self._arm, numbers.motion, reference, memory)
         without = self._arm.inverse_dynamics(q, dq, desired.ddq).copy()
-        torque, _ = self._law.command(self._arm, numbers, q, dq, desired, _NOTHING)
+        torque, _ = self._law.command(self._arm, numbers.own, q, dq, desired, _NOTHING)
         self._feedback[self._tick] = torque - without
         asked: FloatArray = torque + self.learned[self._tick]
         self._feedback[self._tick] += np.clip(asked, -self._limits, self._limits) - asked

@@ -1,17 +1,17 @@
-"""Base classes and builder of joint-space control laws."""
+"""Base classes and builder of joint-space control laws, and their desired joint motion from the tip motion."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
 from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import Controller, Loop
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotion, JointMotionNumbers
-from runner.controllers.operational_space.tip_task import TaskName, task_start
-from runner.controllers.torque_law import Arm, TorqueLaw
+from runner.controllers.operational_space.tip_task import TaskName, TipNumbers, TipTask, held_orientation, task_start
+from runner.controllers.operational_space.whole_body_posture import PostureNumbers, PostureTask, posture_pd
+from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
@@ -44,11 +44,113 @@ class JointLawConfig(StrictModel):
     null_space_frequency: RadiansPerSecond[NonNegativeFloat]
 
 
-N = TypeVar("N", bound=Any)  # a NamedTuple with the numbers of the motion, `motion`
+class JointMotionNumbers(NamedTuple):
+    """The numbers of a joint motion."""
+
+    tip: TipNumbers
+    posture: PostureNumbers
+    period: Scalar  # time between two ticks, in s
+
+
+class DesiredJoints(NamedTuple):
+    """The desired state of the joints at a tick.
+
+    Attributes:
+        q: Positions, shape (nq,), in rad.
+        dq: Velocities, shape (nq,), in rad/s.
+        ddq: Accelerations, shape (nq,), in rad/s^2.
+        period: Time between two ticks, in s.
+    """
+
+    q: Array
+    dq: Array
+    ddq: Array
+    period: Scalar
+
+    def reference(self, rate: Scalar, q: Array, dq: Array) -> tuple[Array, Array]:
+        """Return dq_r = dq_d + lambda (q_d - q) and its derivative ddq_r, for a rate lambda, in 1/s."""
+        return self.dq + rate * (self.q - q), self.ddq + rate * (self.dq - dq)
+
+
+class JointMotion:
+    r"""Desired joint positions, velocities and accelerations at each tick.
+
+    A desired joint motion is used directly, without feedforward only its positions. A desired tip motion is the motion
+    of a virtual arm whose tip obeys F* of TipTask (resolved acceleration; Luh, Walker and Paul, IEEE Transactions on
+    Automatic Control 25(3), 1980):
+
+    .. math::
+
+        \ddot q_d = \ddot q_0 + J^+ (F^* - \dot J \dot q_d - J \ddot q_0), \qquad
+        \ddot q_0 = -2 \omega_{n0} \dot q_d - \omega_{n0}^2 (q_d - q_\mathrm{rest})
+
+    J, dJ/dt and F* are taken at q_d, which starts at the measured positions of the first tick. The acceleration is
+    constant over each period. The virtual arm has no inertia, limits or noise, so disturbances of the real arm do not
+    change q_d. Near a singular configuration the inverse is damped as in the tip laws: J^T (J J^T + lambda^2)^-1.
+
+    Args:
+        model: The arm.
+        config: Config of the law.
+        rest: Configuration of the posture task, shape (nq,), in rad.
+        joints: True if the desired motion is a joint motion.
+
+    Raises:
+        ConfigError: if the arm has fewer joints than the task has dimensions.
+    """
+
+    def __init__(self, model: RobotModel, config: JointLawConfig, rest: FloatArray, joints: bool) -> None:
+        self._joints, self._feedforward = joints, config.feedforward
+        self._task = TipTask(model, held_orientation(config.task, model, rest), config)
+        posture = PostureTask(config.null_space_frequency, rest).numbers
+        self.numbers = JointMotionNumbers(self._task.numbers, posture, config.period)
+
+    def structure(self) -> dict[str, Any]:
+        """Return the attributes without the numbers; see TorqueLaw.structure."""
+        return structure_of(self)
+
+    def start(self, q: FloatArray) -> FloatArray:
+        """Return the memory at the first tick: q_d and dq_d, shape (2 nq,); empty for a joint motion."""
+        return np.zeros(0) if self._joints else np.concatenate([q, np.zeros(len(q))])
+
+    def follow(
+        self, arm: Arm, numbers: JointMotionNumbers, reference: Array, memory: Array
+    ) -> tuple[DesiredJoints, Array]:
+        """Return the desired joints and the memory for the next tick."""
+        if self._joints:
+            q_d, dq_d, ddq_d = reference[0], reference[1], reference[2]
+            if self._feedforward:
+                return DesiredJoints(q_d, dq_d, ddq_d, numbers.period), memory
+            return DesiredJoints(q_d, 0.0 * dq_d, 0.0 * ddq_d, numbers.period), memory
+        h, n = numbers.period, len(memory) // 2
+        q_d, dq_d = memory[:n], memory[n:]
+        ddq_d = self._resolved_acceleration(arm, numbers, q_d, dq_d, reference)
+        goes_on = np.concatenate([q_d + h * dq_d + 0.5 * h**2 * ddq_d, dq_d + h * ddq_d])
+        return DesiredJoints(q_d, dq_d, ddq_d, h), goes_on
+
+    def _resolved_acceleration(
+        self, arm: Arm, numbers: JointMotionNumbers, q_d: Array, dq_d: Array, reference: Array
+    ) -> Array:
+        backend, task, tip = arm.backend, self._task, arm.tip(q_d, dq_d)
+        J, dJ_dq = task.jacobian(numbers.tip, tip)
+        error = task.error(backend, numbers.tip, tip, reference)
+        ddq_0 = posture_pd(numbers.posture, q_d, dq_d)
+        F = task.acceleration(backend, numbers.tip, error, J.dot(dq_d), reference) - dJ_dq - J.dot(ddq_0)
+        square = task.damp(backend, numbers.tip, J, error, J.dot(J.T))
+        return np.asarray(ddq_0 + J.T.dot(backend.solve_symmetric(square, F, "the tip's Jacobian is singular")))
+
+
+N = TypeVar("N", bound=Any)  # a NamedTuple
 C = TypeVar("C", bound=JointLawConfig)
 
 
-class JointLaw(TorqueLaw[N], Generic[N, C]):
+class JointNumbers(NamedTuple, Generic[N]):
+    """The numbers of a joint-space law: those of the desired motion, and the law's own."""
+
+    motion: JointMotionNumbers
+    own: N
+
+
+class JointLaw(TorqueLaw[JointNumbers[N]], Generic[N, C]):
     """A torque law that follows the desired joints of a JointMotion.
 
     Args:
@@ -63,15 +165,26 @@ class JointLaw(TorqueLaw[N], Generic[N, C]):
 
     def __init__(self, model: RobotModel, config: C, rest: FloatArray, joints: bool = False) -> None:
         self._motion, self._remembers = JointMotion(model, config, rest, joints), 0
-        numbers = self.choose_numbers(model, config, rest, self._motion.numbers)
+        inertia = model.mass_matrix(rest).diagonal().copy()
+        numbers = JointNumbers(self._motion.numbers, self.choose_numbers(model, config, inertia))
         super().__init__([model], config.gravity_compensation, numbers)
 
     @abstractmethod
-    def choose_numbers(self, model: RobotModel, config: C, rest: FloatArray, motion: JointMotionNumbers) -> N:
-        """Return the numbers of the law, including `motion`.
+    def choose_numbers(self, model: RobotModel, config: C, inertia: FloatArray) -> N:
+        """Return the law's own numbers.
 
         This also sets the attributes that select the equations, and `_remembers`, the size of the law's own memory.
+
+        Args:
+            model: The arm.
+            config: Config of the law.
+            inertia: D = diag M(home), shape (nq,), in kg m^2.
         """
+
+    def with_limits(self, limits: FloatArray) -> Self:
+        """Return the law with its torque limits set, if its own numbers have `limits`; see ControlLaw."""
+        own = self.numbers.own
+        return self.with_numbers(own=own._replace(limits=limits)) if "limits" in own._fields else self
 
     def start(self, q: FloatArray) -> FloatArray:
         """Return the memories of the joint motion and of the law at the first tick; see TorqueLaw."""
@@ -84,7 +197,7 @@ class JointLaw(TorqueLaw[N], Generic[N, C]):
     def evaluate(
         self,
         arms: Sequence[Arm],
-        numbers: N,
+        numbers: JointNumbers[N],
         time: Scalar,
         q: Array,
         dq: Array,
@@ -95,7 +208,7 @@ class JointLaw(TorqueLaw[N], Generic[N, C]):
         (arm,) = arms
         own = len(memory) - self._remembers
         desired, goes_on = self._motion.follow(arm, numbers.motion, reference, memory[:own])
-        torque, kept = self.command(arm, numbers, q, dq, desired, memory[own:])
+        torque, kept = self.command(arm, numbers.own, q, dq, desired, memory[own:])
         return torque, np.concatenate([goes_on, kept])
 
     @abstractmethod
@@ -106,7 +219,7 @@ class JointLaw(TorqueLaw[N], Generic[N, C]):
 
         Args:
             arm: Nominal arm.
-            numbers: Numbers of the law.
+            numbers: The law's own numbers.
             q: Measured joint positions, shape (nq,), in rad.
             dq: Measured joint velocities, shape (nq,), in rad/s.
             desired: Desired joint motion.

@@ -6,10 +6,9 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import VelocityGain
-from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import DesiredJoints, JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
-from runner.controllers.torque_law import Arm
+from runner.controllers.torque_law import Arm, second_order
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
 
@@ -28,19 +27,11 @@ class JointPdConfig(JointLawConfig):
 
 
 class JointPdNumbers(NamedTuple):
-    """The numbers of joint PD control.
+    """The numbers of joint PD control."""
 
-    Attributes:
-        motion: Numbers of the JointMotion.
-        k_p: omega_n^2, in 1/s^2.
-        k_v: 2 xi omega_n, in 1/s.
-        inertia: Diagonal of M at home, shape (nq,), in kg m^2.
-    """
-
-    motion: JointMotionNumbers
-    k_p: Scalar
-    k_v: Scalar
-    inertia: Array
+    k_p: Scalar  # omega_n^2, in 1/s^2
+    k_v: Scalar  # 2 xi omega_n, in 1/s
+    inertia: Array  # diagonal of M at home, shape (nq,), in kg m^2
 
 
 class JointPd(JointLaw[JointPdNumbers, JointPdConfig]):
@@ -57,22 +48,20 @@ class JointPd(JointLaw[JointPdNumbers, JointPdConfig]):
     because the fastest mode is then the sampled velocity loop, d(v)/dt = -2 omega_n lambda v.
     """
 
-    def choose_numbers(
-        self, model: RobotModel, config: JointPdConfig, rest: FloatArray, motion: JointMotionNumbers
-    ) -> JointPdNumbers:
+    def choose_numbers(self, model: RobotModel, config: JointPdConfig, inertia: FloatArray) -> JointPdNumbers:
         """Return the numbers of the law above; see JointLaw."""
+        k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
         self._at_home = config.inertia == "home"
         return JointPdNumbers(
-            motion=motion,
-            k_p=config.natural_frequency**2,
-            k_v=2.0 * config.damping_ratio * config.natural_frequency,
-            inertia=model.mass_matrix(rest).diagonal().copy(),
+            k_p=k_p,
+            k_v=k_v,
+            inertia=inertia,
         )
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.k_v, 0.0, self._at_home)
+        return VelocityGain(self.numbers.own.k_v, 0.0, self._at_home)
 
     def command(
         self, arm: Arm, numbers: JointPdNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array

@@ -7,10 +7,9 @@ from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import VelocityGain
-from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import DesiredJoints, JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
-from runner.controllers.torque_law import Arm
+from runner.controllers.torque_law import Arm, second_order
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
 
@@ -32,23 +31,13 @@ class JointPidConfig(JointLawConfig):
 
 
 class JointPidNumbers(NamedTuple):
-    """The numbers of joint PID control.
+    """The numbers of joint PID control."""
 
-    Attributes:
-        motion: Numbers of the JointMotion.
-        k_p: omega_n^2, in 1/s^2.
-        k_v: 2 xi omega_n, in 1/s.
-        k_i: integral_share omega_n^3, in 1/s^3.
-        inertia: Diagonal of M at home, shape (nq,), in kg m^2.
-        limits: Torque limits, shape (nq,), in N m; infinite if there is none.
-    """
-
-    motion: JointMotionNumbers
-    k_p: Scalar
-    k_v: Scalar
-    k_i: Scalar
-    inertia: Array
-    limits: Array
+    k_p: Scalar  # omega_n^2, in 1/s^2
+    k_v: Scalar  # 2 xi omega_n, in 1/s
+    k_i: Scalar  # integral_share omega_n^3, in 1/s^3
+    inertia: Array  # diagonal of M at home, shape (nq,), in kg m^2
+    limits: Array  # torque limits, shape (nq,), in N m; infinite if there is none
 
 
 class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
@@ -65,29 +54,23 @@ class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
     1989), z_k stays constant while the joint's torque is beyond its limit and e has the sign of the torque.
     """
 
-    def choose_numbers(
-        self, model: RobotModel, config: JointPidConfig, rest: FloatArray, motion: JointMotionNumbers
-    ) -> JointPidNumbers:
+    def choose_numbers(self, model: RobotModel, config: JointPidConfig, inertia: FloatArray) -> JointPidNumbers:
         """Return the numbers of the law above; see JointLaw."""
+        k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
         self._anti_windup = config.anti_windup
         self._remembers = model.nq
         return JointPidNumbers(
-            motion=motion,
-            k_p=config.natural_frequency**2,
-            k_v=2.0 * config.damping_ratio * config.natural_frequency,
+            k_p=k_p,
+            k_v=k_v,
             k_i=config.integral_share * config.natural_frequency**3,
-            inertia=model.mass_matrix(rest).diagonal().copy(),
+            inertia=inertia,
             limits=model.effort_limits,
         )
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.k_v, 0.0)
-
-    def with_limits(self, limits: FloatArray) -> "JointPid":
-        """Return the law with its torque limits set; see ControlLaw."""
-        return self.with_numbers(limits=limits)
+        return VelocityGain(self.numbers.own.k_v, 0.0)
 
     def command(
         self, arm: Arm, numbers: JointPidNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
@@ -96,7 +79,7 @@ class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
         error, rest = desired.q - q, np.zeros(len(q))
         ddq = numbers.k_p * error + numbers.k_v * (desired.dq - dq) + numbers.k_i * memory
         torque = numbers.inertia * ddq + arm.inverse_dynamics(q, rest, rest)
-        step = numbers.motion.period * error
+        step = desired.period * error
         if self._anti_windup:
             step = np.concatenate([_useful(arm, *of) for of in zip(torque, numbers.limits, step, strict=True)])
         return torque, memory + step

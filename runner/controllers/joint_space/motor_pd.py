@@ -6,10 +6,9 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import VelocityGain
-from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import DesiredJoints, JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
-from runner.controllers.torque_law import Arm
+from runner.controllers.torque_law import Arm, second_order
 from runner.robots.model import RobotModel
 from runner.schema.units import RotaryStiffness
 from runner.schema.values import PositivePerJoint, expand
@@ -31,21 +30,12 @@ class MotorPdConfig(JointLawConfig):
 
 
 class MotorPdNumbers(NamedTuple):
-    """The numbers of PD control of motors.
+    """The numbers of PD control of motors."""
 
-    Attributes:
-        motion: Numbers of the JointMotion.
-        k_p: omega_n^2, in 1/s^2.
-        k_v: 2 xi omega_n, in 1/s.
-        inertia: Diagonal of M + B at home, shape (nq,), in kg m^2.
-        compliance: K^-1 of each joint, shape (nq,), in rad/(N m).
-    """
-
-    motion: JointMotionNumbers
-    k_p: Scalar
-    k_v: Scalar
-    inertia: Array
-    compliance: Array
+    k_p: Scalar  # omega_n^2, in 1/s^2
+    k_v: Scalar  # 2 xi omega_n, in 1/s
+    inertia: Array  # diagonal of M + B at home, shape (nq,), in kg m^2
+    compliance: Array  # K^-1 of each joint, shape (nq,), in rad/(N m)
 
 
 class MotorPd(JointLaw[MotorPdNumbers, MotorPdConfig]):
@@ -59,23 +49,21 @@ class MotorPd(JointLaw[MotorPdNumbers, MotorPdConfig]):
     motors, and their readings are not corrected.
     """
 
-    def choose_numbers(
-        self, model: RobotModel, config: MotorPdConfig, rest: FloatArray, motion: JointMotionNumbers
-    ) -> MotorPdNumbers:
+    def choose_numbers(self, model: RobotModel, config: MotorPdConfig, inertia: FloatArray) -> MotorPdNumbers:
         """Return the numbers of the law above; see JointLaw."""
+        k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
         stiffness = expand("controller.joint_stiffness", config.joint_stiffness, model.joint_names)
         return MotorPdNumbers(
-            motion=motion,
-            k_p=config.natural_frequency**2,
-            k_v=2.0 * config.damping_ratio * config.natural_frequency,
-            inertia=model.mass_matrix(rest).diagonal().copy(),
+            k_p=k_p,
+            k_v=k_v,
+            inertia=inertia,
             compliance=1.0 / np.array(stiffness),
         )
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.k_v, 0.0, True)
+        return VelocityGain(self.numbers.own.k_v, 0.0, True)
 
     def command(
         self, arm: Arm, numbers: MotorPdNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array

@@ -6,9 +6,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import VelocityGain
-from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import DesiredJoints, JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.torque_law import Arm
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
@@ -27,17 +26,10 @@ class PassivityConfig(JointLawConfig):
 
 
 class PassivityNumbers(NamedTuple):
-    """The numbers of passivity-based control.
+    """The numbers of passivity-based control."""
 
-    Attributes:
-        motion: Numbers of the JointMotion.
-        rate: lambda, in 1/s.
-        damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
-    """
-
-    motion: JointMotionNumbers
-    rate: Scalar
-    damping: Array
+    rate: Scalar  # lambda, in 1/s
+    damping: Array  # diagonal of K_D, shape (nq,), in kg m^2/s
 
 
 class Passivity(JointLaw[PassivityNumbers, PassivityConfig]):
@@ -53,27 +45,23 @@ class Passivity(JointLaw[PassivityNumbers, PassivityConfig]):
     K_D > 0. At rest, a wrong gravity term G_n causes the error (G - G_n) / (lambda K_D), as under PD control.
     """
 
-    def choose_numbers(
-        self, model: RobotModel, config: PassivityConfig, rest: FloatArray, motion: JointMotionNumbers
-    ) -> PassivityNumbers:
+    def choose_numbers(self, model: RobotModel, config: PassivityConfig, inertia: FloatArray) -> PassivityNumbers:
         """Return the numbers of the law above; see JointLaw."""
         return PassivityNumbers(
-            motion=motion,
             rate=config.natural_frequency,
-            damping=config.natural_frequency * model.mass_matrix(rest).diagonal(),
+            damping=config.natural_frequency * inertia,
         )
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.rate, self.numbers.rate)
+        return VelocityGain(self.numbers.own.rate, self.numbers.own.rate)
 
     def command(
         self, arm: Arm, numbers: PassivityNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see JointLaw."""
-        dq_r = desired.dq + numbers.rate * (desired.q - q)
-        ddq_r = desired.ddq + numbers.rate * (desired.dq - dq)
+        dq_r, ddq_r = desired.reference(numbers.rate, q, dq)
         return numbers.damping * (dq_r - dq) + passive_dynamics(arm, q, dq, dq_r, ddq_r), memory
 
 

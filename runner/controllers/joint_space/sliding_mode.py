@@ -7,11 +7,10 @@ from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import VelocityGain
-from runner.controllers.joint_space.joint_law import JointLaw, JointLawConfig, joint_law_builder
+from runner.controllers.joint_space.joint_law import DesiredJoints, JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
-from runner.controllers.joint_space.joint_motion import DesiredJoints, JointMotionNumbers
 from runner.controllers.joint_space.passivity import passive_dynamics
-from runner.controllers.torque_law import Arm
+from runner.controllers.torque_law import Arm, clip
 from runner.robots.model import RobotModel
 from runner.schema.units import RadiansPerSecond
 from runner.symbolic.maths import Array, Scalar
@@ -34,21 +33,12 @@ class SlidingModeConfig(JointLawConfig):
 
 
 class SlidingModeNumbers(NamedTuple):
-    """The numbers of sliding-mode control.
+    """The numbers of sliding-mode control."""
 
-    Attributes:
-        motion: Numbers of the JointMotion.
-        rate: lambda, in 1/s.
-        boundary_layer: phi, in rad/s.
-        damping: Diagonal of K_D, shape (nq,), in kg m^2/s.
-        switching_gain: Diagonal of K, shape (nq,), in N m.
-    """
-
-    motion: JointMotionNumbers
-    rate: Scalar
-    boundary_layer: Scalar
-    damping: Array
-    switching_gain: Array
+    rate: Scalar  # lambda, in 1/s
+    boundary_layer: Scalar  # phi, in rad/s
+    damping: Array  # diagonal of K_D, shape (nq,), in kg m^2/s
+    switching_gain: Array  # diagonal of K, shape (nq,), in N m
 
 
 class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
@@ -68,13 +58,10 @@ class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
     layer, so phi cannot be arbitrarily small.
     """
 
-    def choose_numbers(
-        self, model: RobotModel, config: SlidingModeConfig, rest: FloatArray, motion: JointMotionNumbers
-    ) -> SlidingModeNumbers:
+    def choose_numbers(self, model: RobotModel, config: SlidingModeConfig, inertia: FloatArray) -> SlidingModeNumbers:
         """Return the numbers of the law above; see JointLaw."""
-        damping = config.natural_frequency * model.mass_matrix(rest).diagonal()
+        damping = config.natural_frequency * inertia
         return SlidingModeNumbers(
-            motion=motion,
             rate=config.natural_frequency,
             boundary_layer=config.boundary_layer,
             damping=damping,
@@ -84,7 +71,7 @@ class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v within the layer."""
-        own = self.numbers
+        own = self.numbers.own
         gain = own.switching_gain[0] / (own.boundary_layer * own.damping[0])
         return VelocityGain((1.0 + gain) * own.rate, own.rate)
 
@@ -92,18 +79,11 @@ class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
         self, arm: Arm, numbers: SlidingModeNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see JointLaw."""
-        dq_r = desired.dq + numbers.rate * (desired.q - q)
-        ddq_r = desired.ddq + numbers.rate * (desired.dq - dq)
+        dq_r, ddq_r = desired.reference(numbers.rate, q, dq)
         s = dq_r - dq
-        saturated = np.array([_saturated(arm, share) for share in s / numbers.boundary_layer])
+        saturated = np.array([clip(arm.backend, share, 1.0) for share in s / numbers.boundary_layer])
         torque = numbers.damping * s + numbers.switching_gain * saturated
         return torque + passive_dynamics(arm, q, dq, dq_r, ddq_r), memory
-
-
-def _saturated(arm: Arm, share: Scalar) -> Scalar:
-    """Return a scalar clipped to -1 and 1."""
-    most = arm.backend.maximum
-    return -most(-most(share, -1.0), -1.0)
 
 
 CONFIG = SlidingModeConfig

@@ -14,19 +14,12 @@ from runner.symbolic.maths import Array, Scalar
 
 
 class DampingNumbers(NamedTuple):
-    """The numbers of inertial damping.
-
-    Attributes:
-        law: Numbers of the stage's law.
-        offset: r_0, position of the tip at home in the stage's base frame, shape (3,), in m.
-        gravity: Gravity in the robot's base frame, shape (3,), in m/s^2.
-        share: g / (2 xi omega_c), the commanded tip velocity per base velocity.
-    """
+    """The numbers of inertial damping."""
 
     law: StageNumbers
-    offset: Array
-    gravity: Array
-    share: Scalar
+    offset: Array  # r_0, position of the tip at home in the stage's base frame, shape (3,), in m
+    gravity: Array  # gravity in the robot's base frame, shape (3,), in m/s^2
+    share: Scalar  # g / (2 xi omega_c), the commanded tip velocity per base velocity
 
 
 class InertialDamping(StageLoop[DampingNumbers]):

@@ -5,23 +5,17 @@ from typing import Any, NamedTuple
 from runner.base.arrays import FloatArray
 from runner.controllers.operational_space.operational_space import tip_law
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
-from runner.controllers.torque_law import Arm, structure_of
+from runner.controllers.torque_law import Arm, second_order, structure_of
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
 
 
 class StageNumbers(NamedTuple):
-    """The numbers of a stage's law.
-
-    Attributes:
-        tip: Numbers of the tip law.
-        k_p: omega_n^2 of a held configuration, in 1/s^2.
-        k_v: 2 xi omega_n of a held configuration, in 1/s.
-    """
+    """The numbers of a stage's law."""
 
     tip: Any
-    k_p: Scalar
-    k_v: Scalar
+    k_p: Scalar  # omega_n^2 of a held configuration, in 1/s^2
+    k_v: Scalar  # 2 xi omega_n of a held configuration, in 1/s
 
 
 class StageLaw:
@@ -49,8 +43,8 @@ class StageLaw:
     def __init__(self, model: RobotModel, law: WholeBodyLaw, home: FloatArray) -> None:
         self.model, self.gravity_compensation = model, law.gravity_compensation
         self._tip: Any = tip_law(model, law, home)  # OperationalSpace or WholeBody, with different types of numbers
-        k_p, k_v = law.natural_frequency**2, 2.0 * law.damping_ratio * law.natural_frequency
-        self.numbers = StageNumbers(self._tip.numbers, k_p, k_v)
+        gains = second_order(law.natural_frequency, law.damping_ratio)
+        self.numbers = StageNumbers(self._tip.numbers, *gains)
 
     def structure(self) -> dict[str, Any]:
         """Return the attributes without the numbers; see TorqueLaw.structure."""

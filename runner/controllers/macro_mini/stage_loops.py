@@ -20,63 +20,36 @@ _STILL = np.zeros(3)
 
 
 class MacroNumbers(NamedTuple):
-    """The numbers of the first stage's loop.
-
-    Attributes:
-        law: Numbers of the stage's law.
-        offset: Offset o as a motion at rest, shape (3, 3).
-        later: Home offset of the stages on the first mounted stage, in the robot's base frame, shape (3,), in m.
-        rotations: Rotations from the mounted stages' base frames at home into the robot's, shape (mounted, 3, 3).
-        reach: Distance up to which the first mounted stage follows its target, in m.
-        turn: Length of a turn, in s.
-    """
+    """The numbers of the first stage's loop."""
 
     law: StageNumbers
-    offset: Array
-    later: Array
-    rotations: Array
-    reach: Scalar
-    turn: Scalar
+    offset: Array  # offset o as a motion at rest, shape (3, 3)
+    later: Array  # home offset of the stages on the first mounted stage, in the robot's base frame, shape (3,), in m
+    rotations: Array  # rotations from the mounted stages' base frames at home into the robot's, shape (mounted, 3, 3)
+    reach: Scalar  # distance up to which the first mounted stage follows its target, in m
+    turn: Scalar  # length of a turn, in s
 
 
 class MiniNumbers(NamedTuple):
-    """The numbers of a mounted stage's loop.
-
-    Attributes:
-        law: Numbers of the stage's law.
-        offset: Home offset r_0 as a motion at rest, shape (3, 3).
-        later: Home offset of the stages mounted on it, in the robot's base frame, shape (3,), in m.
-        rotation: Rotation from its base frame at home into the robot's, shape (3, 3).
-        between: Same rotation of each mounted stage below it, shape (k, 3, 3); k is 0 unless base rotation is ignored.
-        gravity: Gravity in the robot's base frame, shape (3,), in m/s^2.
-        reach: Distance up to which the stage follows its target, in m.
-        turn: Length of a turn, in s.
-    """
+    """The numbers of a mounted stage's loop."""
 
     law: StageNumbers
-    offset: Array
-    later: Array
-    rotation: Array
-    between: Array
-    gravity: Array
-    reach: Scalar
-    turn: Scalar
+    offset: Array  # home offset r_0 as a motion at rest, shape (3, 3)
+    later: Array  # home offset of the stages mounted on it, in the robot's base frame, shape (3,), in m
+    rotation: Array  # rotation from its base frame at home into the robot's, shape (3, 3)
+    between: Array  # the same for each mounted stage below it, (k, 3, 3); k is 0 unless base rotation is ignored
+    gravity: Array  # gravity in the robot's base frame, shape (3,), in m/s^2
+    reach: Scalar  # distance up to which the stage follows its target, in m
+    turn: Scalar  # length of a turn, in s
 
 
 class HeldNumbers(NamedTuple):
-    """The numbers of a loop that holds a stage's joints.
-
-    Attributes:
-        law: Numbers of the stage's law.
-        posture: Held configuration, shape (n,), in rad.
-        rotation: Rotation from the stage's base frame at home into the robot's, shape (3, 3).
-        gravity: Gravity in the robot's base frame, shape (3,), in m/s^2.
-    """
+    """The numbers of a loop that holds a stage's joints."""
 
     law: StageNumbers
-    posture: Array
-    rotation: Array
-    gravity: Array
+    posture: Array  # held configuration, shape (n,), in rad
+    rotation: Array  # rotation from the stage's base frame at home into the robot's, shape (3, 3)
+    gravity: Array  # gravity in the robot's base frame, shape (3,), in m/s^2
 
 
 N = TypeVar("N", bound=Any)  # a NamedTuple with the numbers of the stage's law, `law`

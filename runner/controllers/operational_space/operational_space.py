@@ -11,7 +11,7 @@ from runner.base.errors import ConfigError
 from runner.controllers.controller import Loop, VelocityGain
 from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyLaw
-from runner.controllers.torque_law import Arm, TorqueLaw
+from runner.controllers.torque_law import Arm, TorqueLaw, second_order
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_basis
@@ -49,21 +49,13 @@ class OperationalSpaceConfig(StrictModel):
 
 
 class OperationalSpaceNumbers(NamedTuple):
-    """The numbers of operational-space control.
+    """The numbers of operational-space control."""
 
-    Attributes:
-        weights: Weights of desired position, velocity and acceleration in F*, shape (3,).
-        k_p: omega_n^2, shape (3,), in 1/s^2, because NumPy multiplies arrays faster than an array and a float.
-        k_v: 2 xi omega_n, shape (3,), in 1/s.
-        damping: singularity_damping^2.
-        singular_below: Singular value below which the inverse of J is damped, in m.
-    """
-
-    weights: Array
-    k_p: Array
-    k_v: Array
-    damping: Scalar
-    singular_below: Scalar
+    weights: Array  # weights of desired position, velocity and acceleration in F*, shape (3,)
+    k_p: Array  # omega_n^2, shape (3,), in 1/s^2, because NumPy multiplies arrays faster than an array and a float
+    k_v: Array  # 2 xi omega_n, shape (3,), in 1/s
+    damping: Scalar  # singularity_damping^2
+    singular_below: Scalar  # singular value below which the inverse of J is damped, in m
 
 
 class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
@@ -105,7 +97,7 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
                 f"controller.kind: operational_space needs a square Jacobian of the tip position, 3 joints; "
                 f"the arm has {model.nq} ({', '.join(model.joint_names)})"
             )
-        k_p, k_v = law.natural_frequency**2, 2.0 * law.damping_ratio * law.natural_frequency
+        k_p, k_v = second_order(law.natural_frequency, law.damping_ratio)
         weights = np.array([k_p, k_v, 1.0]) if law.feedforward else np.array([k_p, 0.0, 0.0])
         self._damped = law.singularity_damping > 0.0
         numbers = OperationalSpaceNumbers(

@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.controllers.torque_law import Tip
+from runner.controllers.torque_law import Tip, second_order
 from runner.robots.inverse_kinematics import solve_tip_pose
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
@@ -26,27 +26,16 @@ class TipTaskConfig(Protocol):
 
 
 class TipNumbers(NamedTuple):
-    """The numbers of a tip task.
+    """The numbers of a tip task."""
 
-    Attributes:
-        k_p: omega_n^2, in 1/s^2.
-        k_v: 2 xi omega_n, in 1/s.
-        directions: Directions of the task's rows, shape (rows, 3) or (rows, 6); see task_basis.
-        orientation: Desired orientation in the base frame, shape (3, 3).
-        max_acceleration: Largest k_p |x_d - x|, in m/s^2.
-        damping: singularity_damping^2.
-        singular_below: Square of the singular value below which inverses are damped, in m^2.
-        lengths: Length equivalent to a unit of each row, shape (rows,): 1 or, for a rotation, the reach in m.
-    """
-
-    k_p: Scalar
-    k_v: Scalar
-    directions: Array
-    orientation: Array
-    max_acceleration: Scalar
-    damping: Scalar
-    singular_below: Scalar
-    lengths: Array
+    k_p: Scalar  # omega_n^2, in 1/s^2
+    k_v: Scalar  # 2 xi omega_n, in 1/s
+    directions: Array  # directions of the task's rows, shape (rows, 3) or (rows, 6); see task_basis
+    orientation: Array  # desired orientation in the base frame, shape (3, 3)
+    max_acceleration: Scalar  # largest k_p |x_d - x|, in m/s^2
+    damping: Scalar  # singularity_damping^2
+    singular_below: Scalar  # square of the singular value below which inverses are damped, in m^2
+    lengths: Array  # length equivalent to a unit of each row, shape (rows,): 1 or, for a rotation, the reach in m
 
 
 class TipTask:
@@ -94,7 +83,7 @@ class TipTask:
         self._whole = self.rows == directions.shape[1]
         self._feedforward, self._bounded = law.feedforward, max_speed is not None
         self._damped = law.singularity_damping > 0.0
-        k_p, k_v = law.natural_frequency**2, 2.0 * law.damping_ratio * law.natural_frequency
+        k_p, k_v = second_order(law.natural_frequency, law.damping_ratio)
         # A rotation counts as the displacement of a point at the distance of the reach, so all rows are lengths.
         lengths = np.array(moves * [1.0] + (self.rows - moves) * [model.reach])
         self.numbers = TipNumbers(

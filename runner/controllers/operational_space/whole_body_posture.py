@@ -5,24 +5,18 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.controllers.torque_law import second_order
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Backend, Scalar
 
 
 class PostureNumbers(NamedTuple):
-    """The numbers of a posture task.
+    """The numbers of a posture task."""
 
-    Attributes:
-        k_p: omega_n^2, in 1/s^2.
-        k_v: 2 omega_n, in 1/s.
-        rest: Desired configuration, shape (nq,), in rad.
-        stiffness: K of the springs, shape (nq, nq), in N m/rad.
-    """
-
-    k_p: Scalar
-    k_v: Scalar
-    rest: Array
-    stiffness: Array
+    k_p: Scalar  # omega_n^2, in 1/s^2
+    k_v: Scalar  # 2 omega_n, in 1/s
+    rest: Array  # desired configuration, shape (nq,), in rad
+    stiffness: Array  # K of the springs, shape (nq, nq), in N m/rad
 
 
 class Posture(Protocol):
@@ -67,7 +61,7 @@ class JointStiffness:
 
     def __init__(self, model: RobotModel, frequency: float, rest: FloatArray, first: int) -> None:
         stiffness = frequency**2 * _inertia_at_rest(model, rest, first)
-        self.numbers = PostureNumbers(frequency**2, 2.0 * frequency, rest, stiffness)
+        self.numbers = PostureNumbers(*second_order(frequency, 1.0), rest, stiffness)
 
     def acceleration_and_torque(
         self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array
@@ -91,7 +85,7 @@ class PostureTask:
     """
 
     def __init__(self, frequency: float, rest: FloatArray) -> None:
-        self.numbers = PostureNumbers(frequency**2, 2.0 * frequency, rest, np.zeros((0, 0)))
+        self.numbers = PostureNumbers(*second_order(frequency, 1.0), rest, np.zeros((0, 0)))
 
     def acceleration_and_torque(
         self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array

@@ -22,7 +22,7 @@ def closed_loop(*overrides):
 def followed(closed, desired, h):
     """Errors of the joints and V at every tick, of a law on the true arm."""
     law, true = closed.loops[0].controller, closed.robot.model
-    plant, numbers = Rk4(true, h, 1), law.numbers
+    plant, numbers = Rk4(true, h, 1), law.numbers.own
     plant.reset(desired[0, 0], np.zeros(true.nq))
     law.reset()
     adapts = numbers.adaptation_gain > 0.0
@@ -44,7 +44,7 @@ def followed(closed, desired, h):
 def test_torques_and_parameters_are_those_of_the_equations(name, friction):
     closed = closed_loop(f"robot={name}", f"controller.friction={friction}")
     law, generator, n = closed.loops[0].controller, np.random.default_rng(5), closed.robot.model.nq
-    arm, home, numbers = PinocchioArm(closed.robot.model), closed.robot.home, law.numbers
+    arm, home, numbers = PinocchioArm(closed.robot.model), closed.robot.home, law.numbers.own
     D, theta = closed.robot.model.mass_matrix(home).diagonal(), numbers.initial_parameters.copy()
     for _ in range(3):
         q, dq = home + generator.normal(size=n), generator.normal(size=n)
@@ -98,7 +98,7 @@ def test_the_scale_by_parameter_bounds_the_frequencies_of_the_adaptation(name, f
     """The eigenvalues of D^-1/2 Y Gamma Y^T D^-1/2 for the motions that set the scale."""
     share = 0.49
     closed = closed_loop(f"robot={name}", f"controller.adaptation_gain={share}", f"controller.friction={friction}")
-    gains, model, home = closed.loops[0].controller.numbers.adaptation_gain, closed.robot.model, closed.robot.home
+    gains, model, home = closed.loops[0].controller.numbers.own.adaptation_gain, closed.robot.model, closed.robot.home
     n, root, arm = model.nq, np.sqrt(model.mass_matrix(home).diagonal()), PinocchioArm(model)
     reached = []
     for way in (*np.eye(n), np.ones(n)):

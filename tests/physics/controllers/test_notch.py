@@ -10,7 +10,7 @@ from support.arms import checked
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.controllers.notch import Notch
-from runner.controllers.torque_filter import FilteredController
+from runner.controllers.torque_filter import AnyLaw, FilteredLaw
 from runner.simulation.assembly import assemble
 from runner.simulation.compiled.closed_loop import LoopProgram
 from runner.simulation.loop import simulate
@@ -69,7 +69,7 @@ def test_code_and_any_controller_ask_for_the_same_as_the_law():
     assert isinstance(closed.compiled, LoopProgram)
     (loop,), (bare,) = closed.loops, config.loops
     notch = Notch(np.array([6.0, np.inf, 9.0]), 5.0, loop.period)
-    wrapped = replace(loop, controller=FilteredController(bare.controller, notch, config.arm.model))
+    wrapped = replace(loop, controller=FilteredLaw(AnyLaw(bare.controller, config.arm.model), notch))
     traces = [
         simulate(replace(closed, compiled=compiled, loops=(each,)), make_encoders(closed, config.noise, 0, 0))
         for compiled, each in ((closed.compiled, loop), (None, loop), (None, wrapped))
