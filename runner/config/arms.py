@@ -82,6 +82,15 @@ class RobotOutline:
         return {stage.name: stage.joint_names for stage in self.stages}
 
     @property
+    def joint_units(self) -> dict[str, dict[str, str]]:
+        """Unit of the position of each joint by its name in the robot, by stage: rad, or m for a prismatic joint."""
+        return {
+            stage.name: {f"{stage.prefix}{name}": unit for name, unit in zip(*joints, strict=True)}
+            for stage in self.stages
+            for joints in [(stage.joint_names, stage.joint_units)]
+        }
+
+    @property
     def effort_limits(self) -> FloatArray:
         """Effort limit of each joint, shape (nq,), in N m; infinite where there is none."""
         return np.concatenate([stage.effort_limits for stage in self.stages])
@@ -185,7 +194,7 @@ def _build(outline: RobotOutline, gravity: float, sensor: tuple[float, float] | 
         stages.append(Stage(arm.name, model, urdf, joints, np.array(arm.home), base_frame, file))
         first = joints.stop
     model = RobotModel(whole, tip, gravity) if len(stages) > 1 else stages[0].model
-    return Robot(whole, model, tuple(stages), last.prefix + last.config.tip)
+    return Robot(whole, model, tuple(stages), last.prefix + last.config.tip, tuple(config.payload.position))
 
 
 def keyed_arms(config: RobotConfig) -> list[tuple[str, ArmConfig]]:

@@ -105,7 +105,7 @@ def check_observer(config: RunConfig) -> None:
             "plant.dynamics=coupled and plant.wrist_rotation=real"
         )
     elif config.disturbance_observer.torque == "measured":
-        if config.joint_torques is not None or "joint_torque_sensor" in config.plugged:
+        if config.joint_torque_sensor is not None:
             return
         raise ConfigError(
             "disturbance_observer.torque: measured needs torque sensors in the joints, and joint_torque_sensor."
@@ -220,7 +220,8 @@ def check_reading(config: RunConfig) -> None:
         ConfigError: if they have none.
     """
     law = config.controller
-    if isinstance(law, HybridForceConfig) and law.force_source == "joint_torque" and config.joint_torques is None:
+    by_joints = isinstance(law, HybridForceConfig) and law.force_source == "joint_torque"
+    if by_joints and config.joint_torque_sensor is None:
         raise ConfigError(
             "controller.force_source: joint_torque needs torque sensors in the joints, and "
             "joint_torque_sensor.noise is null; take joint_torque_sensor=ideal, or controller.force_source=wrist"

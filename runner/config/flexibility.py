@@ -14,6 +14,7 @@ from runner.plants.plant import unwrapped
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
 from runner.robots.chain import stiffen_robot
 from runner.robots.robot import Robot, with_armature
+from runner.sensing.joint_torque import JointTorqueNoise
 
 _FASTEST = 0.5  # step h times largest rate: numerical damping ratio, (rate h)^5/144, is 2.2e-4 there
 
@@ -98,7 +99,7 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
         problems.append("a wall is met by arms with rigid joints; take environment=push or environment=free")
     if config.loaded:
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
-    if config.joint_torques is not None:
+    if isinstance(config.joint_torque_sensor, JointTorqueNoise):
         problems.append("torque sensors are read at rigid joints; take joint_torque_sensor.noise=null")
     joints = _flexible_joints(config)
     theta = joints is not None and joints.encoders == "motor" and joints.static_deflection == "unknown"
@@ -135,7 +136,7 @@ def check_flexible_links(config: RunConfig) -> None:
         problems.append("a force on the tip would act on rigid links; take environment=free and a law that feels none")
     if config.loaded:
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
-    if config.joint_torques is not None:
+    if isinstance(config.joint_torque_sensor, JointTorqueNoise):
         problems.append("torque sensors are read in rigid arms; take joint_torque_sensor.noise=null")
     problems = [f"plant.links: {problem}" for problem in problems]
     try:

@@ -4,23 +4,20 @@ from collections.abc import Mapping
 
 from runner.base.errors import ConfigError, nearest
 from runner.config.input_shaper import InputShaperConfig
-from runner.config.joints import NoiseConfig, TorqueLimitsConfig
 from runner.config.judgement import CaveatsConfig, SpecConfig
 from runner.config.limits import LimitsConfig, SweepConfig
 from runner.config.parsing import Parts, Problems, group_of, parse, parse_kind, parse_robot
 from runner.config.robot import OneArmConfig
-from runner.config.settings import PresetConfig, RunSettings
+from runner.config.settings import PresetConfig, RunSettings, TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch import NotchConfig
 from runner.environments import ENVIRONMENTS
 from runner.plants import PLANTS
 from runner.plugins.registry import Kinds
-from runner.robots.mismatch import MISMATCHES, MismatchConfig
-from runner.robots.mismatch import NONE as NO_MISMATCH
+from runner.robots.mismatch import MISMATCHES
 from runner.schema.model import StrictModel
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, EndpointSensorConfig, JointTorqueConfig
-from runner.sensing.force_torque import IDEAL, ForceTorqueConfig
+from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, EndpointSensorConfig
 from runner.trajectories import TRAJECTORIES
 
 GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
@@ -28,12 +25,12 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "controller": CONTROLLERS,
     "trajectory": TRAJECTORIES,
     "environment": ENVIRONMENTS,
-    "noise": NoiseConfig,
+    "noise": NOISES,
     "torque_limits": TorqueLimitsConfig,
-    "wrist_sensor": ForceTorqueConfig,
-    "joint_torque_sensor": JointTorqueConfig,
+    "wrist_sensor": WRIST_SENSORS,
+    "joint_torque_sensor": JOINT_TORQUE_SENSORS,
     "endpoint_sensor": EndpointSensorConfig,
-    "mismatch": MismatchConfig,
+    "mismatch": MISMATCHES,
     "disturbance_observer": DisturbanceObserverConfig,
     "input_shaper": InputShaperConfig,
     "notch": NotchConfig,
@@ -45,14 +42,6 @@ GROUPS: Mapping[str, Kinds | type[StrictModel]] = {
     "spec": SpecConfig,
 }
 """The model of each group, or the kinds whose models it may have; see also parse_robot."""
-
-PLUGGED: Mapping[str, tuple[Kinds, StrictModel | None]] = {
-    "noise": (NOISES, None),
-    "wrist_sensor": (WRIST_SENSORS, IDEAL),
-    "joint_torque_sensor": (JOINT_TORQUE_SENSORS, JointTorqueConfig(noise=None, bias=0.0)),
-    "mismatch": (MISMATCHES, NO_MISMATCH),
-}
-"""Groups that a plug-in replaces if they have a `kind`, each with a built-in config without effect, or None."""
 
 _OPTIONAL = ("input_shaper", "notch")
 _SETTINGS = tuple(RunSettings.model_fields)
@@ -66,27 +55,20 @@ def read_groups(resolved: Mapping[str, object], problems: Problems) -> Parts:
         problems: Collects the problems found.
 
     Returns:
-        The models of valid groups; "settings", the keys at the root; and "plugged", the configs of plug-ins by group.
+        The models of valid groups, and "settings", the keys at the root.
     """
     problems.attempt(_check_keys, resolved)
     settings = {key: resolved.get(key) for key in _SETTINGS}
-    found: Parts = {"settings": problems.attempt(parse, "", RunSettings, settings), "plugged": {}}
+    found: Parts = {"settings": problems.attempt(parse, "", RunSettings, settings)}
     for group in GROUPS:
         if group in resolved or group not in _OPTIONAL:
             keys = problems.attempt(group_of, group, resolved)
             found[group] = problems.recall(_read_group, group, keys)
-            if found[group] is not None and is_plugged(group, keys):
-                found["plugged"][group], found[group] = found[group], PLUGGED[group][1]
     return found
 
 
-def is_plugged(group: str, keys: Mapping[str, object] | None) -> bool:
-    """Return True if the keys of a group select a plug-in instead of the built-in model."""
-    return group in PLUGGED and keys is not None and "kind" in keys
-
-
 def _read_group(group: str, keys: Mapping[str, object]) -> StrictModel:
-    known = PLUGGED[group][0] if is_plugged(group, keys) else GROUPS[group]
+    known = GROUPS[group]
     if isinstance(known, Kinds):
         return parse_kind(known, keys)
     return parse_robot(keys) if group == "robot" else parse(group, known, keys)

@@ -89,7 +89,7 @@ def group_of(group: str, resolved: Mapping[str, object]) -> Mapping[str, object]
 
 
 def parse_kind(kinds: Kinds, value: Mapping[str, object]) -> StrictModel:
-    """Return a group checked by the model of its `kind`.
+    """Return a group checked by the model of its `kind`, or of the group's default kind.
 
     Args:
         kinds: Kinds that the group may have.
@@ -98,9 +98,10 @@ def parse_kind(kinds: Kinds, value: Mapping[str, object]) -> StrictModel:
     Raises:
         ConfigError: with every problem of the group.
     """
-    if "kind" not in value:
+    kind = value.get("kind", kinds.default)
+    if kind is None:
         raise ConfigError(f"{kinds.group}.kind: missing; known: {', '.join(kinds.names())}")
-    return parse(kinds.group, kinds.config_model(str(value["kind"])), value)
+    return parse(kinds.group, kinds.config_model(str(kind)), value)
 
 
 def parse_robot(value: Mapping[str, object]) -> RobotConfig:

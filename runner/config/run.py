@@ -15,15 +15,17 @@ from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch import NotchConfig
 from runner.plants import PLANTS, PlantConfig
 from runner.plugins.features import Commands
-from runner.plugins.registry import KindConfig
-from runner.robots.mismatch import MismatchConfig
+from runner.plugins.registry import KindConfig, Kinds
+from runner.robots.mismatch import MISMATCHES, NONE, MismatchConfig
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
-from runner.sensing import EncoderNoise, EndpointSensorConfig, ForceTorqueConfig
+from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, EncoderNoise, EndpointSensorConfig
+from runner.sensing.encoders import exact_encoders
 from runner.trajectories import Trajectory
 
 # Fields that differ between configs of the same run, or that are new objects in each config.
-_OF_ONE_RUN = frozenset({"settings", "composed", "loaded", "plugged", "joint_torques", "timing"})
+_OF_ONE_RUN = frozenset({"settings", "composed", "loaded", "timing"})
+_SENSED: tuple[Kinds, ...] = (NOISES, WRIST_SENSORS, JOINT_TORQUE_SENSORS, MISMATCHES)
 
 
 @dataclass(frozen=True)
@@ -41,12 +43,13 @@ class RunConfig:
         commands: Quantity that the loops command: joint torques, or joint positions for a plant that follows them.
         path: The desired motion of the tip.
         environment: Config of the environment of the tip, by the model of its kind.
-        noise: Noise and steps of each joint's encoder.
+        noise: Noise and steps of each joint's encoder, or the config of user-supplied encoders.
         torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
-        wrist_sensor: Config of the force/torque sensor.
-        joint_torques: Noise and bias of each joint's torque sensor, shapes (nq,), in N m; None for no sensors.
+        wrist_sensor: Config of the force/torque sensor, by the model of its kind.
+        joint_torque_sensor: Errors of each joint's torque sensor, or the config of user-supplied sensors; None for no
+            sensors.
         endpoint_sensor: Config of the sensor of the tip's position.
-        mismatch: Difference between the controllers' model and the robot.
+        mismatch: Config of the difference between the controllers' model and the robot, by the model of its kind.
         disturbance_observer: Config of the disturbance observer of the control laws.
         notch: Config of the notch filter for torques; None for no filter.
         timing: The times of a run.
@@ -55,7 +58,6 @@ class RunConfig:
         limits: Limits of CPU time and memory.
         caveats: Thresholds of the caveats of a run.
         spec: Bounds on metrics; the runner reports how often they are met.
-        plugged: Configs of plug-ins that replace built-in parts, by group: encoders, sensors, mismatch.
         composed: The composed config that was checked.
     """
 
@@ -69,12 +71,12 @@ class RunConfig:
     commands: Commands
     path: Trajectory
     environment: KindConfig
-    noise: EncoderNoise
+    noise: KindConfig
     torque_limits: FloatArray
-    wrist_sensor: ForceTorqueConfig
-    joint_torques: tuple[FloatArray, FloatArray] | None
+    wrist_sensor: KindConfig
+    joint_torque_sensor: KindConfig | None
     endpoint_sensor: EndpointSensorConfig
-    mismatch: MismatchConfig
+    mismatch: KindConfig
     disturbance_observer: DisturbanceObserverConfig
     notch: NotchConfig | None
     timing: Timing
@@ -83,7 +85,6 @@ class RunConfig:
     limits: LimitsConfig
     caveats: CaveatsConfig
     spec: SpecConfig
-    plugged: Mapping[str, KindConfig]
     composed: Composed
 
     @property
@@ -101,8 +102,30 @@ class RunConfig:
         """All parts of a run except its seed: numbers, and objects that several configs share; see Memory."""
         parts = (part for name, part in vars(self).items() if name not in _OF_ONE_RUN)
         times = (part for name, part in vars(self.timing).items() if name != "late")
-        several = (*self.loaded, *self.plugged.items(), self.joint_torques or (), self.timing.late)
+        several = (*self.loaded, self.timing.late)
         return (*parts, *times, self.settings.repetitions, *(part for each in several for part in each))
+
+    @property
+    def plugged(self) -> dict[str, str]:
+        """Kinds of the user-supplied sensors and of a user-supplied mismatch, by group."""
+        parts = self.noise, self.wrist_sensor, self.joint_torque_sensor, self.mismatch
+        known = zip(_SENSED, parts, strict=True)
+        return {kinds.group: part.kind for kinds, part in known if part is not None and not kinds.is_ours(part.kind)}
+
+    @property
+    def encoder_noise(self) -> EncoderNoise:
+        """Noise of the built-in encoders; zero if encoders are user-supplied."""
+        return self.noise if isinstance(self.noise, EncoderNoise) else exact_encoders(self.arm.model.nq)
+
+    @property
+    def model_error(self) -> MismatchConfig:
+        """Built-in mismatch; none if the mismatch is user-supplied."""
+        return self.mismatch if isinstance(self.mismatch, MismatchConfig) else NONE
+
+    @property
+    def varies_model(self) -> bool:
+        """True if each repetition has another nominal model."""
+        return "mismatch" in self.plugged or self.model_error.spread > 0.0
 
     @property
     def compilable(self) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 from runner.base.cache import Memory
 from runner.base.errors import ConfigError
 from runner.base.sanitize import few
-from runner.config.arms import build_loaded, build_robot, read_outline
+from runner.config.arms import RobotOutline, build_loaded, build_robot, read_outline
 from runner.config.composed import Composed
 from runner.config.cross_checks import (
     check_computation,
@@ -24,11 +24,11 @@ from runner.config.desired_motion import check_path, check_points, check_repeats
 from runner.config.flexibility import check_flexible_joints, check_flexible_links
 from runner.config.groups import read_groups
 from runner.config.input_shaper import shape
-from runner.config.joints import NoiseConfig, TorqueLimitsConfig, exact_encoders
 from runner.config.limits import check_memory
 from runner.config.parsing import Parts, Problems, require
 from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
+from runner.config.settings import TorqueLimitsConfig
 from runner.config.timing import Steps, Timing, count_steps, count_ticks
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig
@@ -36,6 +36,7 @@ from runner.plants.kinds import HasServo, RotatesMountedBase
 from runner.plugins.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.robot import Robot, end_points
+from runner.sensing import ForceTorqueConfig, JointTorqueConfig, NoiseConfig
 from runner.trajectories import TRAJECTORIES, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 from runner.trajectories.kinds import HasStart
@@ -61,12 +62,13 @@ def validate(composed: Composed) -> RunConfig:
     plant, controller = groups.get("plant"), groups.get("controller")
     problems.recall(_check_payload, robot, groups.get("mismatch"))
     outline = problems.recall(read_outline, robot, composed.config_dirs)
-    noise = problems.recall(NoiseConfig.by_joint, groups.get("noise"), outline)
+    noise = problems.recall(_by_joint, groups.get("noise"), outline)
+    torque_sensor = problems.recall(_by_joint, groups.get("joint_torque_sensor"), outline)
     torque_limits = problems.recall(TorqueLimitsConfig.by_joint, groups.get("torque_limits"), outline)
     problems.recall(_check_commands, plant, controller)
     steps = problems.recall(count_steps, outline, plant, controller)
     problems.report()
-    made_of = (outline, require(settings).gravity, *([] if sensor is None else [sensor]))
+    made_of = (outline, require(settings).gravity, *([sensor] if isinstance(sensor, ForceTorqueConfig) else []))
     arm = problems.recall(build_robot, *made_of)
     problems.recall(check_points, arm, groups.get("trajectory"))
     problems.recall(_check_mass, arm, plant)
@@ -76,7 +78,7 @@ def validate(composed: Composed) -> RunConfig:
     config = RunConfig(
         **{name: group for name, group in groups.items() if name in _PARTS}
         | built
-        | {"noise": noise or exact_encoders(require(arm).model.nq), "torque_limits": torque_limits}
+        | {"noise": noise, "joint_torque_sensor": torque_sensor, "torque_limits": torque_limits}
         | {"loaded": loaded, "notch": groups.get("notch"), "composed": composed}
     )
     for check in _CHECKS:
@@ -107,7 +109,6 @@ def _build(groups: Parts, arm: Robot, steps: Steps, problems: Problems) -> Parts
         "loops": loops,
         "commands": CONTROLLERS.commands(controller.kind),
         "path": path,
-        "joint_torques": groups["joint_torque_sensor"].by_joint(arm),
         "timing": Timing(**vars(steps), late=require(late), even=computation_of(plant).is_even, ticks=require(ticks)),
         "ignore_base_rotation": ignore_base_rotation,
     }
@@ -133,9 +134,18 @@ _CHECKS: Sequence[Callable[[RunConfig], object]] = (
 )  # fmt: skip
 
 
-def _check_payload(robot: RobotConfig, mismatch: MismatchConfig) -> None:
+def _by_joint(sensor: KindConfig, outline: RobotOutline) -> KindConfig | None:
+    """Return the errors of each joint's sensor, None without sensors; the config itself for user-supplied sensors.
+
+    Raises:
+        ConfigError: for values that do not fit the robot.
+    """
+    return sensor.by_joint(outline.joint_units) if isinstance(sensor, NoiseConfig | JointTorqueConfig) else sensor
+
+
+def _check_payload(robot: RobotConfig, mismatch: KindConfig) -> None:
     least = -robot.payload.mass
-    if mismatch.payload < least:
+    if isinstance(mismatch, MismatchConfig) and mismatch.payload < least:
         raise ConfigError(
             f"mismatch.payload: {mismatch.payload:g} kg is less than nothing of the true payload, "
             f"robot.payload.mass with {-least:g} kg; allowed: {least:g} or more"

@@ -1,9 +1,8 @@
 """Metrics of runs, and their summary over the repetitions of a run."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from importlib import import_module
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from runner.metrics.family import MetricContext, OwnFamily, evaluate_added
 from runner.plugins import metric_units
 from runner.trajectories.shaped import Shifted
 
-_FAMILIES: list[OwnFamily] = [import_module(name) for name in metric_units.FAMILIES]
+_FAMILIES: Sequence[OwnFamily] = metric_units.METRICS.built_in()
 MOST_LISTED = 2000
 """Largest number of repetitions whose values a record lists; above it, the record has their quantiles."""
 

@@ -2,41 +2,37 @@
 
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
-from importlib import import_module
 from types import ModuleType
 
 from runner.base.errors import ConfigError
-from runner.plugins.discovery import added_parts, load
+from runner.plugins.registry import Kinds
 
-FAMILIES = (
-    "runner.metrics.positioning",
-    "runner.metrics.tracking",
-    "runner.metrics.effort",
-    "runner.metrics.reaching",
-    "runner.metrics.contact",
+METRICS = Kinds(
+    "metric",
+    {name: f"runner.metrics.{name}" for name in ("positioning", "tracking", "effort", "reaching", "contact")},
 )
-"""Modules of the built-in families of metrics, in the order in which reports list them."""
+"""Families of metrics, in the order in which reports list them; all of them measure every run."""
 
 
 def families() -> list[ModuleType]:
-    """Return the modules of all families of metrics, the built-in ones first.
-
-    Raises:
-        ConfigError: if a user-supplied module cannot be imported, or has no UNITS or no `evaluate`.
-    """
-    return [*map(import_module, FAMILIES), *added_families()]
+    """Return the modules of all families of metrics, the built-in ones first; see `added_families`."""
+    return [*METRICS.built_in(), *added_families()]
 
 
 def added_families() -> list[ModuleType]:
-    """Return the modules of the user-supplied families of metrics; see `families`."""
-    return [_load(point.name, point.value) for point in added_parts("metric")]
+    """Return the modules of the user-supplied families of metrics.
 
-
-def _load(name: str, place: str) -> ModuleType:
-    module = load("metric", name, place)
-    if not (isinstance(getattr(module, "UNITS", None), Mapping) and callable(getattr(module, "evaluate", None))):
-        raise ConfigError(f"metric {name}: module {place} needs UNITS, a unit for each name, and evaluate")
-    return module
+    Raises:
+        ConfigError: if a module cannot be imported, or has no UNITS or no `evaluate`.
+    """
+    modules = METRICS.added()
+    for module in modules:
+        if not (isinstance(getattr(module, "UNITS", None), Mapping) and callable(getattr(module, "evaluate", None))):
+            name = module.__name__
+            raise ConfigError(
+                f"metric {name.rpartition('.')[2]}: module {name} needs UNITS, a unit for each name, and evaluate"
+            )
+    return modules
 
 
 def units() -> dict[str, str]:

@@ -7,6 +7,7 @@ can add kinds: see runner/plugins/discovery.py.
 
 import copy
 from collections.abc import Callable, Mapping
+from importlib import import_module
 from types import ModuleType
 from typing import Concatenate, Generic, ParamSpec, Protocol, TypeVar
 
@@ -39,10 +40,11 @@ class Kinds:
     Args:
         group: Name of the config group, such as "controller".
         modules: Module name of each kind.
+        default: Kind of a config without `kind`; None if `kind` must be given.
     """
 
-    def __init__(self, group: str, modules: Mapping[str, str]) -> None:
-        self.group = group
+    def __init__(self, group: str, modules: Mapping[str, str], default: str | None = None) -> None:
+        self.group, self.default = group, default
         self._modules = dict(modules)
 
     def names(self) -> list[str]:
@@ -82,9 +84,24 @@ class Kinds:
         if kind not in modules:
             if former := explain_value(self.group, kind):
                 raise ConfigError(f"{self.group}.kind: {former}")
-            known = ", ".join(self.names()) or f"none, until a plug-in is named: --plugin {self.group}=FILE.py"
-            raise ConfigError(f"{self.group}.kind: '{kind}' is unknown{nearest(kind, self.names())}; known: {known}")
+            known = ", ".join(self.names())
+            more = f"; a plug-in adds its kind: --plugin {self.group}=FILE.py" if self.default else ""
+            raise ConfigError(
+                f"{self.group}.kind: '{kind}' is unknown{nearest(kind, self.names())}; known: {known}{more}"
+            )
         return load(self.group, kind, modules[kind])
+
+    def built_in(self) -> list[ModuleType]:
+        """Return the modules of the built-in kinds."""
+        return [import_module(module) for module in self._modules.values()]
+
+    def added(self) -> list[ModuleType]:
+        """Return the modules of the user-supplied kinds.
+
+        Raises:
+            ConfigError: if one cannot be imported.
+        """
+        return [load(self.group, point.name, point.value) for point in added_parts(self.group)]
 
     def _plugins(self) -> dict[str, str]:
         return {point.name: point.value for point in added_parts(self.group)}
@@ -99,12 +116,17 @@ class Registry(Kinds, Generic[C, P, T]):
         group: Name of the config group, such as "controller".
         modules: Module name of each kind.
         guard: Function of a user-supplied part and the arguments of `build`; returns the guarded part.
+        default: Kind of a config without `kind`; None if `kind` must be given.
     """
 
     def __init__(
-        self, group: str, modules: Mapping[str, str], guard: Callable[Concatenate[T, C, P], T] | None = None
+        self,
+        group: str,
+        modules: Mapping[str, str],
+        guard: Callable[Concatenate[T, C, P], T] | None = None,
+        default: str | None = None,
     ) -> None:
-        super().__init__(group, modules)
+        super().__init__(group, modules, default)
         self.guard = guard
 
     def build(self, config: C, *args: P.args, **kwargs: P.kwargs) -> T:

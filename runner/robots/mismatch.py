@@ -1,7 +1,7 @@
 """Model mismatch between the controllers' nominal model and the simulated robot."""
 
 import copy
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
@@ -20,6 +20,7 @@ class MismatchConfig(StrictModel):
     """Error of the controllers' nominal model; with all factors 1 and all other values 0, the model is exact.
 
     Attributes:
+        kind: Name in the registry.
         mass: Factor on the mass and inertia of every moving link, including its load.
         centre_of_mass: Factor on the distance of every link's centre of mass from its joint.
         length: Factor on every length from the base to the tip, and therefore on the tip position.
@@ -30,6 +31,7 @@ class MismatchConfig(StrictModel):
             factors. It is uniformly distributed and drawn again for each link in each repetition.
     """
 
+    kind: Literal["factors"] = "factors"
     mass: PositiveFloat
     centre_of_mass: NonNegativeFloat
     length: PositiveFloat
@@ -42,7 +44,7 @@ NONE = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.0, gravity=1.0, pay
 
 
 def _check_nominal(nominal: Any, _: object, robot: Robot, *__: object) -> Robot:
-    """Return the checked nominal robot of a mismatch plug-in.
+    """Return the checked nominal robot of a user-supplied mismatch.
 
     Raises:
         ConfigError: if it is not a robot with the stages and joints of the simulated one, or if its masses or lengths
@@ -62,36 +64,25 @@ def _check_nominal(nominal: Any, _: object, robot: Robot, *__: object) -> Robot:
     return nominal
 
 
-MISMATCHES = Registry[KindConfig, [Robot, np.random.Generator], Robot]("mismatch", {}, _check_nominal)
-"""Mismatch plug-ins: `build` takes the simulated robot and a random generator, and returns the nominal robot."""
+MISMATCHES = Registry[KindConfig, [Robot, np.random.Generator], Robot](
+    "mismatch", {"factors": "runner.robots.mismatch"}, _check_nominal, default="factors"
+)
+"""`build` takes the simulated robot and a random generator, and returns the nominal robot."""
 
 
-def nominal_robot(
-    robot: Robot,
-    mismatch: MismatchConfig,
-    payload_position: FloatArray,
-    generator: np.random.Generator,
-    plugged: KindConfig | None = None,
-) -> Robot:
-    """Return the nominal robot, with the mismatch applied to the model of the robot and of each stage.
+CONFIG = MismatchConfig
 
-    Args:
-        robot: The simulated robot.
-        mismatch: Error of the nominal model.
-        payload_position: Position of the payload in the tip's frame, shape (3,), in m.
-        generator: Random generator.
-        plugged: Config of a mismatch plug-in, which replaces `mismatch`.
-    """
-    if plugged is not None:
-        return MISMATCHES.build(plugged, robot, generator)
-    if mismatch == NONE:
+
+def build(config: MismatchConfig, robot: Robot, generator: np.random.Generator) -> Robot:
+    """Return the nominal robot, with the mismatch applied to the model of the robot and of each stage."""
+    if config == NONE:
         return robot
-    factors = 1.0 + mismatch.spread * generator.uniform(-1.0, 1.0, (robot.model.nq, 2))
+    factors = 1.0 + config.spread * generator.uniform(-1.0, 1.0, (robot.model.nq, 2))
 
     def change(model: RobotModel, joints: slice, bears_payload: bool) -> RobotModel:
-        loaded = model.with_payload(mismatch.payload, payload_position) if bears_payload else model
-        masses, centres = (factors[joints] * (mismatch.mass, mismatch.centre_of_mass)).T
-        return scale_model(loaded, masses, centres, np.full(len(masses) + 1, mismatch.length), mismatch.gravity)
+        loaded = model.with_payload(config.payload, np.array(robot.payload_position)) if bears_payload else model
+        masses, centres = (factors[joints] * (config.mass, config.centre_of_mass)).T
+        return scale_model(loaded, masses, centres, np.full(len(masses) + 1, config.length), config.gravity)
 
     return with_models(robot, change)
 

@@ -49,12 +49,14 @@ class Robot:
         model: Rigid-body model of the whole robot; its tip is that of the last stage.
         stages: The arms.
         flange: Frame on which a tool and a force/torque sensor are fixed; the tip itself without a tool.
+        payload_position: Position of the payload in the tip's frame, in m.
     """
 
     urdf: str
     model: RobotModel
     stages: tuple[Stage, ...]
     flange: str
+    payload_position: tuple[float, ...] = (0.0, 0.0, 0.0)
 
     @property
     def home(self) -> FloatArray:

@@ -1,6 +1,6 @@
 """Sensors: encoders, joint torques, wrist force/torque and tip position."""
 
-from runner.sensing.encoders import EncoderNoise, JointEncoders, encoder_errors
+from runner.sensing.encoders import EncoderNoise, JointEncoders, NoiseConfig, encoder_errors
 from runner.sensing.endpoint import EndpointSensorConfig
 from runner.sensing.force_torque import ForceTorqueConfig, ForceTorqueSensor
 from runner.sensing.joint_torque import JointTorqueConfig, JointTorqueSensor
@@ -18,6 +18,7 @@ __all__ = [
     "JointEncoders",
     "JointTorqueConfig",
     "JointTorqueSensor",
+    "NoiseConfig",
     "TorqueSensors",
     "WristSensor",
     "encoder_errors",

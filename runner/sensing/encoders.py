@@ -1,12 +1,18 @@
 """Joint encoders: noise, bias and resolution of positions, with exact or estimated velocities."""
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
+from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
+from runner.base.errors import ConfigError
+from runner.schema.model import StrictModel
+from runner.schema.units import JointPosition, RadiansPerSecond
+from runner.schema.values import FinitePerStage, NonNegativePerStage, by_stage
 from runner.sensing.streams import generators
 from runner.sensing.velocity import DEFAULT_BANDWIDTH, State, Velocity, first_state, gains, next_velocity
 
@@ -16,6 +22,7 @@ class EncoderNoise:
     """Noise, bias and resolution of joint encoders.
 
     Attributes:
+        kind: Name in the registry.
         position: Half-width (uniform) or standard deviation (gaussian) of the position noise of each joint,
             shape (nq,), in rad.
         bias: Constant error of the measured position of each joint, as from a wrong zero, shape (nq,), in rad.
@@ -25,12 +32,85 @@ class EncoderNoise:
         velocity_bandwidth: Bandwidth of the velocity estimate, in rad/s, if it has one.
     """
 
+    kind: ClassVar[str] = "encoders"
     position: FloatArray
     bias: FloatArray
     resolution: FloatArray
     distribution: Literal["uniform", "gaussian", "none"]
     velocity: Velocity
     velocity_bandwidth: float = DEFAULT_BANDWIDTH
+
+
+class NoiseConfig(StrictModel):
+    """Noise, bias and resolution of the joint encoders.
+
+    Attributes:
+        kind: Name in the registry.
+        position: Half-width (uniform) or standard deviation (gaussian) of the joint-position noise, in rad; m for
+            prismatic joints. By stage if the robot has several.
+        distribution: Distribution of the noise; with none, `position` has no effect.
+        bias: Constant error of the measured joint positions, such as a wrong zero, in rad; m for prismatic joints. By
+            stage if the robot has several. It has either sign and is the same at every tick and in every repetition.
+        resolution: Step to which the biased, noisy joint positions are rounded, in rad; m for prismatic joints. By
+            stage if the robot has several; 0 for no rounding.
+        velocity: Source of joint velocities: exact, differences of the measured positions, the same after a first-order
+            low-pass, or a Luenberger observer of each joint.
+        velocity_bandwidth: Cut-off of the low-pass, and both poles of the observer, in rad/s.
+    """
+
+    kind: Literal["encoders"] = "encoders"
+    position: JointPosition[NonNegativePerStage]
+    distribution: Literal["uniform", "gaussian", "none"]
+    bias: JointPosition[FinitePerStage] = 0.0
+    resolution: JointPosition[NonNegativePerStage] = 0.0
+    velocity: Velocity
+    velocity_bandwidth: RadiansPerSecond[PositiveFloat] = DEFAULT_BANDWIDTH
+
+    def by_joint(self, units: Mapping[str, Mapping[str, str]]) -> EncoderNoise:
+        """Return the noise, bias and resolution of each joint of a robot.
+
+        Args:
+            units: Unit of the position of each joint by name, rad or m, by stage.
+
+        Raises:
+            ConfigError: for values that do not fit the robot's stages.
+        """
+        # An omitted key is zero, also for a robot of several stages.
+        zero: float | dict[str, float] = dict.fromkeys(units, 0.0) if len(units) > 1 else 0.0
+        given = {"bias": self.bias, "resolution": self.resolution}
+        values = [("noise.position", self.position)]
+        values += [(f"noise.{key}", own if key in self.model_fields_set else zero) for key, own in given.items()]
+        found: list[FloatArray] = []
+        problems: list[str] = []
+        for key, value in values:
+            try:
+                found.append(_by_joint(key, value, units))
+            except ConfigError as error:
+                problems += error.problems
+        if problems:
+            raise ConfigError(problems)
+        position, bias, resolution = found
+        return EncoderNoise(position, bias, resolution, self.distribution, self.velocity, self.velocity_bandwidth)
+
+
+def _by_joint(key: str, value: float | Mapping[str, float], units: Mapping[str, Mapping[str, str]]) -> FloatArray:
+    """Return the value of each joint; reject an error of more than half a turn of a revolute joint."""
+    values: list[float] = by_stage(key, value, list(units))
+    problems = [
+        f"{key}{f'.{stage}' if len(units) > 1 else ''}: {each:g} rad is more than half a turn, and no "
+        f"measurement of an angle; degrees? write {each:g}deg"
+        for stage, each in zip(units, values, strict=True)
+        if abs(each) > math.pi and "rad" in units[stage].values()
+    ]
+    if problems:
+        raise ConfigError(problems)
+    return np.repeat(values, [len(joints) for joints in units.values()])
+
+
+def exact_encoders(joints: int) -> EncoderNoise:
+    """Return zero noise for a number of joints."""
+    zero = np.zeros(joints)
+    return EncoderNoise(zero, zero, zero, "none", "exact")
 
 
 class JointEncoders:
@@ -69,6 +149,16 @@ class JointEncoders:
         state = first_state(self._way, measured) if self._state is None else self._state
         velocity, self._state = next_velocity(self._way, self._gains, self._period, measured, state)
         return measured, velocity
+
+
+CONFIG = NoiseConfig
+
+
+def build(
+    noise: EncoderNoise, joints: tuple[str, ...], ticks: int, period: float, generator: np.random.Generator
+) -> JointEncoders:
+    """Build the encoders of a control loop from their noise by joint."""
+    return JointEncoders(ticks, period, noise, generator)
 
 
 def encoder_errors(noises: Sequence[EncoderNoise], seeds: Sequence[Sequence[int]], ticks: int) -> FloatArray:

@@ -1,6 +1,6 @@
 """Six-axis force/torque sensor between flange and tool."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
@@ -20,6 +20,7 @@ class ForceTorqueConfig(StrictModel):
     """Config of the sensor; lists contain Fx, Fy, Fz in N and Mx, My, Mz in N m.
 
     Attributes:
+        kind: Name in the registry.
         range: Largest absolute reading of each axis, in N and N m.
         resolution: Step of the reading of each axis, in N and N m; 0 for none.
         noise: Standard deviation of the reading of each axis, in N and N m, drawn again at each tick.
@@ -31,6 +32,7 @@ class ForceTorqueConfig(StrictModel):
         mass: Mass of the sensor, in kg; it loads the arm and does not appear in the readings.
     """
 
+    kind: Literal["force_torque"] = "force_torque"
     range: AxisWrench[Annotated[list[PositiveFloat], _Six]]
     resolution: AxisWrench[Annotated[list[NonNegativeFloat], _Six]]
     noise: AxisWrench[Annotated[list[NonNegativeFloat], _Six]]
@@ -128,3 +130,11 @@ class ForceTorqueSensor:
             for axis, unit, peak, limit in zip(AXES, UNITS, self._peak, self._range, strict=True)
             if peak > limit
         ]
+
+
+CONFIG = ForceTorqueConfig
+
+
+def build(config: ForceTorqueConfig, ticks: int, period: float, generator: np.random.Generator) -> ForceTorqueSensor:
+    """Build the sensor of a run."""
+    return ForceTorqueSensor(ticks, period, config, generator)

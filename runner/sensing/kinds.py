@@ -1,4 +1,4 @@
-"""Sensor protocols and the registries of sensor plug-ins."""
+"""Sensor protocols, and the registries of sensors."""
 
 from typing import Any, Protocol
 
@@ -51,16 +51,25 @@ def _check_measurement(
 
 
 NOISES = Registry[KindConfig, [tuple[str, ...], int, float, np.random.Generator], Encoders](
-    "noise", {}, Guard("noise", measure=Method(_check_measurement))
+    "noise",
+    {"encoders": "runner.sensing.encoders"},
+    Guard("noise", measure=Method(_check_measurement)),
+    default="encoders",
 )
 """`build` takes the joint names, the number of measurements, the time between two in s, and a random generator."""
 
 WRIST_SENSORS = Registry[KindConfig, [int, float, np.random.Generator], WristSensor](
-    "wrist_sensor", {}, Guard("wrist_sensor", read=Method(like(1)))
+    "wrist_sensor",
+    {"force_torque": "runner.sensing.force_torque"},
+    Guard("wrist_sensor", read=Method(like(1))),
+    default="force_torque",
 )
 """`build` takes the number of readings, the time between two in s, and a random generator."""
 
 JOINT_TORQUE_SENSORS = Registry[KindConfig, [tuple[str, ...], int, np.random.Generator], TorqueSensors](
-    "joint_torque_sensor", {}, Guard("joint_torque_sensor", read=Method(like(1)))
+    "joint_torque_sensor",
+    {"joint_torque": "runner.sensing.joint_torque"},
+    Guard("joint_torque_sensor", read=Method(like(1))),
+    default="joint_torque",
 )
 """`build` takes the joint names, the number of readings, and a random generator."""

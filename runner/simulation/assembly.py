@@ -22,7 +22,7 @@ from runner.plants.contact_plant import WithTipContact
 from runner.plants.kinds import HasServo
 from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo
-from runner.robots.mismatch import nominal_robot
+from runner.robots.mismatch import MISMATCHES
 from runner.robots.robot import Robot
 from runner.sensing.streams import MISMATCH
 from runner.simulation.closed_loop import ClosedLoop
@@ -108,7 +108,7 @@ def describe_loop(config: RunConfig, repetition: int = 0) -> LoopProgram | None:
         return None
     loops = _build_nominal(config, repetition)[1]
     commands = find_commands(
-        config.arm, config.ignore_base_rotation, loops, config.timing.tick, config.noise, config.torque_limits
+        config.arm, config.ignore_base_rotation, loops, config.timing.tick, config.encoder_noise, config.torque_limits
     )
     motion = PLANTS.motion(config.plant, config.arm)
     return None if commands is None or motion is None else describe_program(commands, motion, config.timing)
@@ -130,8 +130,7 @@ def find_start(config: RunConfig) -> FloatArray:
 def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
     """Return the nominal robot of the controllers, and their loops."""
     generator = np.random.default_rng([config.settings.seed, repetition, MISMATCH])
-    payload = np.array(config.robot.payload.position)
-    nominal = nominal_robot(config.arm, config.mismatch, payload, generator, config.plugged.get("mismatch"))
+    nominal = MISMATCHES.build(config.mismatch, config.arm, generator)
     nominal = with_nominal_links(config, with_nominal_motors(config, nominal))
     loops = config.loops
     if nominal is not config.arm:
@@ -147,7 +146,7 @@ def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> LoopProgram | Compil
     if config.commands != "torque" or not config.compilable or is_flexible(config):
         return None
     commands = find_commands(
-        config.arm, config.ignore_base_rotation, loops, config.timing.tick, config.noise, config.torque_limits
+        config.arm, config.ignore_base_rotation, loops, config.timing.tick, config.encoder_noise, config.torque_limits
     )
     motion = None if config.has_contact or config.loaded else PLANTS.motion(config.plant, config.arm)
     loop_program = None if motion is None else compile_program(commands, motion, config.timing)

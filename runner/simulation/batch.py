@@ -110,7 +110,7 @@ class BatchSimulator:
         if added_parts("metric") or not config.compilable:  # one trace at a time; not compiled
             return None
         numbers = range(config.settings.repetitions) if chosen is None else chosen
-        if config.mismatch.spread == 0.0:
+        if not config.varies_model:
             alike = self._loop(config, numbers[0])
             return None if alike is None else [RunSpec(config, number, *alike) for number in numbers]
         found = []
@@ -123,7 +123,7 @@ class BatchSimulator:
 
     def _loop(self, config: RunConfig, repetition: int) -> tuple[LoopProgram, FloatArray] | None:
         """Return the closed loop of a repetition and its start; see assemble_program."""
-        drawn = (config.settings.seed, repetition) if config.mismatch.spread > 0.0 else ()  # one model each
+        drawn = (config.settings.seed, repetition) if config.varies_model else ()  # one model each
         return self.memory.known(("loop", *drawn, *config.cache_key), lambda: assemble_program(config, repetition))
 
     def simulate(self, runs: Sequence[RunSpec]) -> Iterator[BatchResult | tuple[int, Trace]]:
@@ -150,7 +150,7 @@ class BatchSimulator:
         alike = all(path is paths[0] for path in paths)
         errors = [
             encoder_errors(
-                [run.config.noise for run in runs],
+                [run.config.encoder_noise for run in runs],
                 [(run.config.settings.seed, run.repetition, number) for run in runs],
                 (rows - 1) // loop.every + 1,
             )

@@ -71,7 +71,7 @@ def _simulate_one_by_one(config: RunConfig) -> RunResult:
     notices: list[str] = []
     try:
         for repetition in range(repetitions):
-            if repetition > 0 and (config.mismatch.spread > 0.0 or "mismatch" in config.plugged):  # new model
+            if repetition > 0 and config.varies_model:  # new model
                 last, loop = loop, assemble(config, repetition)
                 last.close()
             trace, told = simulate_repetition(loop, config, repetition)

@@ -10,20 +10,9 @@ from runner.config.cross_checks import computation_of, endpoint_ticks
 from runner.config.run import RunConfig
 from runner.controllers.controller import ControlLaw
 from runner.plants import Plant
+from runner.plugins.registry import KindConfig
 from runner.robots.model import RobotModel
-from runner.sensing import (
-    JOINT_TORQUE_SENSORS,
-    NOISES,
-    WRIST_SENSORS,
-    EncoderNoise,
-    Encoders,
-    ForceTorqueConfig,
-    ForceTorqueSensor,
-    JointEncoders,
-    JointTorqueSensor,
-    TorqueSensors,
-    WristSensor,
-)
+from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, Encoders, TorqueSensors, WristSensor
 from runner.sensing.endpoint import EndpointSensor
 from runner.sensing.streams import COMPUTATION, JOINT_TORQUES, TIP
 from runner.simulation.closed_loop import ClosedLoop
@@ -138,14 +127,11 @@ def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: 
 
     The noise depends only on (seed, repetition), and does not change other draws.
     """
-    plugged = config.plugged.get("joint_torque_sensor")
-    if config.joint_torques is None and plugged is None:
+    if config.joint_torque_sensor is None:
         return None
     generator = np.random.default_rng([config.settings.seed, repetition, JOINT_TORQUES])
-    if plugged is not None:
-        return JOINT_TORQUE_SENSORS.build(plugged, closed.robot.model.joint_names, closed.ticks + 1, generator)
-    assert config.joint_torques is not None  # noqa: S101 - one of them is set
-    return JointTorqueSensor(closed.ticks + 1, *config.joint_torques, generator)
+    joints = closed.robot.model.joint_names
+    return JOINT_TORQUE_SENSORS.build(config.joint_torque_sensor, joints, closed.ticks + 1, generator)
 
 
 def make_sensors(
@@ -153,30 +139,15 @@ def make_sensors(
 ) -> tuple[
     Sequence[Encoders], WristSensor | None, TorqueSensors | None, Mapping[str, MeasuredTip], CommandTiming | None
 ]:
-    """Build what differs between repetitions: encoders; sensors at wrist, joints and tip; and command timing.
-
-    Sensors from plug-ins get random numbers from the same seeds as the built-in ones.
-    """
-    seed, plugged = config.settings.seed, config.plugged
-    encoders: Sequence[Encoders] = make_encoders(closed, config.noise, seed, repetition)
-    if "noise" in plugged:
-        joints = closed.robot.model.joint_names
-        encoders = [
-            NOISES.build(
-                plugged["noise"],
-                joints,
-                closed.ticks // closed.every(loop) + 1,
-                loop.period,
-                np.random.default_rng([seed, repetition, place]),
-            )
-            for place, loop in enumerate(closed.loops)
-        ]
-    wrist: WristSensor | None = make_wrist_sensor(closed, config.wrist_sensor, seed, repetition)
-    if wrist is not None and "wrist_sensor" in plugged:
-        generator = np.random.default_rng([seed, repetition, len(closed.loops)])
-        wrist = WRIST_SENSORS.build(plugged["wrist_sensor"], closed.ticks + 1, closed.tick, generator)
-    torques, tips = make_joint_torque_sensor(closed, config, repetition), make_measured_tips(closed, config, repetition)
-    return encoders, wrist, torques, tips, make_command_timing(closed, config, repetition)
+    """Build what differs between repetitions: encoders; sensors at wrist, joints and tip; and command timing."""
+    seed = config.settings.seed
+    return (
+        make_encoders(closed, config.noise, seed, repetition),
+        make_wrist_sensor(closed, config.wrist_sensor, seed, repetition),
+        make_joint_torque_sensor(closed, config, repetition),
+        make_measured_tips(closed, config, repetition),
+        make_command_timing(closed, config, repetition),
+    )
 
 
 def make_command_timing(closed: ClosedLoop, config: RunConfig, repetition: int) -> CommandTiming | None:
@@ -196,28 +167,27 @@ def make_command_timing(closed: ClosedLoop, config: RunConfig, repetition: int) 
     return CommandTiming([loop.joints for loop in closed.loops], rows)
 
 
-def make_encoders(closed: ClosedLoop, noise: EncoderNoise, seed: int, repetition: int) -> list[JointEncoders]:
-    """Build the built-in joint measurement of each loop for one repetition.
+def make_encoders(closed: ClosedLoop, noise: KindConfig, seed: int, repetition: int) -> list[Encoders]:
+    """Build the joint measurement of each loop for one repetition.
 
     The noise depends only on (seed, repetition) and the loop's index. It starts with the same values whatever the
     length of the run and the periods of other loops, so runs can be compared in pairs.
     """
     return [
-        JointEncoders(
+        NOISES.build(
+            noise,
+            closed.robot.model.joint_names,
             closed.ticks // closed.every(loop) + 1,
             loop.period,
-            noise,
             np.random.default_rng([seed, repetition, place]),
         )
         for place, loop in enumerate(closed.loops)
     ]
 
 
-def make_wrist_sensor(
-    closed: ClosedLoop, sensor: ForceTorqueConfig, seed: int, repetition: int
-) -> ForceTorqueSensor | None:
-    """Build the built-in force/torque sensor of one repetition, with noise as for encoders; None without contact."""
+def make_wrist_sensor(closed: ClosedLoop, sensor: KindConfig, seed: int, repetition: int) -> WristSensor | None:
+    """Build the force/torque sensor of one repetition, with noise as for encoders; None without contact."""
     if closed.interaction is None:
         return None
     generator = np.random.default_rng([seed, repetition, len(closed.loops)])
-    return ForceTorqueSensor(closed.ticks + 1, closed.tick, sensor, generator)
+    return WRIST_SENSORS.build(sensor, closed.ticks + 1, closed.tick, generator)

@@ -26,7 +26,7 @@ _TABLE = """
         uncertainty=repeatability
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
-    config: arms calibration cross_checks desired_motion flexibility groups input_shaper joints parsing
+    config: arms calibration cross_checks desired_motion flexibility groups input_shaper parsing
         robot=config.robot run settings timing validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer kinds=controllers.kinds notch=controllers.notch

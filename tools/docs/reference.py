@@ -102,15 +102,16 @@ def _keys() -> Iterator[str]:
     yield _table("robot", OneArmConfig, defaults)
     yield "A robot of arms that ride on each other has `robot.stages.NAME` for each in place of an arm's own keys:\n\n"
     yield _table("robot.stages.NAME", StageConfig, {**defaults, "mount": None})
-    kinds = {group: known for group, known in GROUPS.items() if isinstance(known, Kinds)}
+    kinds = {group: known for group, known in GROUPS.items() if isinstance(known, Kinds) and known.default is None}
     for group, registry in {**kinds, "calibration": CALIBRATIONS}.items():
         yield f"### {group}\n\n" + _options(group)
         for kind in (kind for kind in registry.names() if registry.is_ours(kind)):
             yield f"#### {group}.kind: {kind}\n\n"
             yield _table(group, registry.config_model(kind), _of_kind(group, kind))
-    for group, model in GROUPS.items():
-        if isinstance(model, Kinds) or group in _ELSEWHERE:
+    for group, known in GROUPS.items():
+        if group in kinds or group in _ELSEWHERE:
             continue
+        model = known.config_model(str(known.default)) if isinstance(known, Kinds) else known
         option = _OPTION.get(group, "none")
         yield f"### {group}\n\n{_options(group)}Defaults are those of `{group}={option}`.\n\n"
         yield _table(group, model, _read(f"{group}/{option}"))
@@ -159,11 +160,11 @@ def _rows(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> 
     for name, field in model.model_fields.items():
         key = f"{group}.{name}" if group else name
         inner = nested_model(field.annotation)
-        given = defaults.get(name)
+        given = defaults.get(name, None if field.is_required() else field.get_default())
         if inner is not None and isinstance(given, Mapping):
             yield from _rows(key, inner, given)
             continue
-        default = f"`{_inline(given)}`" if name in defaults else "must be given"
+        default = "must be given" if name not in defaults and field.is_required() else f"`{_inline(given)}`"
         yield f"`{key}`", _null(said[name]), describe(field.annotation, field.metadata), default
         if inner is not None and given is None:
             yield from _rows(key, inner, {})

@@ -173,9 +173,9 @@ def _why_not(config: RunConfig) -> str:
     if config.has_contact:
         return f"environment {config.environment.kind}: runs in which the tip feels something are not compiled whole"
     if config.plugged:
-        kinds = ", ".join(f"{group}={part.kind}" for group, part in config.plugged.items())
+        kinds = ", ".join(f"{group}={kind}" for group, kind in config.plugged.items())
         return f"runs with {kinds} of a plug-in are not compiled"
-    if (config.noise.resolution > 0.0).any():
+    if (config.encoder_noise.resolution > 0.0).any():
         return "noise.resolution rounds the measured positions to steps, which have no derivative; set it to 0"
     return ""
 

@@ -38,7 +38,7 @@ class Scene(RunSpec):
         loops, settings = self.loop_program.commands.loops, self.config.settings
         errors = [
             encoder_errors(
-                [self.config.noise],
+                [self.config.encoder_noise],
                 [(settings.seed, self.repetition, number)],
                 self.config.timing.ticks // loop.every + 1,
             )[0]

@@ -135,7 +135,7 @@ def with_numbers(override: str) -> str:
 
 def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Iterator[type[StrictModel]]:
     """Yield the models of a group, or only that of the chosen kind."""
-    from runner.config.groups import GROUPS, PLUGGED
+    from runner.config.groups import GROUPS
     from runner.config.robot import OneArmConfig, StageConfig
     from runner.config.settings import RunSettings
     from runner.plugins.registry import Kinds
@@ -153,8 +153,5 @@ def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Itera
         for kind in known.names() if chosen is None else [chosen]:
             with contextlib.suppress(ConfigError):  # a user-supplied part that cannot be imported
                 yield known.config_model(kind)
-    elif group in PLUGGED and chosen is not None:
-        with contextlib.suppress(ConfigError):
-            yield PLUGGED[group][0].config_model(chosen)
     elif known is not None:
         yield known

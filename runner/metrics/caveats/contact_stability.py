@@ -18,6 +18,7 @@ from runner.plants.kinds import HasServo
 from runner.plants.servo import ServoLaw
 from runner.plants.servo_contact_stability import ServoContact
 from runner.robots.task_space import mass_along, tip_mobility
+from runner.sensing import ForceTorqueConfig
 
 
 def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:
@@ -28,13 +29,14 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         q_start: Joint positions at the start, shape (nq,), in rad.
     """
     plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
+    sensor = config.wrist_sensor
     if not isinstance(wall, WallConfig) or not isinstance(law, CommandsForce) or not isinstance(plant, HasServo):
         return None
     if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
         return None
-    if config.robot.tool is None:
+    if config.robot.tool is None or not isinstance(sensor, ForceTorqueConfig):
         return None
-    low_pass = config.wrist_sensor.low_pass
+    low_pass = sensor.low_pass
     return ServoContact(
         arm=config.arm,
         q=q_start,
@@ -65,6 +67,8 @@ def force_contact(config: RunConfig, q_start: FloatArray) -> float | None:
     """
     wall, law, loop, timing = config.environment, config.controller, config.loops[-1], config.timing
     if not isinstance(wall, WallConfig) or not isinstance(law, HybridForceConfig) or law.force_source != "wrist":
+        return None
+    if not isinstance(config.wrist_sensor, ForceTorqueConfig):
         return None
     normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
     mass = mass_along(tip_mobility(config.arm.model, q_start, loop.joints.start), normal)

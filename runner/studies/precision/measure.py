@@ -20,7 +20,7 @@ from runner.config.validation import validate
 from runner.plants import Plant
 from runner.plants.rk4 import Rk4
 from runner.robots.model import RobotModel
-from runner.sensing import JointEncoders
+from runner.sensing import Encoders
 from runner.simulation import provenance
 from runner.simulation.assembly import assemble
 from runner.simulation.closed_loop import ClosedLoop
@@ -126,5 +126,5 @@ def _simulated(config: RunConfig, closed: ClosedLoop, plant: Plant) -> Trace:
     return simulate(replace(closed, plant=plant, compiled=None), _encoders(config, closed))
 
 
-def _encoders(config: RunConfig, closed: ClosedLoop) -> list[JointEncoders]:
+def _encoders(config: RunConfig, closed: ClosedLoop) -> list[Encoders]:
     return make_encoders(closed, config.noise, config.settings.seed, 0)

@@ -99,10 +99,26 @@ def test_a_nominal_robot_that_is_no_robot_of_the_same_joints_is_refused(checked_
         MISMATCHES.guard(replace(macro, model=wrong), None, macro, None)
 
 
-@pytest.mark.parametrize("group", ["noise", "wrist_sensor", "joint_torque_sensor", "mismatch"])
-def test_a_kind_that_no_plugin_has(cli, group):
+@pytest.mark.parametrize(
+    ("group", "known"),
+    [
+        ("noise", "encoders"),
+        ("wrist_sensor", "force_torque"),
+        ("joint_torque_sensor", "joint_torque"),
+        ("mismatch", "factors"),
+    ],
+)
+def test_a_kind_that_no_plugin_has(cli, group, known):
     ending = cli("robot=macro", f"+{group}.kind=own", "duration=0.1")
     assert ending.code == 2
     assert (
-        f"{group}.kind: 'own' is unknown; known: none, until a plug-in is named: --plugin {group}=FILE.py" in ending.err
+        f"{group}.kind: 'own' is unknown; known: {known}; a plug-in adds its kind: --plugin {group}=FILE.py"
+        in ending.err
     )
+
+
+def test_the_kind_of_a_built_in_sensor_may_be_named(checked_config):
+    named = ("+noise.kind=encoders", "+mismatch.kind=factors", "+wrist_sensor.kind=force_torque")
+    config = checked_config("robot=macro", *named, "+joint_torque_sensor.kind=joint_torque")
+    assert config.plugged == {}
+    assert config.compilable

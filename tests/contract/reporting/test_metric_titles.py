@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from runner.metrics import summary
-from runner.plugins import discovery, metric_units
+from runner.plugins import metric_units
 from runner.reporting.metric_titles import TITLES, metric_label, title
 
 
@@ -44,10 +44,7 @@ def test_a_family_from_outside_may_have_titles_of_its_own(titles, text, tmp_path
     module.write_text(
         f"UNITS = {{'way_q': 'm'}}\nTITLES = {titles}\n\n\ndef evaluate(trace, context):\n    return {{}}\n"
     )
-    monkeypatch.setattr(
-        metric_units, "added_parts", lambda group: [type("Point", (), {"name": "own", "value": str(module)})()]
-    )
-    monkeypatch.setattr(metric_units, "load", lambda group, name, value: _executed(module))
+    monkeypatch.setattr(metric_units.METRICS, "added", lambda: [_executed(module)])
     assert title("way_q_y") == text
 
 
@@ -55,7 +52,3 @@ def _executed(path):
     module = type(sys)("family")
     exec(path.read_text(), module.__dict__)
     return module
-
-
-def test_plugins_are_asked_through_the_registry():
-    assert metric_units.added_parts is discovery.added_parts

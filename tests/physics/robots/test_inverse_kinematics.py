@@ -10,7 +10,7 @@ from support.arms import model_of, urdf_of
 
 from runner.base.errors import ConfigError
 from runner.robots import RobotModel, inverse_kinematics, solve_tip_pose, solve_tip_position
-from runner.robots.mismatch import MismatchConfig, nominal_robot
+from runner.robots.mismatch import MismatchConfig, build
 from runner.robots.robot import Robot, Stage
 
 MODELS = {name: model_of(name) for name in ("macro", "mini")}
@@ -213,4 +213,4 @@ def believed_longer(model):
     stage = Stage("arm", model, XARM7_URDF, slice(0, model.nq), XARM7_HOME, None)
     longer = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.001, gravity=1.0, payload=0.0, spread=0.0)
     robot = Robot(XARM7_URDF, model, (stage,), "flange")
-    return nominal_robot(robot, longer, np.zeros(3), np.random.default_rng(0)).model
+    return build(longer, robot, np.random.default_rng(0)).model

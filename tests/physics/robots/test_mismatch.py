@@ -4,7 +4,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
-from runner.robots.mismatch import MismatchConfig, nominal_robot
+from runner.robots.mismatch import MismatchConfig, build
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
@@ -24,7 +24,7 @@ NO_DIFFERENCE = {"mass": 1.0, "centre_of_mass": 1.0, "length": 1.0, "gravity": 1
 
 def nominal_of(robot, seed=0, **terms):
     config = MismatchConfig(**(NO_DIFFERENCE | terms))
-    return nominal_robot(robot, config, np.zeros(3), np.random.default_rng(seed))
+    return build(config, robot, np.random.default_rng(seed))
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +86,7 @@ def test_a_payload_that_is_not_known_of_leaves_the_arm_without_it(checked_config
     place = "robot.payload.position=[0.1,0.2,0.3]"
     loaded, bare = (checked_config("robot=xarm7", f"robot.payload.mass={mass}", place).arm for mass in (2.0, 0.0))
     config = MismatchConfig(**(NO_DIFFERENCE | {"payload": -2.0}))
-    unaware = nominal_robot(loaded, config, np.array([0.1, 0.2, 0.3]), np.random.default_rng(0)).model
+    unaware = build(config, loaded, np.random.default_rng(0)).model
     q = np.linspace(-1.0, 1.0, 7)
     np.testing.assert_allclose(unaware.mass_matrix(q), bare.model.mass_matrix(q), atol=1e-12)
     np.testing.assert_allclose(unaware.gravity_torque(q), bare.model.gravity_torque(q), atol=1e-12)

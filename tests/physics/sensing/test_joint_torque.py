@@ -6,6 +6,7 @@ from support.arms import checked, last_of_each
 
 from runner.base.errors import ConfigError
 from runner.sensing import JointTorqueSensor
+from runner.sensing.joint_torque import JointTorqueNoise
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_joint_torque_sensor
@@ -30,11 +31,11 @@ def found(*overrides):
 
 def test_readings_have_the_errors_of_the_config():
     noise, bias = np.array([0.1, 0.0, 0.4]), np.array([0.0, -1.0, 2.0])
-    sensor = JointTorqueSensor(20000, noise, bias, np.random.default_rng(1))
+    sensor = JointTorqueSensor(20000, JointTorqueNoise(noise, bias), np.random.default_rng(1))
     errors = np.array([sensor.read(tick, np.full(3, 5.0)) - 5.0 for tick in range(20000)])
     np.testing.assert_allclose(errors.mean(axis=0), bias, atol=0.02)
     np.testing.assert_allclose(errors.std(axis=0), noise, rtol=0.03, atol=1e-12)
-    longer = JointTorqueSensor(30000, noise, bias, np.random.default_rng(1))
+    longer = JointTorqueSensor(30000, JointTorqueNoise(noise, bias), np.random.default_rng(1))
     np.testing.assert_array_equal(longer.read(7, np.zeros(3)), sensor.read(7, np.zeros(3)))
 
 

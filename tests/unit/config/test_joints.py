@@ -6,8 +6,8 @@ import pytest
 from runner.base.errors import ConfigError
 from runner.config.arms import read_outline
 from runner.config.compose.compose import compose
-from runner.config.joints import TorqueLimitsConfig
 from runner.config.parsing import group_of, parse_robot
+from runner.config.settings import TorqueLimitsConfig
 
 
 @pytest.fixture(scope="module")

@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 import pytest
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
-from runner.config.joints import NoiseConfig
 from runner.schema.values import TorquePerStage
+from runner.sensing import NoiseConfig
 from tools.docs.allowed_values import describe
 from tools.docs.reference import PAGE, meanings, reference_text
 

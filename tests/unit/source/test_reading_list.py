@@ -55,11 +55,11 @@ def test_a_value_by_joint_is_worked_out_once():
         (argument.value, path.stem)
         for path in (ROOT / "runner").rglob("*.py")
         for node in nodes(path)
-        if isinstance(node, ast.Call) and ast.unparse(node.func) in ("by_stage", "by_joint", "problems.attempt")
-        for argument in node.args
+        if isinstance(node, ast.Call | ast.Tuple)
+        for argument in (node.args if isinstance(node, ast.Call) else node.elts)
         if isinstance(argument, ast.Constant) and argument.value in ("noise.position", "torque_limits.max")
     ]
-    assert sorted(places) == [("noise.position", "joints"), ("torque_limits.max", "joints")]
+    assert sorted(places) == [("noise.position", "encoders"), ("torque_limits.max", "settings")]
 
 
 def test_every_cache_of_a_module_is_bounded():
