@@ -1,14 +1,13 @@
 """Desired motion: start configuration, and checks of reach, joint limits, period and feasibility."""
 
-import copy
 import math
+from dataclasses import replace
 from typing import Protocol, cast, runtime_checkable
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, SimulationError
-from runner.base.lazy_modules import pin
 from runner.base.limits import SAMPLES
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop, PositionController
@@ -317,7 +316,6 @@ def _check_speed(model: RobotModel, trajectory: Trajectory, times: FloatArray, q
 
 
 def _without_speed_limits(robot: Robot) -> Robot:
-    free = copy.copy(robot.model)
-    free.pin_model = pin.Model(robot.model.pin_model)
-    free.pin_model.upperVelocityLimit = np.full(robot.model.nq, 1e30)
-    return Robot(robot.urdf, free, robot.stages, robot.flange)
+    free = np.full(robot.model.nq, 1e30)
+    model = robot.model.with_change(lambda own: setattr(own, "upperVelocityLimit", free))
+    return replace(robot, model=model)

@@ -6,8 +6,8 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.environments import Environment
 from runner.environments.link_forces import LinkForces
+from runner.robots.mounting import find_tool, holding_wrench
 from runner.robots.robot import Robot
-from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.wrench import cross, wrench_transform
 
 
@@ -27,8 +27,7 @@ class Interaction:
     """
 
     def __init__(self, robot: Robot, environment: Environment | None, tick: float) -> None:
-        self._model = pin.Model(robot.model.pin_model)
-        self._data = self._model.createData()
+        self._model, self._data = robot.model.separate()
         self._environment = environment
         self._pushed = LinkForces(environment, self._model) if environment is not None and environment.points else None
         self._tick = tick

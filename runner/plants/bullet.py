@@ -15,8 +15,8 @@ from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
+from runner.robots.mounting import TOOL_MOUNT
 from runner.robots.robot import Robot
-from runner.robots.tool_link import TOOL_MOUNT
 
 
 class LinksTorque:
@@ -34,8 +34,8 @@ class LinksTorque:
 
     def __init__(self, model: RobotModel) -> None:
         self._compiled = CompiledLinksTorque.compile(model)
-        self._model = pin.Model(model.pin_model)
-        self._data, self._armature = self._model.createData(), model.armature
+        self._model, self._data = model.separate()
+        self._armature = model.armature
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Set the gravity vector in the base frame, shape (3,), in m/s^2."""

@@ -104,8 +104,7 @@ class FlexibleJoints(Plant):
     """
 
     def __init__(self, model: RobotModel, flexibility: Flexibility, step: float, steps_per_tick: int) -> None:
-        self._model = pin.Model(model.pin_model)
-        self._data = self._model.createData()
+        self._model, self._data = model.separate()
         self.flexibility, self._on = flexibility, flexibility.flexible
         self._stiffness, self._motors = flexibility.stiffness[self._on], flexibility.motors[self._on]
         self._ticks, self._free = 0, np.ones(int(self._on.sum()), dtype=bool)

@@ -71,8 +71,7 @@ class Frictional(_Friction):
 
     def __init__(self, plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
         super().__init__(plant, viscous, coulomb, tick)
-        self._model = pin.Model(model.pin_model)
-        self._data = self._model.createData()
+        self._model, self._data = model.separate()
         self._damping = tick * viscous
         self._direction = np.zeros(model.nq)
 

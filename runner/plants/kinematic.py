@@ -44,8 +44,7 @@ class Kinematic(PositionPlant):
     """
 
     def __init__(self, model: RobotModel, tick: float, ticks_per_command: int) -> None:
-        self._model = pin.Model(model.pin_model)
-        self._data = self._model.createData()
+        self._model, self._data = model.separate()
         self._tick = tick
         self._set_points = SetPoints(ticks_per_command, tick, model.velocity_limits, interpolate=True)
         self.q = np.zeros(model.nq)

@@ -16,8 +16,8 @@ from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
+from runner.robots.mounting import TOOL_MOUNT
 from runner.robots.robot import Robot
-from runner.robots.tool_link import TOOL_MOUNT
 from runner.schema.units import AxisInertia
 
 IMPLICIT_CONTACT = True  # a wall's spring and damper act in each step, from the velocity at its end

@@ -42,8 +42,7 @@ class Rk4(Plant):
 
     def __init__(self, model: RobotModel, step: float, steps_per_tick: int) -> None:
         self._compiled = CompiledStep.compile(model, step)
-        self._model = pin.Model(model.pin_model)
-        self._data = self._model.createData()
+        self._model, self._data = model.separate()
         self._step = step
         self._steps_per_tick = steps_per_tick
         self.q = np.zeros(model.nq)

@@ -97,8 +97,7 @@ class ServoLaw:
     """
 
     def __init__(self, model: RobotModel, config: ServoConfig, home: FloatArray) -> None:
-        self._model = pin.Model(model.pin_model)
-        self._data = self._model.createData()
+        self._model, self._data = model.separate()
         self._period = config.period
         self._stiffness = np.array(expand("plant.servo.stiffness", config.stiffness, model.joint_names))
         inertia = np.diagonal(model.mass_matrix(home))

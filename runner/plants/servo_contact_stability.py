@@ -15,8 +15,8 @@ from runner.base.lazy_modules import pin
 from runner.controllers.force.admittance_filter import Admittance, discretise, held_map
 from runner.controllers.stability import critical_value, spectral_radius
 from runner.plants.servo import ServoLaw
+from runner.robots.mounting import find_tool
 from runner.robots.robot import Robot
-from runner.robots.tool_link import find_tool
 
 _STEP = 1e-5  # rad and rad/s, for finite differences
 _ROUNDING = 1e-9  # of the spectral radius, which is 1 for an axis without spring

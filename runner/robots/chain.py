@@ -83,12 +83,12 @@ def stiffen_robot(robot: Robot, beams: Mapping[str, Beam]) -> Robot:
     ]
 
     def loaded(model: RobotModel, joints: slice, _: bool) -> RobotModel:
-        own = model.copy()
-        for joint, rod in rods:
-            if joints.start < joint <= joints.stop:
-                own.pin_model.appendBodyToJoint(joint - joints.start, rod, pin.SE3.Identity())
-        own._data = own.pin_model.createData()
-        return own
+        def load(own: "pin.Model") -> None:
+            for joint, rod in rods:
+                if joints.start < joint <= joints.stop:
+                    own.appendBodyToJoint(joint - joints.start, rod, pin.SE3.Identity())
+
+        return model.with_change(load)
 
     return with_models(robot, loaded)
 

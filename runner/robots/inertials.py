@@ -16,7 +16,7 @@ from runner.base.errors import ConfigError, nearest
 from runner.base.lazy_modules import pin
 from runner.base.limits import ExcessError, read_text
 from runner.base.sanitize import quoted
-from runner.robots.tree import UrdfTree
+from runner.robots.tree import UrdfTree, vector_text
 from runner.schema.model import StrictModel
 from runner.schema.values import expand
 
@@ -80,20 +80,30 @@ def replace_inertials(links: Mapping[str, ET.Element], urdf: Path, name: str) ->
     Raises:
         ConfigError: if the set does not exist, its file cannot be read, or it has a link that the URDF does not have.
     """
-    sets = read_sets("robot.inertials", set_file(urdf), _InertialSet)
-    if name not in sets:
-        there = f"sets: {', '.join(sets)}" if sets else f"there is no {set_file(urdf).name}; allowed: null"
-        raise ConfigError(f"robot.inertials: no set '{name}'{nearest(name, sets)}; {there}")
-    strange = [link for link in sets[name].links if link not in links]
+    found = _find_set("robot.inertials", set_file(urdf), _InertialSet, name, "; allowed: null").links
+    strange = [link for link in found if link not in links]
     if strange:
         raise ConfigError(
             f"robot.inertials: set '{name}' names the link '{link}', which {urdf.name} does not have"
             f"{nearest(link, links)}; links: {', '.join(links)}"
             for link in strange
         )
-    for link, values in sets[name].links.items():
+    for link, values in found.items():
         _write(links[link], values.mass, values.centre_of_mass, values.inertia.model_dump())
-    return {link: f"robot.inertials: set '{name}' in {set_file(urdf)} gives link '{link}'" for link in sets[name].links}
+    return {link: f"robot.inertials: set '{name}' in {set_file(urdf)} gives link '{link}'" for link in found}
+
+
+def _find_set(key: str, path: Path, kind: type[T], name: str, no_file: str = "", allowed: str = "") -> T:
+    """Return a set of a file; `no_file` and `allowed` are added to the messages.
+
+    Raises:
+        ConfigError: if the set does not exist; see read_sets.
+    """
+    sets = read_sets(key, path, kind)
+    if name not in sets:
+        there = f"sets: {', '.join(sets)}" if sets else f"there is no {path.name}{no_file}"
+        raise ConfigError(f"{key}: no set '{name}'{nearest(name, sets)}; {there}{allowed}")
+    return sets[name]
 
 
 def read_sets(key: str, path: Path, kind: type[T]) -> dict[str, T]:
@@ -228,7 +238,7 @@ def _write(link: ET.Element, mass: float, centre_of_mass: Sequence[float], tenso
     if old is not None:
         link.remove(old)
     inertial = ET.SubElement(link, "inertial")
-    ET.SubElement(inertial, "origin", xyz=" ".join(repr(float(value)) for value in centre_of_mass))
+    ET.SubElement(inertial, "origin", xyz=vector_text(centre_of_mass))
     ET.SubElement(inertial, "mass", value=repr(float(mass)))
     ET.SubElement(inertial, "inertia", {key: repr(float(value)) for key, value in tensor.items()})
 
@@ -286,14 +296,9 @@ def write_armature(tree: UrdfTree, values: dict[str, float]) -> None:
 
 
 def _of_set(tree: UrdfTree, path: Path, name: str) -> dict[str, float]:
-    sets = read_sets("robot.armature", armature_file(path), _ArmatureSet)
-    if name not in sets:
-        there = f"sets: {', '.join(sets)}" if sets else f"there is no {armature_file(path).name}"
-        raise ConfigError(
-            f"robot.armature: no set '{name}'{nearest(name, sets)}; {there}. Allowed: a number of 0 or more, in "
-            "kg m^2, a list with one for each joint, or the name of a set"
-        )
-    values, joints = sets[name].joints, tree.chain
+    allowed = ". Allowed: a number of 0 or more, in kg m^2, a list with one for each joint, or the name of a set"
+    values = _find_set("robot.armature", armature_file(path), _ArmatureSet, name, allowed=allowed).joints
+    joints = tree.chain
     strange = [joint for joint in values if joint not in joints]
     if strange:
         raise ConfigError(

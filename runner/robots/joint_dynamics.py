@@ -10,7 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.base.sanitize import few
 from runner.robots.inertials import place_of
-from runner.robots.tree import UrdfTree, number, wrong_places
+from runner.robots.tree import UrdfTree, number, vector_text, wrong_places
 
 _LONGEST = 300  # characters of a message about omitted content
 
@@ -94,9 +94,9 @@ def _move(joint: ET.Element, position: float) -> None:
     axis, origin = joint.find("axis"), joint.find("origin")
     along = np.array(("1 0 0" if axis is None else axis.get("xyz", "1 0 0")).split(), dtype=float)
     step = along / np.linalg.norm(along) * position
-    slides = joint.get("type") == "prismatic"
-    place = place_of(joint) * (pin.SE3(np.eye(3), step) if slides else pin.SE3(pin.exp3(step), np.zeros(3)))
+    prismatic = joint.get("type") == "prismatic"
+    place = place_of(joint) * (pin.SE3(np.eye(3), step) if prismatic else pin.SE3(pin.exp3(step), np.zeros(3)))
     if origin is None:
         origin = ET.SubElement(joint, "origin")
     for key, values in (("xyz", place.translation), ("rpy", pin.rpy.matrixToRpy(place.rotation))):
-        origin.set(key, " ".join(repr(float(value)) for value in values))
+        origin.set(key, vector_text(values))

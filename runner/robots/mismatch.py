@@ -1,6 +1,5 @@
 """Model mismatch between the controllers' nominal model and the simulated robot."""
 
-import copy
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -99,23 +98,19 @@ def scale_model(
         lengths: Factor on all lengths of the base and of each link, from its joint to its frames, shape (nq + 1,).
         gravity: Factor on gravity.
     """
-    changed_model = pin.Model(model.pin_model)
-    for joint, (mass, centre) in enumerate(zip(masses, centres, strict=True), start=1):
-        changed_model.inertias[joint] = _scale(changed_model.inertias[joint], mass, centre)
-        changed_model.jointPlacements[joint].translation *= lengths[changed_model.parents[joint]]
-    for frame in changed_model.frames:
-        if frame.parentJoint:  # the inertia of a fixed body, such as a tool, is part of the link's inertia
-            place = frame.placement
-            inertia = _scale(place.act(frame.inertia), masses[frame.parentJoint - 1], centres[frame.parentJoint - 1])
-            frame.inertia = place.actInv(inertia)
-        frame.placement.translation *= lengths[frame.parentJoint]
-    changed_model.gravity.linear = gravity * model.gravity
-    changed = copy.copy(model)
-    for remembered in ("reach", "shoulder", "kinematics"):  # cached values of the original lengths
-        changed.__dict__.pop(remembered, None)
-    changed.pin_model = changed_model
-    changed._data = changed_model.createData()
-    return changed
+
+    def scale(own: "pin.Model") -> None:
+        for joint, (mass, centre) in enumerate(zip(masses, centres, strict=True), start=1):
+            own.inertias[joint] = _scale(own.inertias[joint], mass, centre)
+            own.jointPlacements[joint].translation *= lengths[own.parents[joint]]
+        for frame in own.frames:
+            if frame.parentJoint:  # the inertia of a fixed body, such as a tool, is part of the link's inertia
+                place, link = frame.placement, frame.parentJoint - 1
+                frame.inertia = place.actInv(_scale(place.act(frame.inertia), masses[link], centres[link]))
+            frame.placement.translation *= lengths[frame.parentJoint]
+        own.gravity.linear = gravity * model.gravity
+
+    return model.with_change(scale)
 
 
 def _scale(inertia: "pin.Inertia", mass: float, centre: float) -> "pin.Inertia":

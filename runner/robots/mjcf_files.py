@@ -7,7 +7,7 @@ from pathlib import Path
 from runner.base.errors import ConfigError
 from runner.base.limits import ARM_PARTS, HEIGHTS, MESH, MJCF_ELEMENTS, XML
 from runner.base.sanitize import few, quoted
-from runner.robots.tree import parse_xml
+from runner.robots.tree import excess_depth, parse_xml
 
 _DEPTH = 200
 _MAKES_MORE = {  # elements that generate many bodies or load code; `model` loads another file
@@ -121,11 +121,8 @@ def _missing(place: Path) -> str:
 
 
 def _refused(file: Path, root: ET.Element) -> list[str]:
-    level, depth = [root], 0
-    while level:
-        level, depth = [inner for element in level for inner in element], depth + 1
-    if depth > _DEPTH:
-        return [f"robot.mjcf: {file}: its elements stand {depth} deep within each other; allowed: up to {_DEPTH}"]
+    if deep := excess_depth(root, _DEPTH):
+        return [f"robot.mjcf: {file}: {deep}"]
     return [
         f"robot.mjcf: {file} holds <{element.tag}>{_named(element)}, unknown here; {_MAKES_MORE[element.tag]}"
         for element in root.iter()

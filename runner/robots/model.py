@@ -2,7 +2,7 @@
 
 import copy
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +16,7 @@ from runner.robots.tree import NO_LIMIT, check_tip
 STANDARD_GRAVITY = 9.81  # m/s^2, the thesis' value (its G(q) shows 9.81 and 19.62)
 
 _MOST_JOINTS = 64
+_OF_GEOMETRY = "reach", "shoulder", "kinematics"  # cached properties of RobotModel
 _SAID = r"\s*(Error|Warning|Info|Debug):|\s+at line \d+ in "  # start of a line from the URDF reader of Pinocchio
 
 
@@ -71,12 +72,16 @@ class RobotModel:
 
     def tip_positions(self, q: FloatArray) -> FloatArray:
         """Return the tip positions for rows of joint positions, shapes (T, nq) to (T, 3), in m."""
-        positions = np.empty((len(q), 3))
-        tip = self._data.oMf[self.tip_frame].translation  # a view that each update refreshes
+        return self.frame_positions(q, self.tip_name)
+
+    def frame_positions(self, q: FloatArray, frame: str) -> FloatArray:
+        """Return the positions of a frame for rows of joint positions, shapes (T, nq) to (T, 3), in m."""
+        positions, index = np.empty((len(q), 3)), self.pin_model.getFrameId(frame)
+        origin = self._data.oMf[index].translation  # a view that each update refreshes
         for row, configuration in zip(positions, q, strict=True):
             pin.forwardKinematics(self.pin_model, self._data, configuration)
-            pin.updateFramePlacement(self.pin_model, self._data, self.tip_frame)
-            row[:] = tip
+            pin.updateFramePlacement(self.pin_model, self._data, index)
+            row[:] = origin
         return positions
 
     def frame_poses(self, q: FloatArray, frames: tuple[str, ...]) -> FloatArray:
@@ -150,17 +155,25 @@ class RobotModel:
 
     def with_armature(self, armature: FloatArray) -> "RobotModel":
         """Return this arm with other armatures, shape (nq,), in kg m^2."""
-        own = self.copy()
-        own.pin_model.armature = armature.copy()
-        own._data = own.pin_model.createData()
-        return own
+        return self.with_change(lambda model: setattr(model, "armature", armature.copy()))
 
     def copy(self) -> "RobotModel":
         """Return a copy of this arm with a separate Pinocchio model."""
+        return self.with_change(lambda model: None)
+
+    def with_change(self, change: Callable[["pin.Model"], object]) -> "RobotModel":
+        """Return this arm with a change of a copy of its Pinocchio model, made by a function of the copy."""
         own = copy.copy(self)
-        own.pin_model = pin.Model(self.pin_model)
-        own._data = own.pin_model.createData()
+        own.pin_model, own._data = self.separate(change)
+        for remembered in _OF_GEOMETRY:
+            own.__dict__.pop(remembered, None)
         return own
+
+    def separate(self, change: Callable[["pin.Model"], object] = lambda model: None) -> "tuple[pin.Model, pin.Data]":
+        """Return a copy of the Pinocchio model, changed by a function, and its data."""
+        model = pin.Model(self.pin_model)
+        change(model)
+        return model, model.createData()
 
     def with_payload(self, mass: float, position: FloatArray | None = None) -> "RobotModel":
         """Return this arm with a point mass fixed at its tip.
@@ -169,19 +182,14 @@ class RobotModel:
             mass: The mass, in kg; a negative value removes mass.
             position: Position of the mass in the tip's frame, shape (3,), in m; None is the tip itself.
         """
-        loaded = self.copy()
-        frame = loaded.pin_model.frames[self.tip_frame]
+        frame = self.pin_model.frames[self.tip_frame]
         point = pin.Inertia(mass, np.zeros(3) if position is None else position, np.zeros((3, 3)))
-        loaded.pin_model.appendBodyToJoint(frame.parentJoint, point, frame.placement)
-        loaded._data = loaded.pin_model.createData()
-        return loaded
+        return self.with_change(lambda model: model.appendBodyToJoint(frame.parentJoint, point, frame.placement))
 
     def with_tip(self, frame: str) -> "RobotModel":
         """Return this arm with another frame, given by name, as its tip."""
         other = self.copy()
         other.tip_name, other.tip_frame = frame, self.pin_model.getFrameId(frame)
-        for counted_to_tip in ("reach", "kinematics"):
-            other.__dict__.pop(counted_to_tip, None)
         return other
 
     @property

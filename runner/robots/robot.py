@@ -151,30 +151,18 @@ def end_points(robot: Robot, q: FloatArray, ignore_base_rotation: bool = False) 
     if len(robot.stages) == 1:
         return robot.model.tip_positions(q)[None]
     if ignore_base_rotation:
-        return _parallel_end_points(robot, q)
+        return _end_points_of_fixed_bases(robot, q)
     frames = [stage.base_frame for stage in robot.stages[1:]]
-    positions = [_frame_positions(robot.model, q, str(frame)) for frame in frames]
+    positions = [robot.model.frame_positions(q, str(frame)) for frame in frames]
     return np.array([*positions, robot.model.tip_positions(q)])
 
 
-def _parallel_end_points(robot: Robot, q: FloatArray) -> FloatArray:
-    points: list[FloatArray] = [_frame_positions(robot.model, q, str(robot.stages[1].base_frame))]
+def _end_points_of_fixed_bases(robot: Robot, q: FloatArray) -> FloatArray:
+    points = [robot.model.frame_positions(q, str(robot.stages[1].base_frame))]
     for index, stage in enumerate(robot.stages[1:], start=1):
         rotation = StageBase(robot, index, ignore_base_rotation=True).rotation
         points.append(points[-1] + stage.model.tip_positions(q[:, stage.joints]) @ rotation.T)
     return np.array(points)
-
-
-def _frame_positions(model: RobotModel, q: Sequence[FloatArray] | FloatArray, frame: str) -> FloatArray:
-    data = model.pin_model.createData()
-    index = model.pin_model.getFrameId(frame)
-    origin = data.oMf[index].translation  # a view that each update refreshes
-    positions = np.empty((len(q), 3))
-    for row, configuration in zip(positions, q, strict=True):
-        pin.forwardKinematics(model.pin_model, data, configuration)
-        pin.updateFramePlacement(model.pin_model, data, index)
-        row[:] = origin
-    return positions
 
 
 def by_joint(key: str, value: TorquePerStage | OptionalPerStage, stages: Mapping[str, Sequence[str]]) -> FloatArray:

@@ -3,7 +3,7 @@
 import math
 import xml.etree.ElementTree as ET
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -215,16 +215,21 @@ def _excess(robot: ET.Element) -> list[str]:
     named = (robot, *robot.findall("link"), *robot.findall("joint"))
     if excess := ARM_PARTS.excess(len(named) - 1):
         return [f"it {excess}"]
-    level, depth = [robot], 0
-    while level:
-        level, depth = [inner for element in level for inner in element], depth + 1
-    if depth > _DEPTH:
-        return [f"its elements stand {depth} deep within each other; allowed: up to {_DEPTH}"]
+    if deep := excess_depth(robot, _DEPTH):
+        return [deep]
     return [
         f"the name of a {element.tag} has {len(name)} characters, {quoted(name)}; allowed: up to {_NAME}"
         for element in named
         if len(name := element.get("name", "")) > _NAME
     ]
+
+
+def excess_depth(root: ET.Element, allowed: int) -> str | None:
+    """Return a message about elements that are nested too deeply; None if they are not."""
+    level, depth = [root], 0
+    while level:
+        level, depth = [inner for element in level for inner in element], depth + 1
+    return f"its elements stand {depth} deep within each other; allowed: up to {allowed}" if depth > allowed else None
 
 
 def _repeated(robot: ET.Element) -> list[str]:
@@ -266,6 +271,20 @@ def number(element: ET.Element | None, key: str) -> float:
         return math.nan if element is None else float(element.get(key, "nan"))
     except ValueError:
         return math.nan
+
+
+def vector_text(values: Iterable[float]) -> str:
+    """Return numbers as the value of an XML attribute."""
+    return " ".join(repr(float(value)) for value in values)
+
+
+def add_joint(robot: ET.Element, name: str, kind: str, parent: str, child: str, **origin: str) -> ET.Element:
+    """Add a joint between two links to a URDF; `origin` has the attributes of its origin."""
+    joint = ET.SubElement(robot, "joint", name=name, type=kind)
+    ET.SubElement(joint, "parent", link=parent)
+    ET.SubElement(joint, "child", link=child)
+    ET.SubElement(joint, "origin", origin)
+    return joint
 
 
 def limit_of(joint: ET.Element, key: str) -> float:

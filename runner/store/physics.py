@@ -49,8 +49,8 @@ _TABLE = """
         plant=plants.plant rk4 rk4_flexible_links servo
     plugins: features guard metric_units registry
     robots: __init__=robots.__init__ chain description
-        inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_joints mjcf_losses mjcf_urdf model
-        modes mounting robot=robots.robot task_space tool_link tree workspace
+        inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_urdf model
+        modes mounting robot=robots.robot task_space tree workspace
     schema: values
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds streams velocity wrench

@@ -8,8 +8,8 @@ from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import pin
 from runner.controllers.disturbance_observer import momentum_balance
 from runner.controllers.torque_law import PinocchioArm
+from runner.robots.mounting import find_tool, holding_wrench
 from runner.robots.robot import Robot
-from runner.robots.tool_link import find_tool, holding_wrench
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.wrench import cross, wrench_transform
 

@@ -6,7 +6,7 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 
-KEYS = "keys: position, distribution, bias, resolution, velocity"
+KEYS = "keys: kind, position, distribution, bias, resolution, velocity"
 ABOVE_ZERO = "must be a number above 0, or a list of such numbers with one for each joint"
 
 

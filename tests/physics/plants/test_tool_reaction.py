@@ -5,7 +5,7 @@ import pinocchio as pin
 import pytest
 
 from runner.plants import PLANTS
-from runner.robots.tool_link import find_tool, holding_wrench
+from runner.robots.mounting import find_tool, holding_wrench
 from runner.simulation.assembly import assemble
 
 ORIENTATIONS = 100

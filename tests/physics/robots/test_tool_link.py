@@ -6,7 +6,7 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.robots.model import RobotModel
-from runner.robots.tool_link import find_tool, holding_wrench, mount_tool
+from runner.robots.mounting import find_tool, holding_wrench, mount_tool
 from runner.schema.values import ToolConfig
 
 TOOL = ToolConfig(
