@@ -69,7 +69,7 @@ const wide = new ResizeObserver((entries) => {
     else target.removeAttribute("tabindex");
   }
 });
-document.querySelectorAll(".equation").forEach((equation) => wide.observe(equation));
+document.querySelectorAll(".equation, .form-math").forEach((equation) => wide.observe(equation));
 
 /* ---- commands, contents ---- */
 

@@ -23,7 +23,6 @@ from runner.reporting.charts.figure import Series as Series
 from runner.reporting.equation import Equation as Equation
 from runner.reporting.equation import EquationForm as EquationForm
 from runner.reporting.equation import EquationVerdict
-from runner.reporting.equation import Matrix as Matrix
 from runner.reporting.published_claims import Verdict
 
 
@@ -67,13 +66,11 @@ class Formula:
 
     Attributes:
         typst: The equation in Typst mathematics; written by us, never taken from a config or a file.
-        spoken: The equation in words, for screen readers.
         number: Its number in the source, such as "3.33", or "" where it is ours.
     """
 
     block: ClassVar[str] = "formula"
     typst: str
-    spoken: str
     number: str = ""
 
 

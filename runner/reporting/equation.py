@@ -1,11 +1,11 @@
 """Printed equations in a report: forms, verdict, reading order and the scripts of their names."""
 
 import re
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from runner.base.expressions.tree import Node, size
+from runner.reporting.markup import literal
 
 EquationVerdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
 
@@ -21,35 +21,20 @@ _NAME = re.compile(
 
 
 @dataclass(frozen=True)
-class Matrix:
-    """Elements in rows and columns; a column vector has rows of one."""
-
-    rows: Sequence[Sequence[Node]]
-
-    @property
-    def symbols(self) -> int:
-        """How many symbols its longest row has."""
-        return max(sum(map(size, row)) for row in self.rows)
-
-
-@dataclass(frozen=True)
 class EquationForm:
-    """One form of an equation: as printed, after repair, corrected. It has expressions, or mathematics, or neither.
+    """One form of an equation: as printed, after repair, corrected. It has lines of formulas, or raw text, or neither.
 
     Attributes:
         label: Which form it is.
-        expressions: Left side with its expression, or with the matrix of its elements; dots stand for what is left out.
-        marked: What of the expressions is not as in the form beside it.
-        math: The equation in Typst mathematics.
+        lines: Formulas in Typst mathematics; a line can have several. What is not as in the form beside it is in
+            `differs(...)`.
         raw: The text as it stands, where it cannot be read, in pieces; the flag says whether a piece is marked.
         note: Why it was mended, or what it is; inline mathematics as in Text.
         whole: All of it on one line, where the rest shows a part; the page folds it.
     """
 
     label: str
-    expressions: Sequence[tuple[Node, Node | Matrix]] = ()
-    marked: Set[Node] = frozenset()
-    math: str = ""
+    lines: Sequence[Sequence[str]] = ()
     raw: Sequence[tuple[bool, str]] = ()
     note: str = ""
     whole: str = ""
@@ -109,38 +94,14 @@ def by_place(rows: Iterable[Equation]) -> list[tuple[str, list[Equation]]]:
     return list(found.items())
 
 
-@dataclass(frozen=True)
-class Symbol:
-    """A letter with its scripts; or plain text, which has none and no letter.
-
-    Attributes:
-        text: The letter, or the text.
-        frame: What stands above the line before it.
-        below: What stands below the line behind it.
-        above: What stands above the line behind it.
-    """
-
-    text: str
-    frame: str = ""
-    below: str = ""
-    above: str = ""
-
-    @property
-    def plain(self) -> bool:
-        """Whether it is text."""
-        return not (self.frame or self.below or self.above)
-
-
-def symbols_in(text: str) -> list[Symbol]:
-    """Return a name in pieces: letters that have scripts, and the text between them."""
-    found: list[Symbol] = []
-    end = 0
-    for match in _NAME.finditer(text):
+def name_text(name: str) -> str:
+    """Return the name of an equation as Text, with the letters that have scripts as mathematics."""
+    found, end = "", 0
+    for match in _NAME.finditer(name):
         below = match["below"] or match["digits"] or (match["difference"] or "").replace("-", "−")
         if match["frame"] or below or match["above"]:
-            found += [
-                Symbol(text[end : match.start()]),
-                Symbol(match["letter"], match["frame"], below, match["above"] or ""),
-            ]
+            scripts = {"tl": match["frame"], "br": below, "tr": match["above"]}
+            told = "".join(f', {place}: "{script}"' for place, script in scripts.items() if script)
+            found += f'{literal(name[end : match.start()])}$attach(italic("{match["letter"]}"){told})$'
             end = match.end()
-    return [each for each in (*found, Symbol(text[end:])) if each.text]
+    return found + literal(name[end:])

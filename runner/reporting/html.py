@@ -16,7 +16,6 @@ from runner.reporting import formulas, outline, playback
 from runner.reporting.charts import palette
 from runner.reporting.curves import plotly_spec
 from runner.reporting.document import Curves, Document, Maps, Playback, RunList
-from runner.reporting.formulas import FormulaSheet
 from runner.reporting.maps import maps_spec
 from runner.reporting.outline import Places
 from runner.reporting.run_list import run_list_spec
@@ -32,8 +31,7 @@ _SCRIPTS = ("report", *_OF_PLOTS, "figure_tools")
 def render(document: Document) -> str:
     """Return a document as an HTML page."""
     progress.begin("writing the HTML")
-    images = formulas.draw_all(document)
-    sheet = FormulaSheet()
+    made = formulas.all_mathml(document)
     has_plots, has_run_list, has_playback = (
         any(isinstance(block, kinds) for block in outline.blocks(document))
         for kinds in ((Curves, Maps, RunList), RunList, Playback)
@@ -45,9 +43,8 @@ def render(document: Document) -> str:
         .render(
             document=document,
             chapters=outline.chapters(document),
-            formula_image=lambda text, is_displayed: images[is_displayed].get(text.strip()),
-            formula_name=sheet.name,
-            formula_definitions=lambda: Code(sheet.definitions()),
+            mathml=lambda text, is_displayed: made[is_displayed].get(text.strip()),
+            math_font=_math_font() if any(made.values()) else "",
             plotly_spec=plotly_spec,
             maps_spec=maps_spec,
             run_list_spec=run_list_spec,
@@ -98,6 +95,11 @@ def compress_text(text: str) -> str:
 @cache
 def _plotly() -> str:
     return resources.files("plotly").joinpath("package_data", "plotly.min.js").read_text(encoding="utf-8")
+
+
+@cache
+def _math_font() -> str:
+    return base64.b64encode((templates_dir() / "maths.woff2").read_bytes()).decode("ascii")
 
 
 def _script_sources(scripts: Sequence[str], player: str) -> Code:

@@ -22,6 +22,7 @@ from runner.reporting.document import (
     Text,
     Verdicts,
 )
+from runner.reporting.equation import name_text
 from runner.reporting.markup import anchor, spans
 
 _NUMBERED = re.compile(r"(?:(figure|fig\.?|table) )?(\d+(?:\.\d+)*[a-z]?)", re.IGNORECASE)
@@ -77,7 +78,8 @@ def formulas(document: Document) -> tuple[list[str], list[str]]:
         if isinstance(block, Formula):
             displayed[block.typst] = None
         if isinstance(block, Equations):
-            inline.update(dict.fromkeys(form.math for row in block.rows for form in row.forms if form.math))
+            every = (form for row in block.rows for form in row.forms)
+            inline.update(dict.fromkeys(formula for form in every for line in form.lines for formula in line))
         for text in _texts(block):
             inline.update(dict.fromkeys(_math(text)))
     return list(displayed), list(inline)
@@ -107,7 +109,7 @@ def _texts(block: Block) -> Iterator[str]:
         case Equations():
             yield block.caption
             for equation in block.rows:
-                yield equation.finding
+                yield from (name_text(equation.number), equation.finding)
                 yield from (form.note for form in equation.forms)
         case _:
             pass

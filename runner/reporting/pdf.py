@@ -19,7 +19,7 @@ from runner.reporting.templating import typst_environment
 def render(document: Document) -> bytes:
     """Return a document as PDF; the same document gives the same bytes."""
     progress.begin("drawing figures", outline.count_figures(document), "figures")
-    images = formulas.draw_all(document)
+    made = formulas.all_mathml(document)
     with tempfile.TemporaryDirectory() as name:
         folder = _Folder(Path(name))
         source = (
@@ -28,7 +28,7 @@ def render(document: Document) -> bytes:
             .render(
                 document=document,
                 chapters=outline.chapters(document),
-                formula_valid=lambda text, is_displayed: images[is_displayed].get(text) is not None,
+                formula_valid=lambda text, is_displayed: made[is_displayed].get(text) is not None,
                 curves_file=folder.curves,
                 maps_file=folder.maps,
                 run_list_header=table_header,

@@ -6,14 +6,12 @@ from typing import Any
 
 import jinja2
 
-from runner.base.expressions.typesetting import matrix, symbol, typeset
 from runner.base.paths import templates_dir
 from runner.base.sanitize import plain
 from runner.reporting.document import Origin
-from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, of_verdict, symbols_in
+from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, name_text, of_verdict
 from runner.reporting.markup import spans
 from runner.reporting.outline import verdict_place
-from runner.reporting.spoken import spoken
 
 VERDICT_SIGNS = {
     "matches": "=",
@@ -121,13 +119,8 @@ def _environment(**options: Any) -> jinja2.Environment:
     environment.filters |= {
         "spans": spans,
         "origin_label": origin_label,
-        "kind": lambda node: type(node).__name__,
-        "symbol": symbol,
-        "typeset": typeset,
-        "matrix": matrix,
         "aspect": aspect,
-        "in_words": spoken,
-        "symbols_in": symbols_in,
+        "name_text": name_text,
         "of_verdict": of_verdict,
         "by_finding": by_finding,
         "by_place": by_place,

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from runner.base.expressions.parser import parse
 from runner.reporting.document import (
     Body,
     Claim,
@@ -71,9 +70,9 @@ def curves(text: str = "error", **changes: object) -> Curves:
 def equations(text: str = "words", **changes: object) -> Equations:
     forms = [
         EquationForm(text, raw=[(False, text), (True, text)], note=text, whole=text),
-        EquationForm(text, expressions=[(parse("J_11").root, parse("-l2*cos(q1)^2/3").root)]),
-        EquationForm(text, math="J^+ = J^T (J J^T)^(-1)"),
-        EquationForm(text, math=text),
+        EquationForm(text, [['italic("J")_"11" = - italic("l") cos^2']]),
+        EquationForm(text, [["J^+ = J^T (J J^T)^(-1)"]]),
+        EquationForm(text, [[text]]),
     ]
     rows = [Equation(text, text, text, "wrong as printed", text, forms, text), Equation("n", "", "", "correct", "", ())]
     return Equations(**({"caption": text, "rows": rows} | changes))
@@ -114,7 +113,7 @@ def document(text: str = "words") -> Document:
         ),
         Code(text),
         Notice("warning", text, text),
-        Formula(text, text, text),
+        Formula(text, text),
         curves(text, origin=origin),
         maps(text, origin=origin),
         run_list(text, origin=origin),

@@ -9,16 +9,17 @@ from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
 from runner.base.expressions.tree import Name, Node, Sum, holds, shorten_expression, size
-from runner.base.expressions.typesetting import linear, typeset
+from runner.base.expressions.typesetting import linear, matrix, typeset
 from runner.reporting.audit.marks import LONG, cut, marked_formulas, pieces
-from runner.reporting.equation import EquationForm, Matrix
+from runner.reporting.equation import EquationForm
 
 _SYMBOLS = 40  # symbols of a form that is shown whole
 _OTHER = 0.5  # share of symbols that differ from which on an expression is another, and not one with a fault
 _FAULTS = 6  # differing parts up to which it is one with faults
 
 _Elements = Mapping[str, Node]
-_Shown = list[tuple[Node, Node | Matrix]]
+_Matrix = Sequence[Sequence[Node]]
+_Shown = list[tuple[Node, Node | _Matrix]]
 _ELEMENT = re.compile(r"(?P<name>\w+?)_(?P<place>\d\d|[xyz])")
 _VECTOR = ("x", "y", "z")
 
@@ -77,7 +78,7 @@ def forms_of(entry: Entry, likeness: Likeness) -> list[EquationForm]:
         if form.math and form is entry.repair and form.math == entry.printed.math:
             found.append(EquationForm(label, note=note))
         elif form.math:
-            found.append(EquationForm(label, math=_math(forms, place), note=note))
+            found.append(EquationForm(label, [[_math(forms, place)]], note=note))
         elif elements is None:
             found.append(_unread(f"{label}, as the text has it", form, beside, note))
         elif form is entry.repair and read[0] is None and entry.corrected is None:
@@ -87,7 +88,7 @@ def forms_of(entry: Entry, likeness: Likeness) -> list[EquationForm]:
             alone = len(forms) == 1
             made = _shown(label, form, elements, marks[place], f"{note} {like}".strip(), like=like, alone=alone)
             mended = entry.repair is not None and beside is not None and form is not entry.corrected
-            empty = not (made.expressions or like)
+            empty = not (made.lines or like)
             found.append(_unread(label, form, beside, note) if mended and empty else made)
     return found
 
@@ -165,27 +166,38 @@ def _shown(
     whole = linear(_text(form))
     groups, marks = gather_elements(elements), frozenset(marked)
     if alone or sum(map(size, elements.values())) <= _SYMBOLS:
-        return EquationForm(label, groups, marks, note=note)
+        return EquationForm(label, _lines(groups, marks), note=note)
     if like:
         return EquationForm(label, note=note, whole=whole)
     shown = _short(
         [(left, _cut(part, marks)) for left, part in groups if any(holds(node, marks) for node in _nodes(part))]
         or _begun(groups)
     )
-    return EquationForm(label, shown, marks, note=note, whole=whole)
+    return EquationForm(label, _lines(shown, marks), note=note, whole=whole)
 
 
-def _nodes(part: Node | Matrix) -> Iterator[Node]:
-    if isinstance(part, Matrix):
-        for row in part.rows:
+def _lines(groups: _Shown, marked: Set[Node]) -> list[list[str]]:
+    """Return the formulas of a form: each matrix on its own line, the expressions between matrices on one."""
+    lines: list[list[str]] = [[]]
+    for left, part in groups:
+        if isinstance(part, Sequence):
+            lines += [[f"{typeset(left, marked)} = {matrix(part, marked)}"], []]
+        else:
+            lines[-1].append(f"{typeset(left, marked)} = {typeset(part, marked)}")
+    return [line for line in lines if line]
+
+
+def _nodes(part: Node | _Matrix) -> Iterator[Node]:
+    if isinstance(part, Sequence):
+        for row in part:
             yield from row
     else:
         yield part
 
 
-def _cut(part: Node | Matrix, marked: Set[Node]) -> Node | Matrix:
-    if isinstance(part, Matrix):
-        return Matrix([[shorten_expression(node, marked) for node in row] for row in part.rows])
+def _cut(part: Node | _Matrix, marked: Set[Node]) -> Node | _Matrix:
+    if isinstance(part, Sequence):
+        return [[shorten_expression(node, marked) for node in row] for row in part]
     return shorten_expression(part, marked)
 
 
@@ -202,7 +214,7 @@ def _short(groups: _Shown) -> _Shown:
     return groups if sum(size(node) for _, part in groups for node in _nodes(part)) <= 2 * _SYMBOLS else []
 
 
-def gather_elements(elements: Mapping[str, Node]) -> list[tuple[Node, Node | Matrix]]:
+def gather_elements(elements: Mapping[str, Node]) -> _Shown:
     """Return elements such as T_11 to T_44, or P_x, P_y and P_z, as one matrix, and the others as they are.
 
     A matrix is whole: it has an element in each row and column, from 0 or 1 on.
@@ -212,26 +224,26 @@ def gather_elements(elements: Mapping[str, Node]) -> list[tuple[Node, Node | Mat
         match = _ELEMENT.fullmatch(name)
         family, place = (match["name"], match["place"]) if match else (name, "")
         families.setdefault(family, {})[place] = node
-    found: list[tuple[Node, Node | Matrix]] = []
+    found: _Shown = []
     for family, members in families.items():
-        matrix = _matrix(members)
-        if matrix is not None:
-            found.append((Name(family, 0), matrix))
+        rows = _rows(members)
+        if rows is not None:
+            found.append((Name(family, 0), rows))
             continue
         found += [(Name(f"{family}_{place}" if place else family, 0), node) for place, node in members.items()]
     return found
 
 
-def _matrix(members: Mapping[str, Node]) -> Matrix | None:
+def _rows(members: Mapping[str, Node]) -> _Matrix | None:
     if tuple(members) == _VECTOR:
-        return Matrix([[node] for node in members.values()])
+        return [[node] for node in members.values()]
     if len(members) < 4 or not all(len(place) == 2 for place in members):
         return None
     rows, columns = (sorted({place[axis] for place in members}) for axis in (0, 1))
     whole = [f"{row}{column}" for row in rows for column in columns] == sorted(members)
     if not (whole and rows[0] == columns[0] and rows[0] in "01" and len(rows) > 1):
         return None
-    return Matrix([[members[f"{row}{column}"] for column in columns] for row in rows])
+    return [[members[f"{row}{column}"] for column in columns] for row in rows]
 
 
 def _exchanged(found: Difference) -> str:

@@ -169,7 +169,7 @@ def theory_text(axes: list[Axis]) -> list[Block]:
             "The dashed line is where theory ends the stability of a critically damped loop whose torque is held over "
             "the sample time $h$: on a plant integrated exactly"
         ),
-        Formula("omega_n h < 1", "omega n times h is less than one"),
+        Formula("omega_n h < 1"),
         Text(
             "and on PyBullet with $n$ steps in a sample time $4 - 4 w - w^2 / n > 0$ for $w = omega_n h$, that is "
             "$w < 0.83$ for one step and $w < 0.976$ for ten."

@@ -72,9 +72,9 @@ def integration_error(runs: Mapping[str, Run], run: str, *metrics: str) -> str:
     return describe_plant(runs[run], metrics)
 
 
-def formula(typst: str, spoken: str, number: str = "") -> Formula:
-    """Return a displayed equation in Typst mathematics, with its words and its number in the source."""
-    return Formula(typst, spoken, number)
+def formula(typst: str, *, number: str = "") -> Formula:
+    """Return a displayed equation in Typst mathematics, with its number in the source."""
+    return Formula(typst, number)
 
 
 def notice(title: str, text: str) -> Notice:

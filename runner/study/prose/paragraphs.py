@@ -22,7 +22,7 @@ _NAMES = {
     "fence": "blocks of code",
     "code_block": "blocks of code (a line begins with four spaces)",
     "hr": "rules",
-    "math_block": "formulas between two dollar signs (write {{ formula(typst, spoken) }})",
+    "math_block": "formulas between two dollar signs (write {{ formula(typst) }})",
     "image": "images",
     "hardbreak": "line breaks",
     "strong_open": "strong emphasis (write *so*)",

@@ -54,5 +54,5 @@ def test_the_mathematics_of_every_finding_is_valid(source):
     texts = [text for _, entry in entries(source) for text in (entry.finding, entry.repair.why if entry.repair else "")]
     inline = [span.text for text in texts for span in spans(text) if span.math]
     forms = [form for _, entry in entries(source) for form in (entry.printed, entry.repair, entry.corrected) if form]
-    images = formulas.draw(inline + [form.math for form in forms if form.math], displayed=False)
+    images = formulas.mathml(inline + [form.math for form in forms if form.math], displayed=False)
     assert [text for text, image in images.items() if image is None] == []

@@ -47,7 +47,7 @@ def test_brackets_that_matter_are_seen(one, other):
 )  # fmt: skip
 def test_what_is_typeset_is_valid(text):
     source = typeset(parse(text).root)
-    assert formulas.draw([source], displayed=False)[source] is not None
+    assert formulas.mathml([source], displayed=False)[source] is not None
 
 
 def test_what_is_marked_is_set_apart_with_its_sign():
@@ -63,7 +63,7 @@ def test_a_matrix_is_valid():
     elements = [parse(text).root for text in ("-s1", "1/2*c12", "atan2(y, x)", "0")]
     text = matrix([elements[:2], elements[2:]], {elements[1]})
     assert text.count("differs(") == 1
-    assert formulas.draw([text], displayed=False)[text] is not None
+    assert formulas.mathml([text], displayed=False)[text] is not None
 
 
 def test_a_line_of_text_has_greek_letters_and_low_digits():

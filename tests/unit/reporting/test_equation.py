@@ -1,15 +1,16 @@
-"""Audited equations of a report: order, verdicts, folding."""
+"""Audited equations of a report: order, verdicts, folding, names."""
 
-from runner.base.expressions.parser import parse
+import pytest
+
 from runner.reporting.equation import (
     FOLDED,
     SHOWN,
     Equation,
     EquationForm,
     EquationVerdict,
-    Matrix,
     by_finding,
     by_place,
+    name_text,
     of_verdict,
 )
 
@@ -46,6 +47,28 @@ def test_equations_are_listed_by_place_and_verdict():
     assert [row.number for row in of_verdict(rows, "correct")] == ["2"]
 
 
-def test_a_matrix_is_as_wide_as_its_longest_row():
-    rows = [[parse(text).root for text in row] for row in (("0", "1"), ("a*b - cos(c)", "d"))]
-    assert Matrix(rows).symbols == 5
+def letter(letter, **scripts):
+    return f'$attach(italic("{letter}")' + "".join(f', {place}: "{text}"' for place, text in scripts.items()) + ")$"
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("0T_1", letter("T", tl="0", br="1")),
+        ("J_g6,20", letter("J", br="g6,20")),
+        ("0T6", letter("T", tl="0", br="6")),
+        ("J^+", letter("J", tr="+")),
+        ("c(1-2-3)", letter("c", br="(1−2−3)")),
+        ("A_1^0(q_1)", f"{letter('A', br='1', tr='0')}({letter('q', br='1')})"),
+        ("text: P_ij", f"text: {letter('P', br='ij')}"),
+        ("J_ω5 I J_ω5", f"{letter('J', br='ω5')} I {letter('J', br='ω5')}"),
+        ("(a$)", "(a$$)"),
+    ],
+)
+def test_letters_of_a_name_have_their_scripts(name, expected):
+    assert name_text(name) == expected
+
+
+@pytest.mark.parametrize("name", ["(3.25) of the Mini", "Table 1, row 2", "theta (acos)", "M(q)", "text: z, x, x", ""])
+def test_words_and_numbers_of_a_name_stay_as_they_are(name):
+    assert name_text(name) == name

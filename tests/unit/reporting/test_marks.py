@@ -20,7 +20,7 @@ def test_what_the_other_formula_lacks_is_marked(first, second, left, right):
     for found, expected in zip(marked_formulas(first, second), (left, right), strict=True):
         assert found.count("differs(") == len(expected or ())
         assert all(each in found for each in expected or ())
-        assert formulas.draw([found], displayed=False)[found] is not None
+        assert formulas.mathml([found], displayed=False)[found] is not None
 
 
 def test_formulas_that_share_nothing_have_no_mark():

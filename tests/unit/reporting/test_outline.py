@@ -25,7 +25,7 @@ def test_blocks_come_in_reading_order():
 
 
 def test_formulas_of_every_text_are_found_once():
-    blocks = [Text("$a$ and $a$"), Table("$b$", ["$c$"], [["$d$"]]), Formula("e", "")]
+    blocks = [Text("$a$ and $a$"), Table("$b$", ["$c$"], [["$d$"]]), Formula("e")]
     displayed, inline = outline.formulas(Document("$no$", "", "$z$", [Section("$no$", blocks)], ""))
     assert displayed == ["e"]
     assert inline == ["z", "a", "b", "c", "d"]
