@@ -36,9 +36,8 @@ _TABLE = """
     controllers/joint_space: adaptive computed_torque iterative_learning joint_law joint_pd joint_pid
         motor_pd passivity sliding_mode
     controllers/kinematic: differential_inverse_kinematics limited_motion resolved_rate
-    controllers/macro_mini: inertial_damping macro_mini stage_law stage_loops
-    controllers/operational_space: null_space operational_space tip_task whole_body
-        whole_body_posture
+    controllers/macro_mini: inertial_damping macro_mini stage_loops
+    controllers/operational_space: operational_space tip_task whole_body
     environments: __init__=environments.__init__ environment=environments.environment external_wrench=interaction free
         hand link_forces=pushed_links push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary

@@ -10,7 +10,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.operational_space.tip_task import TaskName, TipNumbers, TipTask, held_orientation, task_start
-from runner.controllers.operational_space.whole_body_posture import PostureNumbers, PostureTask, posture_pd
+from runner.controllers.operational_space.whole_body import PostureNumbers, PostureTask, posture_pd
 from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

@@ -9,8 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
 from runner.controllers.controller import Loop, PositionController
-from runner.controllers.kinematic.resolved_rate import ResolvedRate
-from runner.controllers.operational_space.null_space import NullSpaceConfig, NullSpaceTask
+from runner.controllers.kinematic.resolved_rate import NullSpaceConfig, NullSpaceTask, ResolvedRate
 from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot

@@ -6,8 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.controllers.macro_mini.stage_law import StageLaw, StageNumbers
-from runner.controllers.macro_mini.stage_loops import StageLoop, base_at_home
+from runner.controllers.macro_mini.stage_loops import StageLaw, StageLoop, StageNumbers, base_at_home
 from runner.controllers.torque_law import Arm
 from runner.robots.robot import Robot
 from runner.symbolic.maths import Array, Scalar

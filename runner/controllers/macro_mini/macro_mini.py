@@ -10,8 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.macro_mini.inertial_damping import InertialDamping
-from runner.controllers.macro_mini.stage_law import StageLaw
-from runner.controllers.macro_mini.stage_loops import Aim, HeldController, MacroController, MiniController
+from runner.controllers.macro_mini.stage_loops import Aim, HeldController, MacroController, MiniController, StageLaw
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
 from runner.robots.robot import Robot, end_points
 from runner.schema.model import StrictModel
@@ -127,16 +126,8 @@ def _law(config: MacroMiniConfig, robot: Robot, index: int) -> StageLaw:
         model = model.with_payload(sum(stage.model.mass for stage in robot.stages[index + 1 :]))
     swings = config.coupling == "inertial_damping"
     feedforward = config.feedforward if index == 0 else swings or config.mini_reference_velocity == "full"
-    natural_frequency = by_stage("controller.natural_frequency", config.natural_frequency, names)[index]
-    law = WholeBodyLaw(
-        natural_frequency=natural_frequency,
-        damping_ratio=by_stage("controller.damping_ratio", config.damping_ratio, names)[index],
-        gravity_compensation=config.gravity_compensation,
-        feedforward=feedforward,
-        null_space_frequency=natural_frequency,
-        max_tip_speed=None,
-        singularity_damping=config.singularity_damping,
-    )
+    frequency = by_stage("controller.natural_frequency", config.natural_frequency, names)[index]
+    law = WholeBodyLaw.of_stage(config, names, index, feedforward=feedforward, null_space_frequency=frequency)
     return StageLaw(model, law, robot.stages[index].home)
 
 

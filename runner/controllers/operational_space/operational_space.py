@@ -154,7 +154,7 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
 
 
 def tip_law(
-    model: RobotModel, numbers: WholeBodyLaw, home: FloatArray, orientation: FloatArray | None = None
+    model: RobotModel, law: WholeBodyLaw, home: FloatArray, orientation: FloatArray | None = None
 ) -> OperationalSpace | WholeBody:
     """Return the tip control law of an arm with any number of joints.
 
@@ -163,7 +163,7 @@ def tip_law(
 
     Args:
         model: The arm.
-        numbers: Config of the law.
+        law: Config of the law.
         home: Joint positions at home, shape (nq,), in rad.
         orientation: Desired orientation of the tip in the base frame, shape (3, 3); None for position control.
 
@@ -171,8 +171,8 @@ def tip_law(
         ConfigError: if the arm has fewer joints than the tip has directions of motion.
     """
     if model.nq == 3 == len(task_basis(model, pose=False)) and orientation is None:
-        return OperationalSpace(model, numbers)
-    return WholeBody(model, numbers, home, first_held=0, orientation=orientation)
+        return OperationalSpace(model, law)
+    return WholeBody(model, law, home, first_held=0, orientation=orientation)
 
 
 CONFIG = OperationalSpaceConfig
@@ -191,20 +191,10 @@ def build(config: OperationalSpaceConfig, robot: Robot) -> tuple[Loop, ...]:
             f"stages ({', '.join(names)}); take macro_mini or whole_body"
         )
     orientation = held_orientation(config.task, robot.model, robot.home)
-    (natural_frequency,) = by_stage("controller.natural_frequency", config.natural_frequency, names)
-    (damping_ratio,) = by_stage("controller.damping_ratio", config.damping_ratio, names)
     (period,) = by_stage("controller.period", config.period, names)
     (null_space_frequency,) = by_stage("controller.null_space_frequency", config.null_space_frequency, names)
-    numbers = WholeBodyLaw(
-        natural_frequency=natural_frequency,
-        damping_ratio=damping_ratio,
-        gravity_compensation=config.gravity_compensation,
-        feedforward=config.feedforward,
-        null_space_frequency=null_space_frequency,
-        max_tip_speed=None,
-        singularity_damping=config.singularity_damping,
-    )
-    controller = tip_law(robot.model, numbers, robot.home, orientation)
+    law = WholeBodyLaw.of_stage(config, names, 0, null_space_frequency=null_space_frequency)
+    controller = tip_law(robot.model, law, robot.home, orientation)
     return (Loop(names[0], slice(0, robot.model.nq), period, controller),)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import approx_fprime
 
-from runner.controllers.operational_space.null_space import (
+from runner.controllers.kinematic.resolved_rate import (
     NullSpaceConfig,
     NullSpaceTask,
     log_manipulability_gradient,

@@ -3,7 +3,7 @@
 import numpy as np
 from support.arms import tip_numbers
 
-from runner.controllers.macro_mini.stage_law import StageLaw
+from runner.controllers.macro_mini.stage_loops import StageLaw
 from runner.controllers.operational_space.operational_space import OperationalSpace
 from runner.controllers.torque_law import PinocchioArm, structure_of
 

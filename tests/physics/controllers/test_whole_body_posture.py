@@ -5,7 +5,7 @@ import pytest
 from support.arms import checked
 from support.physics import assert_passive
 
-from runner.controllers.operational_space.whole_body_posture import (
+from runner.controllers.operational_space.whole_body import (
     JointStiffness,
     PostureTask,
     null_space_projection,

@@ -10,8 +10,7 @@ from support.arms import tip_numbers
 
 from runner.base.errors import ConfigError
 from runner.controllers.macro_mini.macro_mini import later_home_offset
-from runner.controllers.macro_mini.stage_law import StageLaw
-from runner.controllers.macro_mini.stage_loops import MacroController, MiniController
+from runner.controllers.macro_mini.stage_loops import MacroController, MiniController, StageLaw
 from runner.controllers.operational_space.operational_space import OperationalSpace
 from runner.controllers.operational_space.whole_body import WholeBody
 from runner.controllers.torque_law import PinocchioArm

@@ -49,7 +49,7 @@ SHARED = {
     "controllers/joint_space/motor_pd": "physics/controllers/test_joint_laws.py",
     "controllers/kinds": "physics/controllers/test_controller_kinds.py",
     "controllers/macro_mini/inertial_damping": "physics/controllers/test_macro_mini.py",
-    "controllers/macro_mini/stage_law": "physics/controllers/test_macro_mini.py",
+    "controllers/macro_mini/stage_loops": "physics/controllers/test_macro_mini.py",
     "controllers/stability": "physics/controllers/test_force_stability.py",
     "controllers/torque_filter": "physics/controllers/test_disturbance_observer.py",
     "environments/external_wrench": "physics/environments/test_link_forces.py",
