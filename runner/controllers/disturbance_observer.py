@@ -50,8 +50,8 @@ class DisturbanceObserverConfig(StrictModel):
         return [self.bandwidth[name] for name in names]
 
 
-class ObserverNumbers(NamedTuple):
-    """The numbers of an observer."""
+class ObserverParameters(NamedTuple):
+    """The parameters of an observer."""
 
     gain: Scalar  # filter gain per tick, 1 - exp(-L h)
     period: Scalar  # time h between two ticks, in s
@@ -101,34 +101,36 @@ class MomentumObserver(TorqueFilter):
         self.models = (robot.model,)
         self._first, self._end, self._late = joints.start, joints.stop, late
         gain = float(-np.expm1(-bandwidth * period))
-        self.numbers = ObserverNumbers(gain, period, limits, robot.model.gravity)
+        self.parameters = ObserverParameters(gain, period, limits, robot.model.gravity)
 
     @property
-    def remembers(self) -> int:
-        """Size of the memory."""
-        return (3 + self._late) * len(self.numbers.limits)
+    def state_size(self) -> int:
+        """Size of the state."""
+        return (3 + self._late) * len(self.parameters.limits)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return the memory before the first tick: the arm at rest at q, without a disturbance."""
-        b = PinocchioArm(self.models[0]).momentum(q, np.zeros(len(q)), self.numbers.gravity)[1][self._first : self._end]
-        return np.concatenate([np.zeros(len(b)), 0.5 * self.numbers.period * b, *[-b] * (1 + self._late)])
+        """Return the state before the first tick: the arm at rest at q, without a disturbance."""
+        b = PinocchioArm(self.models[0]).momentum(q, np.zeros(len(q)), self.parameters.gravity)[1][
+            self._first : self._end
+        ]
+        return np.concatenate([np.zeros(len(b)), 0.5 * self.parameters.period * b, *[-b] * (1 + self._late)])
 
-    def measured(self, memory: FloatArray, reading: FloatArray) -> FloatArray:
-        """Return the memory with the torques measured since the last tick, of every joint, shape (nq,)."""
-        n = len(self.numbers.limits)
-        return np.concatenate([memory[: 2 * n], reading[self._first : self._end], memory[3 * n :]])
+    def measured(self, state: FloatArray, reading: FloatArray) -> FloatArray:
+        """Return the state with the torques measured since the last tick, of every joint, shape (nq,)."""
+        n = len(self.parameters.limits)
+        return np.concatenate([state[: 2 * n], reading[self._first : self._end], state[3 * n :]])
 
     def filter(
-        self, arm: Arm, numbers: ObserverNumbers, time: Scalar, q: Array, dq: Array, torque: Array, memory: Array
+        self, arm: Arm, parameters: ObserverParameters, time: Scalar, q: Array, dq: Array, torque: Array, state: Array
     ) -> tuple[Array, Array]:
-        """Return the torques of the law less the estimated disturbance, and the memory; see TorqueFilter."""
-        n, h, less = len(numbers.limits), numbers.period, arm.backend.less
-        r, before, acted, to_come = memory[:n], memory[n : 2 * n], memory[2 * n : 3 * n], memory[3 * n :]
-        p, b = (values[self._first : self._end] for values in arm.momentum(q, dq, numbers.gravity))
+        """Return the torques of the law less the estimated disturbance, and the state; see TorqueFilter."""
+        n, h, less = len(parameters.limits), parameters.period, arm.backend.less
+        r, before, acted, to_come = state[:n], state[n : 2 * n], state[2 * n : 3 * n], state[3 * n :]
+        p, b = (values[self._first : self._end] for values in arm.momentum(q, dq, parameters.gravity))
         d, before = momentum_balance(p, b, h, before, acted)
-        r = r + numbers.gain * (d - r)
+        r = r + parameters.gain * (d - r)
         asked = torque - r
-        held = np.array([clip(arm.backend, *pair) for pair in zip(asked, numbers.limits, strict=True)])
+        held = np.array([clip(arm.backend, *pair) for pair in zip(asked, parameters.limits, strict=True)])
         if self._late:  # the first torque acts from the start
             first = np.concatenate([held] * self._late)
             to_come = arm.backend.choose(less(time, 0.5 * h), lambda: first, lambda: to_come)

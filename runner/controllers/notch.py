@@ -45,8 +45,8 @@ class NotchConfig(StrictModel):
         return frequency
 
 
-class NotchNumbers(NamedTuple):
-    """The numbers of a notch."""
+class NotchParameters(NamedTuple):
+    """The parameters of a notch."""
 
     period: Scalar  # time between two ticks, in s
     b: Array  # coefficients of the unfiltered torques now, one and two ticks ago, shape (3, n)
@@ -59,7 +59,7 @@ class Notch(TorqueFilter):
     .. math:: H(s) = \frac{s^2 + \omega^2}{s^2 + \Delta s + \omega^2}, \qquad
         y_k = b_0 u_k + b_1 u_{k-1} + b_2 u_{k-2} - a_1 y_{k-1} - a_2 y_{k-2}
 
-    The memory starts as if the first torques had always acted, so that gravity compensation passes at once.
+    The state starts as if the first torques had always acted, so that gravity compensation passes at once.
 
     Args:
         frequency: omega / (2 pi) of each torque, shape (n,), in Hz, below half the sampling rate; infinite for none.
@@ -69,23 +69,23 @@ class Notch(TorqueFilter):
 
     def __init__(self, frequency: FloatArray, width: float, period: float) -> None:
         each = np.array([_coefficients(float(f), width, period) for f in frequency]).T
-        self.numbers = NotchNumbers(period, each[:3], each[3:])
+        self.parameters = NotchParameters(period, each[:3], each[3:])
 
     @property
-    def remembers(self) -> int:
-        """Size of the memory."""
-        return 2 * len(self.numbers.b[0])
+    def state_size(self) -> int:
+        """Size of the state."""
+        return 2 * len(self.parameters.b[0])
 
     def filter(
-        self, arm: Arm, numbers: NotchNumbers, time: Scalar, q: Array, dq: Array, torque: Array, memory: Array
+        self, arm: Arm, parameters: NotchParameters, time: Scalar, q: Array, dq: Array, torque: Array, state: Array
     ) -> tuple[Array, Array]:
-        """Return the filtered torques and the memory; see TorqueFilter."""
-        (b0, b1, b2), (a1, a2), n, backend = numbers.b, numbers.a, len(torque), arm.backend
+        """Return the filtered torques and the state; see TorqueFilter."""
+        (b0, b1, b2), (a1, a2), n, backend = parameters.b, parameters.a, len(torque), arm.backend
         late = (b2 - a2) * torque
         rest = np.concatenate([(b1 - a1) * torque + late, late])
-        memory = backend.choose(backend.less(time, 0.5 * numbers.period), lambda: rest, lambda: memory)
-        passed = b0 * torque + memory[:n]
-        return passed, np.concatenate([b1 * torque - a1 * passed + memory[n:], b2 * torque - a2 * passed])
+        state = backend.choose(backend.less(time, 0.5 * parameters.period), lambda: rest, lambda: state)
+        passed = b0 * torque + state[:n]
+        return passed, np.concatenate([b1 * torque - a1 * passed + state[n:], b2 * torque - a2 * passed])
 
 
 def _coefficients(frequency: float, width: float, period: float) -> tuple[float, float, float, float, float]:

@@ -90,6 +90,9 @@ def clip(backend: Backend, value: Scalar, limit: Scalar) -> Scalar:
     return -backend.maximum(-backend.maximum(value, -limit), -limit)
 
 
+Arms = Sequence[Arm]
+
+
 class PinocchioArm:
     """An arm with any number of joints, over floats; see Arm.
 
@@ -186,18 +189,18 @@ class TorqueLaw(Controller, ABC, Generic[N]):
     """Base class of torque laws; a Controller that Pinocchio evaluates.
 
     A derived class writes `evaluate` with the functions of the arms, `arm.backend` and NumPy operators. A Python `if`
-    uses only attributes set in the constructor. Numbers that can differ between runs are in `numbers`.
+    uses only attributes set in the constructor. Numbers that can differ between runs are in `parameters`.
 
     Args:
         models: Arms of the law, which reads only their URDF-derived constants. It commands the joints of the first.
         gravity_compensation: True if gravity acts on the nominal arms.
-        numbers: Numbers of the law: floats, arrays, or tuples of them.
+        parameters: Parameters of the law: floats, arrays, or tuples of them.
         measured: Number of measured joints; None for those of the first arm.
 
     Attributes:
         models: The arms.
         gravity_compensation: As above.
-        numbers: As above.
+        parameters: As above.
         measured: Number of measured joints.
         compilable: False if the law is evaluated only on floats.
     """
@@ -205,55 +208,55 @@ class TorqueLaw(Controller, ABC, Generic[N]):
     compilable = True
 
     def __init__(
-        self, models: Sequence[RobotModel], gravity_compensation: bool, numbers: N, measured: int | None = None
+        self, models: Sequence[RobotModel], gravity_compensation: bool, parameters: N, measured: int | None = None
     ) -> None:
-        self.models, self.numbers = tuple(models), numbers
+        self.models, self.parameters = tuple(models), parameters
         self.gravity_compensation = gravity_compensation
         self.measured = self.models[0].nq if measured is None else measured
-        self.memory: FloatArray | None = None
-        """Memory of `evaluate`; None before the first tick."""
+        self.state: FloatArray | None = None
+        """State of `evaluate`; None before the first tick."""
 
     @abstractmethod
     def evaluate(
-        self, arms: Sequence[Arm], numbers: N, time: Scalar, q: Array, dq: Array, reference: Array, memory: Array
+        self, arms: Arms, parameters: N, time: Scalar, q: Array, dq: Array, reference: Array, state: Array
     ) -> tuple[Array, Array]:
-        """Return the torques of the commanded joints, in N m, and the memory for the next tick.
+        """Return the torques of the commanded joints, in N m, and the state for the next tick.
 
-        The function is pure: it stores nothing, reads only these numbers, and does not change its arguments.
+        The function is pure: it stores nothing, reads only these parameters, and does not change its arguments.
 
         Args:
             arms: One arm for each model, over the scalars of the other arguments.
-            numbers: Numbers of the law.
+            parameters: Parameters of the law.
             time: Time since the start, in s.
             q: Measured joint positions, shape (measured,), in rad.
             dq: Measured joint velocities, shape (measured,), in rad/s.
             reference: Desired motion of the tip, shape (3, 3), or of the joints, (3, nq); see Controller.torque.
-            memory: Memory of the last tick, or `start`.
+            state: State of the last tick, or `start`.
         """
 
-    def with_numbers(self, **changed: Any) -> Self:
-        """Return a copy of the law with some numbers changed and no memory."""
+    def with_parameters(self, **changed: Any) -> Self:
+        """Return a copy of the law with some parameters changed and no state."""
         other = copy(self)
-        numbers: Any = self.numbers
-        other.numbers, other.memory = numbers._replace(**changed), None
+        parameters: Any = self.parameters
+        other.parameters, other.state = parameters._replace(**changed), None
         return other
 
     def structure(self) -> dict[str, Any]:
-        """Return the attributes of the derived class, which select the equations of `evaluate`, without the numbers."""
+        """Return the attributes that select the equations of `evaluate`, without the parameters."""
         return structure_of(self)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return the memory of the first tick, shape (k,), from the measured joint positions."""
+        """Return the state of the first tick, shape (k,), from the measured joint positions."""
         return _NOTHING
 
     def reset(self) -> None:
-        """Clear the memory of an earlier run."""
-        self.memory = None
+        """Clear the state of an earlier run."""
+        self.state = None
 
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the torques of the law; see Controller.torque."""
-        memory = self.start(q) if self.memory is None else self.memory
-        torque, self.memory = self.evaluate(self._arms, self.numbers, time, q, dq, reference, memory)
+        state = self.start(q) if self.state is None else self.state
+        torque, self.state = self.evaluate(self._arms, self.parameters, time, q, dq, reference, state)
         return torque
 
     @cached_property
@@ -262,7 +265,7 @@ class TorqueLaw(Controller, ABC, Generic[N]):
 
 
 def structure_of(part: Any) -> dict[str, Any]:
-    """Return the attributes of a law or its part without the numbers; a nested part as class name and structure."""
+    """Return the attributes of a law or its part without the parameters; a nested part as class name and structure."""
     kept = {name: value for name, value in vars(part).items() if name not in _COMMON}
     return {name: _described(value) if hasattr(value, "structure") else value for name, value in kept.items()}
 
@@ -277,10 +280,10 @@ _COMMON = frozenset(
     {
         "model",
         "models",
-        "numbers",
+        "parameters",
         "gravity_compensation",
         "measured",
-        "memory",
+        "state",
         "compilable",
         "reads_joint_torques",
         "_arms",

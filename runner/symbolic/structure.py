@@ -49,7 +49,7 @@ def any_number(_: float) -> str:
 
 
 def plain_structure(name: str, value: Any) -> Any:
-    """Return a fixed value of the code as plain data, without its attribute `numbers`.
+    """Return a fixed value of the code as plain data, without its attribute `parameters`.
 
     Args:
         name: Name of the value, for the message.
@@ -69,5 +69,5 @@ def plain_structure(name: str, value: Any) -> Any:
     if callable(value) or not hasattr(value, "__dict__"):
         raise CannotCompileError(f"a law that keeps {name}, {type(value).__name__}, of which nobody knows what it does")
     kind = type(value)
-    kept = {key: entry for key, entry in vars(value).items() if key != "numbers"}
+    kept = {key: entry for key, entry in vars(value).items() if key != "parameters"}
     return f"{kind.__module__}.{kind.__qualname__}", plain_structure(name, kept)

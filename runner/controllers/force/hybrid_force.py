@@ -10,7 +10,7 @@ from runner.base.errors import ConfigError
 from runner.controllers.controller import Loop, VelocityGain
 from runner.controllers.force.force_reading import ForceReading, JointTorqueReading, ReadingName, WristReading
 from runner.controllers.force.tip_force import ForceTask, TipForce, TipForceConfig, TipMotion, find_force_task
-from runner.controllers.operational_space.whole_body import WholeBodyNumbers
+from runner.controllers.operational_space.whole_body import WholeBodyParameters
 from runner.robots.robot import Robot
 from runner.schema.units import Newtons, PerSecond, Stiffness
 from runner.sensing.force_torque import ForceTorqueConfig
@@ -43,10 +43,10 @@ class HybridForceConfig(TipForceConfig):
     sensor: ForceTorqueConfig
 
 
-class HybridForceNumbers(NamedTuple):
-    """The numbers of hybrid force and motion control."""
+class HybridForceParameters(NamedTuple):
+    """The parameters of hybrid force and motion control."""
 
-    law: WholeBodyNumbers
+    law: WholeBodyParameters
     gravity: Array  # in the robot's base frame, shape (3,), in m/s^2
     normal: Array  # n, shape (3,)
     wall_stiffness: Scalar  # k, in N/m
@@ -57,7 +57,7 @@ class HybridForceNumbers(NamedTuple):
     period: Scalar  # in s
 
 
-class HybridForce(TipForce[HybridForceNumbers]):
+class HybridForce(TipForce[HybridForceParameters]):
     r"""Force along a wall's normal n, motion along its face (Khatib 1987; Raibert and Craig 1981).
 
     .. math::
@@ -87,8 +87,8 @@ class HybridForce(TipForce[HybridForceNumbers]):
     def __init__(self, task: ForceTask, config: HybridForceConfig, reading: ForceReading) -> None:
         normal, self._reading = _unit(config.normal), reading
         _check_directions(task, normal)
-        numbers = HybridForceNumbers(
-            task.law.numbers,
+        parameters = HybridForceParameters(
+            task.law.parameters,
             task.robot.model.gravity,
             normal,
             config.wall_stiffness,
@@ -98,14 +98,14 @@ class HybridForce(TipForce[HybridForceNumbers]):
             config.force_damping,
             task.period,
         )
-        super().__init__(task, numbers)
+        super().__init__(task, parameters)
         self.external_wrench: FloatArray = np.zeros(6)
         """See WrenchFeedbackController."""
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v of the motion along the wall."""
-        return VelocityGain(0.0, self.numbers.law.tip.k_v)
+        return VelocityGain(0.0, self.parameters.law.tip.k_v)
 
     def reset(self) -> None:
         """Clear the state of an earlier run; see Controller."""
@@ -128,24 +128,24 @@ class HybridForce(TipForce[HybridForceNumbers]):
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
         """Return the torques for the present reading; see Controller.torque."""
         self.external_wrench = self._reading.wrench(q, dq)
-        memory = self.start(q) if self.memory is None else self.memory
-        self.memory = np.array([self.external_wrench[:3] @ self.numbers.normal, memory[1]])
+        state = self.start(q) if self.state is None else self.state
+        self.state = np.array([self.external_wrench[:3] @ self.parameters.normal, state[1]])
         return super().torque(time, q, dq, reference)
 
     def command(
-        self, backend: Backend, numbers: HybridForceNumbers, tip: TipMotion, memory: Array
+        self, backend: Backend, parameters: HybridForceParameters, tip: TipMotion, state: Array
     ) -> tuple[Array, Array, Array]:
         """Return the acceleration along the wall and the force into it; see TipForce."""
-        f, n, k_f = memory[0], tip.axes.dot(numbers.normal), numbers.force_gain
-        off = numbers.force - f
-        memory = backend.choose(
-            backend.less(0.0, f), lambda: np.array([f, memory[1] + numbers.period * off]), lambda: memory
+        f, n, k_f = state[0], tip.axes.dot(parameters.normal), parameters.force_gain
+        off = parameters.force - f
+        state = backend.choose(
+            backend.less(0.0, f), lambda: np.array([f, state[1] + parameters.period * off]), lambda: state
         )
         mass = 1.0 / n.dot(tip.mobility).dot(n)
-        rate = backend.sqrt(numbers.wall_stiffness * (1.0 + k_f) / mass)
-        push = numbers.force + k_f * off + numbers.integral_gain * memory[1]
-        push = push + 2.0 * numbers.force_damping * mass * rate * n.dot(tip.velocity)
-        return tip.asked - n * n.dot(tip.asked), -push * n, memory
+        rate = backend.sqrt(parameters.wall_stiffness * (1.0 + k_f) / mass)
+        push = parameters.force + k_f * off + parameters.integral_gain * state[1]
+        push = push + 2.0 * parameters.force_damping * mass * rate * n.dot(tip.velocity)
+        return tip.asked - n * n.dot(tip.asked), -push * n, state
 
     def messages(self) -> list[str]:
         """Return nothing; see WrenchFeedbackController."""
@@ -178,7 +178,7 @@ def _unit(normal: list[float]) -> FloatArray:
 
 
 def _check_directions(task: ForceTask, normal: FloatArray) -> None:
-    directions = task.law.numbers.tip.directions
+    directions = task.law.parameters.tip.directions
     if len(directions) == 3:
         return
     along = float(np.linalg.norm(directions @ normal))

@@ -7,7 +7,7 @@ from pydantic import Field, NonNegativeFloat
 
 from runner.controllers.controller import Loop
 from runner.controllers.force.tip_force import ForceTask, TipForce, TipForceConfig, TipMotion, find_force_task
-from runner.controllers.operational_space.whole_body import WholeBodyNumbers
+from runner.controllers.operational_space.whole_body import WholeBodyParameters
 from runner.robots.robot import Robot
 from runner.schema.units import Damping, Stiffness
 from runner.symbolic.maths import Array, Backend
@@ -31,16 +31,16 @@ class ImpedanceConfig(TipForceConfig):
     tip_damping: Damping[Three]
 
 
-class ImpedanceNumbers(NamedTuple):
-    """The numbers of impedance control."""
+class ImpedanceParameters(NamedTuple):
+    """The parameters of impedance control."""
 
-    law: WholeBodyNumbers
+    law: WholeBodyParameters
     gravity: Array  # in the robot's base frame, shape (3,), in m/s^2
     stiffness: Array  # K_d along the base's axes, shape (3,), in N/m
     damping: Array  # D_d, shape (3,), in N s/m
 
 
-class Impedance(TipForce[ImpedanceNumbers]):
+class Impedance(TipForce[ImpedanceParameters]):
     r"""Spring and damper at the tip, with its natural inertia (Hogan 1985).
 
     .. math::
@@ -60,15 +60,15 @@ class Impedance(TipForce[ImpedanceNumbers]):
 
     def __init__(self, task: ForceTask, config: ImpedanceConfig) -> None:
         values = np.array(config.tip_stiffness), np.array(config.tip_damping)
-        super().__init__(task, ImpedanceNumbers(task.law.numbers, task.robot.model.gravity, *values))
+        super().__init__(task, ImpedanceParameters(task.law.parameters, task.robot.model.gravity, *values))
 
     def command(
-        self, backend: Backend, numbers: ImpedanceNumbers, tip: TipMotion, memory: Array
+        self, backend: Backend, parameters: ImpedanceParameters, tip: TipMotion, state: Array
     ) -> tuple[Array, Array, Array]:
         """Return the desired acceleration and the force of spring and damper; see TipForce."""
         axes = tip.axes
-        spring = (axes * numbers.stiffness).dot(axes.T).dot(tip.error)
-        return tip.desired, spring + (axes * numbers.damping).dot(axes.T).dot(tip.lag), memory
+        spring = (axes * parameters.stiffness).dot(axes.T).dot(tip.error)
+        return tip.desired, spring + (axes * parameters.damping).dot(axes.T).dot(tip.lag), state
 
 
 CONFIG = ImpedanceConfig

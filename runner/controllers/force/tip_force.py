@@ -1,7 +1,6 @@
 """Base class of laws that command an acceleration and a force of the tip, of a whole arm or of a mounted stage."""
 
 from abc import abstractmethod
-from collections.abc import Sequence
 from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
@@ -11,7 +10,7 @@ from runner.controllers.controller import Controller, Loop
 from runner.controllers.macro_mini.macro_mini import MacroMiniConfig
 from runner.controllers.macro_mini.macro_mini import build as build_stages
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyLaw
-from runner.controllers.torque_law import Arm, TorqueLaw
+from runner.controllers.torque_law import Arms, TorqueLaw
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
@@ -96,7 +95,7 @@ class TipMotion(NamedTuple):
     mobility: Array
 
 
-N = TypeVar("N", bound=Any)  # a NamedTuple with the numbers of the WholeBody law and gravity, `law` and `gravity`
+N = TypeVar("N", bound=Any)  # a NamedTuple with the parameters of the WholeBody law and gravity, `law` and `gravity`
 
 
 class TipForce(TorqueLaw[N]):
@@ -109,49 +108,44 @@ class TipForce(TorqueLaw[N]):
 
     Args:
         task: Force task of the robot.
-        numbers: Numbers of the law: `law`, those of the task's law; `gravity`, that in the robot's base frame, shape
-            (3,), in m/s^2; and the law's own.
+        parameters: Parameters of the law: `law`, those of the law of the task; `gravity`, in the robot's base frame,
+            shape (3,), in m/s^2; and its own.
     """
 
-    def __init__(self, task: ForceTask, numbers: N) -> None:
+    def __init__(self, task: ForceTask, parameters: N) -> None:
         self._law, self._feedforward = task.law, task.feedforward
         self._first, self._end = task.joints.start, task.joints.stop
         bases = [] if task.base is None else [task.base]
-        super().__init__([*task.law.models, *bases], task.law.gravity_compensation, numbers, task.robot.model.nq)
+        super().__init__([*task.law.models, *bases], task.law.gravity_compensation, parameters, task.robot.model.nq)
 
     @abstractmethod
-    def command(self, backend: Backend, numbers: N, tip: TipMotion, memory: Array) -> tuple[Array, Array, Array]:
-        """Return acceleration and force along the rows, in m/s^2 and N, and the memory; see TorqueLaw.evaluate."""
+    def command(self, backend: Backend, parameters: N, tip: TipMotion, state: Array) -> tuple[Array, Array, Array]:
+        """Return acceleration and force along the rows, in m/s^2 and N, and the state; see TorqueLaw.evaluate."""
 
     def evaluate(
-        self,
-        arms: Sequence[Arm],
-        numbers: N,
-        time: Scalar,
-        q: Array,
-        dq: Array,
-        reference: Array,
-        memory: Array,
+        self, arms: Arms, parameters: N, time: Scalar, q: Array, dq: Array, reference: Array, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see TorqueLaw."""
         own, *base = arms
-        axes = directions = numbers.law.tip.directions
+        axes = directions = parameters.law.tip.directions
         target, gravity = reference, None
         if base:
             x, R, moves = base[0].tip_pose_and_twist(q, dq)
             way = reference[0] - x
             drift = reference[1] - moves[:3] - cross(moves[3:], way)
-            seen = np.array([way, drift, np.zeros(3), numbers.gravity]).dot(R)  # R^T of each row
+            seen = np.array([way, drift, np.zeros(3), parameters.gravity]).dot(R)  # R^T of each row
             target, gravity, axes = seen[:3], seen[3], directions.dot(R.T)
-        task = self._law.task_state(own, numbers.law, q[self._first : self._end], dq[self._first : self._end], target)
+        task = self._law.task_state(
+            own, parameters.law, q[self._first : self._end], dq[self._first : self._end], target
+        )
         velocity = task.velocity
         if base:
             velocity = velocity + axes.dot(moves[:3] + cross(moves[3:], R.dot(task.x)))
         wanted = target[1:].dot(directions.T) if self._feedforward else np.zeros((2, len(directions)))
-        asked = self._law.acceleration(own, numbers.law, task, target)
+        asked = self._law.acceleration(own, parameters.law, task, target)
         tip = TipMotion(axes, task.error, wanted[0] - task.velocity, velocity, asked, wanted[1], task.mobility)
-        acceleration, force, memory = self.command(own.backend, numbers, tip, memory)
-        return self._law.joint_torques(own, numbers.law, task, acceleration, force, gravity), memory
+        acceleration, force, state = self.command(own.backend, parameters, tip, state)
+        return self._law.joint_torques(own, parameters.law, task, acceleration, force, gravity), state
 
 
 def find_force_task(config: TipForceConfig, robot: Robot) -> ForceTask:

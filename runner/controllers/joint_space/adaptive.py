@@ -37,8 +37,8 @@ class AdaptiveConfig(JointLawConfig):
     friction: bool
 
 
-class AdaptiveNumbers(NamedTuple):
-    """The numbers of adaptive control."""
+class AdaptiveParameters(NamedTuple):
+    """The parameters of adaptive control."""
 
     rate: Scalar  # lambda, in 1/s
     damping: Array  # diagonal of K_D, shape (nq,), in kg m^2/s
@@ -49,7 +49,7 @@ class AdaptiveNumbers(NamedTuple):
     limits: Array  # torque limits, shape (nq,), in N m; infinite if there is none
 
 
-class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
+class Adaptive(JointLaw[AdaptiveParameters, AdaptiveConfig]):
     r"""Adaptive control (Slotine and Li, International Journal of Robotics Research 6(3), 1987).
 
     .. math::
@@ -76,17 +76,17 @@ class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
     much faster motions. The s of a joint is ignored while its torque is beyond its limit. V can increase in both cases.
     """
 
-    def choose_numbers(self, model: RobotModel, config: AdaptiveConfig, inertia: FloatArray) -> AdaptiveNumbers:
-        """Return the numbers of the law above; see JointLaw."""
+    def choose_parameters(self, model: RobotModel, config: AdaptiveConfig, inertia: FloatArray) -> AdaptiveParameters:
+        """Return the parameters of the law above; see JointLaw."""
         self._friction = config.friction
         theta = np.concatenate([model.inertial_parameters, np.zeros(2 * model.nq if config.friction else 0)])
         gains = np.full(len(theta), config.adaptation_gain)
         self._bounded = config.scale == "parameter"
         if self._bounded:
-            arm, home = PinocchioArm(model, config.gravity_compensation), self._motion.numbers.posture.rest
+            arm, home = PinocchioArm(model, config.gravity_compensation), self._motion.parameters.posture.rest
             gains *= config.natural_frequency**2 * self._scales(arm, home, inertia)
-        self._remembers = len(gains)
-        return AdaptiveNumbers(
+        self._state_size = len(gains)
+        return AdaptiveParameters(
             rate=config.natural_frequency,
             damping=config.natural_frequency * inertia,
             armature=model.armature,
@@ -99,30 +99,30 @@ class Adaptive(JointLaw[AdaptiveNumbers, AdaptiveConfig]):
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.own.rate, self.numbers.own.rate)
+        return VelocityGain(self.parameters.own.rate, self.parameters.own.rate)
 
     def own_start(self) -> FloatArray:
         """Return the nominal parameters, shape (P,)."""
-        return self.numbers.own.initial_parameters
+        return self.parameters.own.initial_parameters
 
     def command(
-        self, arm: Arm, numbers: AdaptiveNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+        self, arm: Arm, parameters: AdaptiveParameters, q: Array, dq: Array, desired: DesiredJoints, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above, and the parameter estimates at the next tick; see JointLaw."""
-        dq_r, ddq_r = desired.reference(numbers.rate, q, dq)
+        dq_r, ddq_r = desired.reference(parameters.rate, q, dq)
         s = dq_r - dq
         Y = arm.regressor(q, dq, dq_r, ddq_r)
         if self._friction:
             Y = np.concatenate([Y, _friction(arm, dq_r, desired.dq)], axis=1)
-        torque = Y.dot(memory) + numbers.armature * ddq_r + numbers.damping * s
-        teaches = np.array([_taught(arm, *of) for of in zip(torque, numbers.limits, s, strict=True)])
+        torque = Y.dot(state) + parameters.armature * ddq_r + parameters.damping * s
+        teaches = np.array([_taught(arm, *of) for of in zip(torque, parameters.limits, s, strict=True)])
         gradient = Y.T.dot(teaches)
-        change = desired.period * numbers.adaptation_gain * gradient
+        change = desired.period * parameters.adaptation_gain * gradient
         if self._bounded:
-            braked = numbers.swings / numbers.rate * (numbers.damping * teaches).dot(teaches) + _NOTHING
-            needed = (numbers.adaptation_gain * gradient).dot(gradient)
+            braked = parameters.swings / parameters.rate * (parameters.damping * teaches).dot(teaches) + _NOTHING
+            needed = (parameters.adaptation_gain * gradient).dot(gradient)
             change = change * (braked / arm.backend.maximum(braked, needed))
-        return torque, memory + change
+        return torque, state + change
 
     def _scales(self, arm: PinocchioArm, home: FloatArray, D: FloatArray) -> FloatArray:
         """Return 1 / (N max |D^-1/2 Y_p|^2) of each parameter, shape (P,); 0 for one that is not excited."""

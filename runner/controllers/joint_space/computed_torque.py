@@ -25,15 +25,15 @@ class ComputedTorqueConfig(JointLawConfig):
     integral_gain: NonNegativeFloat
 
 
-class ComputedTorqueNumbers(NamedTuple):
-    """The numbers of computed-torque control."""
+class ComputedTorqueParameters(NamedTuple):
+    """The parameters of computed-torque control."""
 
     k_p: Scalar  # omega_n^2, in 1/s^2
     k_v: Scalar  # 2 xi omega_n, in 1/s
     k_i: Scalar  # integral gain, in 1/s^3
 
 
-class ComputedTorque(JointLaw[ComputedTorqueNumbers, ComputedTorqueConfig]):
+class ComputedTorque(JointLaw[ComputedTorqueParameters, ComputedTorqueConfig]):
     r"""Inverse dynamics in joint space (Luh, Walker and Paul, IEEE Transactions on Automatic Control 25(3), 1980).
 
     .. math:: \tau = M (\ddot q_d + 2 \xi \omega_n (\dot q_d - \dot q) + \omega_n^2 (q_d - q) + k_i z) + V + G
@@ -44,13 +44,13 @@ class ComputedTorque(JointLaw[ComputedTorqueNumbers, ComputedTorqueConfig]):
     q_d.
     """
 
-    def choose_numbers(
+    def choose_parameters(
         self, model: RobotModel, config: ComputedTorqueConfig, inertia: FloatArray
-    ) -> ComputedTorqueNumbers:
-        """Return the numbers of the law above; see JointLaw."""
+    ) -> ComputedTorqueParameters:
+        """Return the parameters of the law above; see JointLaw."""
         k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
-        self._remembers = model.nq if config.integral_gain > 0.0 else 0
-        return ComputedTorqueNumbers(
+        self._state_size = model.nq if config.integral_gain > 0.0 else 0
+        return ComputedTorqueParameters(
             k_p=k_p,
             k_v=k_v,
             k_i=config.integral_gain,
@@ -59,17 +59,17 @@ class ComputedTorque(JointLaw[ComputedTorqueNumbers, ComputedTorqueConfig]):
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(0.0, self.numbers.own.k_v)
+        return VelocityGain(0.0, self.parameters.own.k_v)
 
     def command(
-        self, arm: Arm, numbers: ComputedTorqueNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+        self, arm: Arm, parameters: ComputedTorqueParameters, q: Array, dq: Array, desired: DesiredJoints, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above, and the integral at the next tick; see JointLaw."""
         error = desired.q - q
-        ddq = desired.ddq + numbers.k_v * (desired.dq - dq) + numbers.k_p * error
-        if self._remembers:
-            ddq, memory = ddq + numbers.k_i * memory, memory + desired.period * error
-        return arm.inverse_dynamics(q, dq, ddq), memory
+        ddq = desired.ddq + parameters.k_v * (desired.dq - dq) + parameters.k_p * error
+        if self._state_size:
+            ddq, state = ddq + parameters.k_i * state, state + desired.period * error
+        return arm.inverse_dynamics(q, dq, ddq), state
 
 
 CONFIG = ComputedTorqueConfig

@@ -103,7 +103,7 @@ class IterativeLearning(Controller):
         """Clear the learned torques and the joint motion."""
         self.learned: FloatArray = np.zeros(self._shape)
         self._feedback: FloatArray = np.zeros(self._shape)
-        self._memory: FloatArray | None = None
+        self._state: FloatArray | None = None
         self._tick = 0
 
     def torque(self, time: float, q: FloatArray, dq: FloatArray, reference: FloatArray) -> FloatArray:
@@ -112,11 +112,11 @@ class IterativeLearning(Controller):
         if k >= 2 * self._ticks and k % self._ticks == 0:  # the first cycle includes the start from rest
             self._learn()
         self._tick = k % self._ticks
-        memory = self._motion.start(q) if self._memory is None else self._memory
-        numbers = self._law.numbers
-        desired, self._memory = self._motion.follow(self._arm, numbers.motion, reference, memory)
+        state = self._motion.start(q) if self._state is None else self._state
+        parameters = self._law.parameters
+        desired, self._state = self._motion.follow(self._arm, parameters.motion, reference, state)
         without = self._arm.inverse_dynamics(q, dq, desired.ddq).copy()
-        torque, _ = self._law.command(self._arm, numbers.own, q, dq, desired, _NOTHING)
+        torque, _ = self._law.command(self._arm, parameters.own, q, dq, desired, _NOTHING)
         self._feedback[self._tick] = torque - without
         asked: FloatArray = torque + self.learned[self._tick]
         self._feedback[self._tick] += np.clip(asked, -self._limits, self._limits) - asked

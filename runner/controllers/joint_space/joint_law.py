@@ -1,7 +1,7 @@
 """Base classes and builder of joint-space control laws, and their desired joint motion from the tip motion."""
 
 from abc import abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any, Generic, NamedTuple, Self, TypeVar
 
 import numpy as np
@@ -9,9 +9,9 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import Controller, Loop
-from runner.controllers.operational_space.tip_task import TaskName, TipNumbers, TipTask, held_orientation, task_start
-from runner.controllers.operational_space.whole_body import PostureNumbers, PostureTask, posture_pd
-from runner.controllers.torque_law import Arm, TorqueLaw, structure_of
+from runner.controllers.operational_space.tip_task import TaskName, TipParameters, TipTask, held_orientation, task_start
+from runner.controllers.operational_space.whole_body import PostureParameters, PostureTask, posture_pd
+from runner.controllers.torque_law import Arm, Arms, TorqueLaw, structure_of
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
@@ -44,11 +44,11 @@ class JointLawConfig(StrictModel):
     null_space_frequency: RadiansPerSecond[NonNegativeFloat]
 
 
-class JointMotionNumbers(NamedTuple):
-    """The numbers of a joint motion."""
+class JointMotionParameters(NamedTuple):
+    """The parameters of a joint motion."""
 
-    tip: TipNumbers
-    posture: PostureNumbers
+    tip: TipParameters
+    posture: PostureParameters
     period: Scalar  # time between two ticks, in s
 
 
@@ -101,41 +101,41 @@ class JointMotion:
     def __init__(self, model: RobotModel, config: JointLawConfig, rest: FloatArray, joints: bool) -> None:
         self._joints, self._feedforward = joints, config.feedforward
         self._task = TipTask(model, held_orientation(config.task, model, rest), config)
-        posture = PostureTask(config.null_space_frequency, rest).numbers
-        self.numbers = JointMotionNumbers(self._task.numbers, posture, config.period)
+        posture = PostureTask(config.null_space_frequency, rest).parameters
+        self.parameters = JointMotionParameters(self._task.parameters, posture, config.period)
 
     def structure(self) -> dict[str, Any]:
-        """Return the attributes without the numbers; see TorqueLaw.structure."""
+        """Return the attributes without the parameters; see TorqueLaw.structure."""
         return structure_of(self)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return the memory at the first tick: q_d and dq_d, shape (2 nq,); empty for a joint motion."""
+        """Return the state at the first tick: q_d and dq_d, shape (2 nq,); empty for a joint motion."""
         return np.zeros(0) if self._joints else np.concatenate([q, np.zeros(len(q))])
 
     def follow(
-        self, arm: Arm, numbers: JointMotionNumbers, reference: Array, memory: Array
+        self, arm: Arm, parameters: JointMotionParameters, reference: Array, state: Array
     ) -> tuple[DesiredJoints, Array]:
-        """Return the desired joints and the memory for the next tick."""
+        """Return the desired joints and the state for the next tick."""
         if self._joints:
             q_d, dq_d, ddq_d = reference[0], reference[1], reference[2]
             if self._feedforward:
-                return DesiredJoints(q_d, dq_d, ddq_d, numbers.period), memory
-            return DesiredJoints(q_d, 0.0 * dq_d, 0.0 * ddq_d, numbers.period), memory
-        h, n = numbers.period, len(memory) // 2
-        q_d, dq_d = memory[:n], memory[n:]
-        ddq_d = self._resolved_acceleration(arm, numbers, q_d, dq_d, reference)
+                return DesiredJoints(q_d, dq_d, ddq_d, parameters.period), state
+            return DesiredJoints(q_d, 0.0 * dq_d, 0.0 * ddq_d, parameters.period), state
+        h, n = parameters.period, len(state) // 2
+        q_d, dq_d = state[:n], state[n:]
+        ddq_d = self._resolved_acceleration(arm, parameters, q_d, dq_d, reference)
         goes_on = np.concatenate([q_d + h * dq_d + 0.5 * h**2 * ddq_d, dq_d + h * ddq_d])
         return DesiredJoints(q_d, dq_d, ddq_d, h), goes_on
 
     def _resolved_acceleration(
-        self, arm: Arm, numbers: JointMotionNumbers, q_d: Array, dq_d: Array, reference: Array
+        self, arm: Arm, parameters: JointMotionParameters, q_d: Array, dq_d: Array, reference: Array
     ) -> Array:
         backend, task, tip = arm.backend, self._task, arm.tip(q_d, dq_d)
-        J, dJ_dq = task.jacobian(numbers.tip, tip)
-        error = task.error(backend, numbers.tip, tip, reference)
-        ddq_0 = posture_pd(numbers.posture, q_d, dq_d)
-        F = task.acceleration(backend, numbers.tip, error, J.dot(dq_d), reference) - dJ_dq - J.dot(ddq_0)
-        square = task.damp(backend, numbers.tip, J, error, J.dot(J.T))
+        J, dJ_dq = task.jacobian(parameters.tip, tip)
+        error = task.error(backend, parameters.tip, tip, reference)
+        ddq_0 = posture_pd(parameters.posture, q_d, dq_d)
+        F = task.acceleration(backend, parameters.tip, error, J.dot(dq_d), reference) - dJ_dq - J.dot(ddq_0)
+        square = task.damp(backend, parameters.tip, J, error, J.dot(J.T))
         return np.asarray(ddq_0 + J.T.dot(backend.solve_symmetric(square, F, "the tip's Jacobian is singular")))
 
 
@@ -143,14 +143,14 @@ N = TypeVar("N", bound=Any)  # a NamedTuple
 C = TypeVar("C", bound=JointLawConfig)
 
 
-class JointNumbers(NamedTuple, Generic[N]):
-    """The numbers of a joint-space law: those of the desired motion, and the law's own."""
+class JointParameters(NamedTuple, Generic[N]):
+    """The parameters of a joint-space law: those of the desired motion, and the law's own."""
 
-    motion: JointMotionNumbers
+    motion: JointMotionParameters
     own: N
 
 
-class JointLaw(TorqueLaw[JointNumbers[N]], Generic[N, C]):
+class JointLaw(TorqueLaw[JointParameters[N]], Generic[N, C]):
     """A torque law that follows the desired joints of a JointMotion.
 
     Args:
@@ -164,16 +164,16 @@ class JointLaw(TorqueLaw[JointNumbers[N]], Generic[N, C]):
     """
 
     def __init__(self, model: RobotModel, config: C, rest: FloatArray, joints: bool = False) -> None:
-        self._motion, self._remembers = JointMotion(model, config, rest, joints), 0
+        self._motion, self._state_size = JointMotion(model, config, rest, joints), 0
         inertia = model.mass_matrix(rest).diagonal().copy()
-        numbers = JointNumbers(self._motion.numbers, self.choose_numbers(model, config, inertia))
-        super().__init__([model], config.gravity_compensation, numbers)
+        parameters = JointParameters(self._motion.parameters, self.choose_parameters(model, config, inertia))
+        super().__init__([model], config.gravity_compensation, parameters)
 
     @abstractmethod
-    def choose_numbers(self, model: RobotModel, config: C, inertia: FloatArray) -> N:
-        """Return the law's own numbers.
+    def choose_parameters(self, model: RobotModel, config: C, inertia: FloatArray) -> N:
+        """Return the law's own parameters.
 
-        This also sets the attributes that select the equations, and `_remembers`, the size of the law's own memory.
+        This also sets the attributes that select the equations, and `_state_size`, the size of the law's own state.
 
         Args:
             model: The arm.
@@ -182,48 +182,48 @@ class JointLaw(TorqueLaw[JointNumbers[N]], Generic[N, C]):
         """
 
     def with_limits(self, limits: FloatArray) -> Self:
-        """Return the law with its torque limits set, if its own numbers have `limits`; see ControlLaw."""
-        own = self.numbers.own
-        return self.with_numbers(own=own._replace(limits=limits)) if "limits" in own._fields else self
+        """Return the law with its torque limits set, if its own parameters have `limits`; see ControlLaw."""
+        own = self.parameters.own
+        return self.with_parameters(own=own._replace(limits=limits)) if "limits" in own._fields else self
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return the memories of the joint motion and of the law at the first tick; see TorqueLaw."""
+        """Return the states of the joint motion and of the law at the first tick; see TorqueLaw."""
         return np.concatenate([self._motion.start(q), self.own_start()])
 
     def own_start(self) -> FloatArray:
-        """Return the law's own memory at the first tick, shape (remembers,); zero by default."""
-        return np.zeros(self._remembers)
+        """Return the law's own state at the first tick, shape (state_size,); zero by default."""
+        return np.zeros(self._state_size)
 
     def evaluate(
         self,
-        arms: Sequence[Arm],
-        numbers: JointNumbers[N],
+        arms: Arms,
+        parameters: JointParameters[N],
         time: Scalar,
         q: Array,
         dq: Array,
         reference: Array,
-        memory: Array,
+        state: Array,
     ) -> tuple[Array, Array]:
-        """Return the torques, and the memories of the joint motion and of the law; see TorqueLaw."""
+        """Return the torques, and the states of the joint motion and of the law; see TorqueLaw."""
         (arm,) = arms
-        own = len(memory) - self._remembers
-        desired, goes_on = self._motion.follow(arm, numbers.motion, reference, memory[:own])
-        torque, kept = self.command(arm, numbers.own, q, dq, desired, memory[own:])
+        own = len(state) - self._state_size
+        desired, goes_on = self._motion.follow(arm, parameters.motion, reference, state[:own])
+        torque, kept = self.command(arm, parameters.own, q, dq, desired, state[own:])
         return torque, np.concatenate([goes_on, kept])
 
     @abstractmethod
     def command(
-        self, arm: Arm, numbers: N, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+        self, arm: Arm, parameters: N, q: Array, dq: Array, desired: DesiredJoints, state: Array
     ) -> tuple[Array, Array]:
-        """Return the torques, shape (nq,), in N m, and the law's own memory for the next tick.
+        """Return the torques, shape (nq,), in N m, and the law's own state for the next tick.
 
         Args:
             arm: Nominal arm.
-            numbers: The law's own numbers.
+            parameters: The law's own parameters.
             q: Measured joint positions, shape (nq,), in rad.
             dq: Measured joint velocities, shape (nq,), in rad/s.
             desired: Desired joint motion.
-            memory: The law's own memory, shape (remembers,).
+            state: The law's own state, shape (state_size,).
         """
 
 

@@ -26,15 +26,15 @@ class JointPdConfig(JointLawConfig):
     inertia: Literal["home", "posture"]
 
 
-class JointPdNumbers(NamedTuple):
-    """The numbers of joint PD control."""
+class JointPdParameters(NamedTuple):
+    """The parameters of joint PD control."""
 
     k_p: Scalar  # omega_n^2, in 1/s^2
     k_v: Scalar  # 2 xi omega_n, in 1/s
     inertia: Array  # diagonal of M at home, shape (nq,), in kg m^2
 
 
-class JointPd(JointLaw[JointPdNumbers, JointPdConfig]):
+class JointPd(JointLaw[JointPdParameters, JointPdConfig]):
     r"""PD control with gravity (Takegaki and Arimoto, ASME Journal of Dynamic Systems 103(2), 1981).
 
     .. math:: \tau = D (\omega_n^2 (q_d - q) + 2 \xi \omega_n (\dot q_d - \dot q)) + G(q), \qquad D = \mathrm{diag} M
@@ -48,11 +48,11 @@ class JointPd(JointLaw[JointPdNumbers, JointPdConfig]):
     because the fastest mode is then the sampled velocity loop, d(v)/dt = -2 omega_n lambda v.
     """
 
-    def choose_numbers(self, model: RobotModel, config: JointPdConfig, inertia: FloatArray) -> JointPdNumbers:
-        """Return the numbers of the law above; see JointLaw."""
+    def choose_parameters(self, model: RobotModel, config: JointPdConfig, inertia: FloatArray) -> JointPdParameters:
+        """Return the parameters of the law above; see JointLaw."""
         k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
         self._at_home = config.inertia == "home"
-        return JointPdNumbers(
+        return JointPdParameters(
             k_p=k_p,
             k_v=k_v,
             inertia=inertia,
@@ -61,17 +61,17 @@ class JointPd(JointLaw[JointPdNumbers, JointPdConfig]):
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.own.k_v, 0.0, self._at_home)
+        return VelocityGain(self.parameters.own.k_v, 0.0, self._at_home)
 
     def command(
-        self, arm: Arm, numbers: JointPdNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+        self, arm: Arm, parameters: JointPdParameters, q: Array, dq: Array, desired: DesiredJoints, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see JointLaw."""
-        ddq = numbers.k_p * (desired.q - q) + numbers.k_v * (desired.dq - dq)
-        inertia = numbers.inertia if self._at_home else arm.mass_matrix(q).diagonal()
+        ddq = parameters.k_p * (desired.q - q) + parameters.k_v * (desired.dq - dq)
+        inertia = parameters.inertia if self._at_home else arm.mass_matrix(q).diagonal()
         torque = inertia * ddq  # before the next call overwrites it
         rest = np.zeros(len(q))
-        return torque + arm.inverse_dynamics(q, rest, rest), memory
+        return torque + arm.inverse_dynamics(q, rest, rest), state
 
 
 CONFIG = JointPdConfig

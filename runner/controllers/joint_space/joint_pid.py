@@ -30,8 +30,8 @@ class JointPidConfig(JointLawConfig):
     anti_windup: bool
 
 
-class JointPidNumbers(NamedTuple):
-    """The numbers of joint PID control."""
+class JointPidParameters(NamedTuple):
+    """The parameters of joint PID control."""
 
     k_p: Scalar  # omega_n^2, in 1/s^2
     k_v: Scalar  # 2 xi omega_n, in 1/s
@@ -40,7 +40,7 @@ class JointPidNumbers(NamedTuple):
     limits: Array  # torque limits, shape (nq,), in N m; infinite if there is none
 
 
-class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
+class JointPid(JointLaw[JointPidParameters, JointPidConfig]):
     r"""PID control with gravity (Arimoto and Miyazaki, First International Symposium of Robotics Research, 1984).
 
     .. math::
@@ -54,12 +54,12 @@ class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
     1989), z_k stays constant while the joint's torque is beyond its limit and e has the sign of the torque.
     """
 
-    def choose_numbers(self, model: RobotModel, config: JointPidConfig, inertia: FloatArray) -> JointPidNumbers:
-        """Return the numbers of the law above; see JointLaw."""
+    def choose_parameters(self, model: RobotModel, config: JointPidConfig, inertia: FloatArray) -> JointPidParameters:
+        """Return the parameters of the law above; see JointLaw."""
         k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
         self._anti_windup = config.anti_windup
-        self._remembers = model.nq
-        return JointPidNumbers(
+        self._state_size = model.nq
+        return JointPidParameters(
             k_p=k_p,
             k_v=k_v,
             k_i=config.integral_share * config.natural_frequency**3,
@@ -70,19 +70,19 @@ class JointPid(JointLaw[JointPidNumbers, JointPidConfig]):
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.own.k_v, 0.0)
+        return VelocityGain(self.parameters.own.k_v, 0.0)
 
     def command(
-        self, arm: Arm, numbers: JointPidNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+        self, arm: Arm, parameters: JointPidParameters, q: Array, dq: Array, desired: DesiredJoints, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above, and the integral at the next tick; see JointLaw."""
         error, rest = desired.q - q, np.zeros(len(q))
-        ddq = numbers.k_p * error + numbers.k_v * (desired.dq - dq) + numbers.k_i * memory
-        torque = numbers.inertia * ddq + arm.inverse_dynamics(q, rest, rest)
+        ddq = parameters.k_p * error + parameters.k_v * (desired.dq - dq) + parameters.k_i * state
+        torque = parameters.inertia * ddq + arm.inverse_dynamics(q, rest, rest)
         step = desired.period * error
         if self._anti_windup:
-            step = np.concatenate([_useful(arm, *of) for of in zip(torque, numbers.limits, step, strict=True)])
-        return torque, memory + step
+            step = np.concatenate([_useful(arm, *of) for of in zip(torque, parameters.limits, step, strict=True)])
+        return torque, state + step
 
 
 def _useful(arm: Arm, torque: Scalar, limit: Scalar, step: Scalar) -> Array:

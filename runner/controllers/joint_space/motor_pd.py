@@ -29,8 +29,8 @@ class MotorPdConfig(JointLawConfig):
     joint_stiffness: RotaryStiffness[PositivePerJoint]
 
 
-class MotorPdNumbers(NamedTuple):
-    """The numbers of PD control of motors."""
+class MotorPdParameters(NamedTuple):
+    """The parameters of PD control of motors."""
 
     k_p: Scalar  # omega_n^2, in 1/s^2
     k_v: Scalar  # 2 xi omega_n, in 1/s
@@ -38,7 +38,7 @@ class MotorPdNumbers(NamedTuple):
     compliance: Array  # K^-1 of each joint, shape (nq,), in rad/(N m)
 
 
-class MotorPd(JointLaw[MotorPdNumbers, MotorPdConfig]):
+class MotorPd(JointLaw[MotorPdParameters, MotorPdConfig]):
     r"""PD control of motors with gravity (Tomei, IEEE Transactions on Automatic Control 36(10), 1991).
 
     .. math:: \tau = D (\omega_n^2 (\theta_d - \theta) + 2 \xi \omega_n (\dot q_d - \dot\theta)) + G(q_d), \qquad
@@ -49,11 +49,11 @@ class MotorPd(JointLaw[MotorPdNumbers, MotorPdConfig]):
     motors, and their readings are not corrected.
     """
 
-    def choose_numbers(self, model: RobotModel, config: MotorPdConfig, inertia: FloatArray) -> MotorPdNumbers:
-        """Return the numbers of the law above; see JointLaw."""
+    def choose_parameters(self, model: RobotModel, config: MotorPdConfig, inertia: FloatArray) -> MotorPdParameters:
+        """Return the parameters of the law above; see JointLaw."""
         k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
         stiffness = expand("controller.joint_stiffness", config.joint_stiffness, model.joint_names)
-        return MotorPdNumbers(
+        return MotorPdParameters(
             k_p=k_p,
             k_v=k_v,
             inertia=inertia,
@@ -63,16 +63,16 @@ class MotorPd(JointLaw[MotorPdNumbers, MotorPdConfig]):
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.own.k_v, 0.0, True)
+        return VelocityGain(self.parameters.own.k_v, 0.0, True)
 
     def command(
-        self, arm: Arm, numbers: MotorPdNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+        self, arm: Arm, parameters: MotorPdParameters, q: Array, dq: Array, desired: DesiredJoints, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see JointLaw."""
         rest = np.zeros(len(q))
         weight = arm.inverse_dynamics(desired.q, rest, rest)
-        off = desired.q + numbers.compliance * weight - q
-        return numbers.inertia * (numbers.k_p * off + numbers.k_v * (desired.dq - dq)) + weight, memory
+        off = desired.q + parameters.compliance * weight - q
+        return parameters.inertia * (parameters.k_p * off + parameters.k_v * (desired.dq - dq)) + weight, state
 
 
 CONFIG = MotorPdConfig

@@ -25,14 +25,14 @@ class PassivityConfig(JointLawConfig):
     kind: Literal["passivity"]
 
 
-class PassivityNumbers(NamedTuple):
-    """The numbers of passivity-based control."""
+class PassivityParameters(NamedTuple):
+    """The parameters of passivity-based control."""
 
     rate: Scalar  # lambda, in 1/s
     damping: Array  # diagonal of K_D, shape (nq,), in kg m^2/s
 
 
-class Passivity(JointLaw[PassivityNumbers, PassivityConfig]):
+class Passivity(JointLaw[PassivityParameters, PassivityConfig]):
     r"""Passivity-based control (Slotine and Li, International Journal of Robotics Research 6(3), 1987), not adaptive.
 
     .. math::
@@ -45,9 +45,9 @@ class Passivity(JointLaw[PassivityNumbers, PassivityConfig]):
     K_D > 0. At rest, a wrong gravity term G_n causes the error (G - G_n) / (lambda K_D), as under PD control.
     """
 
-    def choose_numbers(self, model: RobotModel, config: PassivityConfig, inertia: FloatArray) -> PassivityNumbers:
-        """Return the numbers of the law above; see JointLaw."""
-        return PassivityNumbers(
+    def choose_parameters(self, model: RobotModel, config: PassivityConfig, inertia: FloatArray) -> PassivityParameters:
+        """Return the parameters of the law above; see JointLaw."""
+        return PassivityParameters(
             rate=config.natural_frequency,
             damping=config.natural_frequency * inertia,
         )
@@ -55,14 +55,14 @@ class Passivity(JointLaw[PassivityNumbers, PassivityConfig]):
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(self.numbers.own.rate, self.numbers.own.rate)
+        return VelocityGain(self.parameters.own.rate, self.parameters.own.rate)
 
     def command(
-        self, arm: Arm, numbers: PassivityNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+        self, arm: Arm, parameters: PassivityParameters, q: Array, dq: Array, desired: DesiredJoints, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see JointLaw."""
-        dq_r, ddq_r = desired.reference(numbers.rate, q, dq)
-        return numbers.damping * (dq_r - dq) + passive_dynamics(arm, q, dq, dq_r, ddq_r), memory
+        dq_r, ddq_r = desired.reference(parameters.rate, q, dq)
+        return parameters.damping * (dq_r - dq) + passive_dynamics(arm, q, dq, dq_r, ddq_r), state
 
 
 def passive_dynamics(arm: Arm, q: Array, dq: Array, dq_r: Array, ddq_r: Array) -> Array:

@@ -32,8 +32,8 @@ class SlidingModeConfig(JointLawConfig):
     switching_gain: PositiveFloat
 
 
-class SlidingModeNumbers(NamedTuple):
-    """The numbers of sliding-mode control."""
+class SlidingModeParameters(NamedTuple):
+    """The parameters of sliding-mode control."""
 
     rate: Scalar  # lambda, in 1/s
     boundary_layer: Scalar  # phi, in rad/s
@@ -41,7 +41,7 @@ class SlidingModeNumbers(NamedTuple):
     switching_gain: Array  # diagonal of K, shape (nq,), in N m
 
 
-class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
+class SlidingMode(JointLaw[SlidingModeParameters, SlidingModeConfig]):
     r"""Sliding-mode control with a boundary layer (Slotine, International Journal of Control 40(2), 1984).
 
     This form preserves the arm's passivity (Slotine and Li, Applied Nonlinear Control, 1991, section 9.1):
@@ -58,10 +58,12 @@ class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
     layer, so phi cannot be arbitrarily small.
     """
 
-    def choose_numbers(self, model: RobotModel, config: SlidingModeConfig, inertia: FloatArray) -> SlidingModeNumbers:
-        """Return the numbers of the law above; see JointLaw."""
+    def choose_parameters(
+        self, model: RobotModel, config: SlidingModeConfig, inertia: FloatArray
+    ) -> SlidingModeParameters:
+        """Return the parameters of the law above; see JointLaw."""
         damping = config.natural_frequency * inertia
-        return SlidingModeNumbers(
+        return SlidingModeParameters(
             rate=config.natural_frequency,
             boundary_layer=config.boundary_layer,
             damping=damping,
@@ -71,19 +73,19 @@ class SlidingMode(JointLaw[SlidingModeNumbers, SlidingModeConfig]):
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v within the layer."""
-        own = self.numbers.own
+        own = self.parameters.own
         gain = own.switching_gain[0] / (own.boundary_layer * own.damping[0])
         return VelocityGain((1.0 + gain) * own.rate, own.rate)
 
     def command(
-        self, arm: Arm, numbers: SlidingModeNumbers, q: Array, dq: Array, desired: DesiredJoints, memory: Array
+        self, arm: Arm, parameters: SlidingModeParameters, q: Array, dq: Array, desired: DesiredJoints, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see JointLaw."""
-        dq_r, ddq_r = desired.reference(numbers.rate, q, dq)
+        dq_r, ddq_r = desired.reference(parameters.rate, q, dq)
         s = dq_r - dq
-        saturated = np.array([clip(arm.backend, share, 1.0) for share in s / numbers.boundary_layer])
-        torque = numbers.damping * s + numbers.switching_gain * saturated
-        return torque + passive_dynamics(arm, q, dq, dq_r, ddq_r), memory
+        saturated = np.array([clip(arm.backend, share, 1.0) for share in s / parameters.boundary_layer])
+        torque = parameters.damping * s + parameters.switching_gain * saturated
+        return torque + passive_dynamics(arm, q, dq, dq_r, ddq_r), state
 
 
 CONFIG = SlidingModeConfig

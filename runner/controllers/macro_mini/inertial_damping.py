@@ -1,27 +1,26 @@
 """Inertial damping: tip motion of a mounted stage against the vibration of its base stage."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.controllers.macro_mini.stage_loops import StageLaw, StageLoop, StageNumbers, base_at_home
-from runner.controllers.torque_law import Arm
+from runner.controllers.macro_mini.stage_loops import StageLaw, StageLoop, StageParameters, base_at_home
+from runner.controllers.torque_law import Arms
 from runner.robots.robot import Robot
 from runner.symbolic.maths import Array, Scalar
 
 
-class DampingNumbers(NamedTuple):
-    """The numbers of inertial damping."""
+class DampingParameters(NamedTuple):
+    """The parameters of inertial damping."""
 
-    law: StageNumbers
+    law: StageParameters
     offset: Array  # r_0, position of the tip at home in the stage's base frame, shape (3,), in m
     gravity: Array  # gravity in the robot's base frame, shape (3,), in m/s^2
     share: Scalar  # g / (2 xi omega_c), the commanded tip velocity per base velocity
 
 
-class InertialDamping(StageLoop[DampingNumbers]):
+class InertialDamping(StageLoop[DampingParameters]):
     r"""The loop of a mounted stage that damps the vibration of its base instead of tracking.
 
     After the damping of flexible arms by small arms at their ends (Lew and Trudnowski, IEEE Control Systems 16(1),
@@ -50,26 +49,26 @@ class InertialDamping(StageLoop[DampingNumbers]):
         self._law = law
         self._first, self._end = robot.stages[stage].joints.start, robot.stages[stage].joints.stop
         base, _ = base_at_home(robot, stage)
-        numbers = DampingNumbers(
-            law.numbers, robot.stages[stage].home_offset, robot.model.gravity, gain / law.numbers.k_v
+        parameters = DampingParameters(
+            law.parameters, robot.stages[stage].home_offset, robot.model.gravity, gain / law.parameters.k_v
         )
-        super().__init__([law.model, base], law.gravity_compensation, numbers, robot.model.nq)
+        super().__init__([law.model, base], law.gravity_compensation, parameters, robot.model.nq)
 
     def evaluate(
         self,
-        arms: Sequence[Arm],
-        numbers: DampingNumbers,
+        arms: Arms,
+        parameters: DampingParameters,
         time: Scalar,
         q: Array,
         dq: Array,
         reference: Array,
-        memory: Array,
+        state: Array,
     ) -> tuple[Array, Array]:
         """Return the torques of this stage; see TorqueLaw."""
         own, base = arms
         _, R, moves = base.tip_pose_and_twist(q, dq)
         still: FloatArray = np.zeros(3)
-        beside, gravity = np.array([numbers.share * (moves[:3] - reference[1]), numbers.gravity]).dot(R)
-        target = np.array([numbers.offset, beside, still])
+        beside, gravity = np.array([parameters.share * (moves[:3] - reference[1]), parameters.gravity]).dot(R)
+        target = np.array([parameters.offset, beside, still])
         own_q, own_dq = q[self._first : self._end], dq[self._first : self._end]
-        return self._law.move(own, numbers.law, own_q, own_dq, target, gravity), memory
+        return self._law.move(own, parameters.law, own_q, own_dq, target, gravity), state

@@ -1,6 +1,5 @@
 """Control loops of mounted arms: control law and coupled target of each stage."""
 
-from collections.abc import Sequence
 from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
@@ -9,7 +8,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.controller import VelocityGain
 from runner.controllers.operational_space.operational_space import tip_law
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
-from runner.controllers.torque_law import Arm, TorqueLaw, second_order, structure_of
+from runner.controllers.torque_law import Arm, Arms, TorqueLaw, second_order, structure_of
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, end_points
 from runner.sensing.wrench import cross
@@ -20,8 +19,8 @@ Aim = Literal["rest", "own_offset", "base_offset"]
 _STILL = np.zeros(3)
 
 
-class StageNumbers(NamedTuple):
-    """The numbers of a stage's law."""
+class StageParameters(NamedTuple):
+    """The parameters of a stage's law."""
 
     tip: Any
     k_p: Scalar  # omega_n^2 of a held configuration, in 1/s^2
@@ -44,7 +43,7 @@ class StageLaw:
     Attributes:
         model: The arm.
         gravity_compensation: True if the law includes the gravity term.
-        numbers: Numbers of the law.
+        parameters: Parameters of the law.
 
     Raises:
         ConfigError: if the arm has fewer joints than the tip has directions of motion.
@@ -54,30 +53,30 @@ class StageLaw:
         self.model, self.gravity_compensation = model, law.gravity_compensation
         self._tip: Any = tip_law(model, law, home)  # OperationalSpace or WholeBody, with different types of numbers
         gains = second_order(law.natural_frequency, law.damping_ratio)
-        self.numbers = StageNumbers(self._tip.numbers, *gains)
+        self.parameters = StageParameters(self._tip.parameters, *gains)
 
     def structure(self) -> dict[str, Any]:
-        """Return the attributes without the numbers; see TorqueLaw.structure."""
+        """Return the attributes without the parameters; see TorqueLaw.structure."""
         return structure_of(self)
 
     def move(
-        self, arm: Arm, numbers: StageNumbers, q: Array, dq: Array, reference: Array, gravity: Array | None = None
+        self, arm: Arm, parameters: StageParameters, q: Array, dq: Array, reference: Array, gravity: Array | None = None
     ) -> Array:
         """Return the torques that move the tip to a reference in the base frame of the stage; see WholeBody.control."""
-        torque: Array = self._tip.control(arm, numbers.tip, q, dq, reference, gravity)
+        torque: Array = self._tip.control(arm, parameters.tip, q, dq, reference, gravity)
         return torque
 
     def hold(
-        self, arm: Arm, numbers: StageNumbers, q: Array, dq: Array, posture: Array, gravity: Array | None = None
+        self, arm: Arm, parameters: StageParameters, q: Array, dq: Array, posture: Array, gravity: Array | None = None
     ) -> Array:
         """Return the torques that hold a configuration, shape (nq,), in rad; see Arm.inverse_dynamics for gravity."""
-        return arm.inverse_dynamics(q, dq, numbers.k_p * (posture - q) - numbers.k_v * dq, gravity)
+        return arm.inverse_dynamics(q, dq, parameters.k_p * (posture - q) - parameters.k_v * dq, gravity)
 
 
-class MacroNumbers(NamedTuple):
-    """The numbers of the first stage's loop."""
+class MacroParameters(NamedTuple):
+    """The parameters of the first stage's loop."""
 
-    law: StageNumbers
+    law: StageParameters
     offset: Array  # offset o as a motion at rest, shape (3, 3)
     later: Array  # home offset of the stages on the first mounted stage, in the robot's base frame, shape (3,), in m
     rotations: Array  # rotations from the mounted stages' base frames at home into the robot's, shape (mounted, 3, 3)
@@ -85,10 +84,10 @@ class MacroNumbers(NamedTuple):
     turn: Scalar  # length of a turn, in s
 
 
-class MiniNumbers(NamedTuple):
-    """The numbers of a mounted stage's loop."""
+class MiniParameters(NamedTuple):
+    """The parameters of a mounted stage's loop."""
 
-    law: StageNumbers
+    law: StageParameters
     offset: Array  # home offset r_0 as a motion at rest, shape (3, 3)
     later: Array  # home offset of the stages mounted on it, in the robot's base frame, shape (3,), in m
     rotation: Array  # rotation from its base frame at home into the robot's, shape (3, 3)
@@ -98,34 +97,34 @@ class MiniNumbers(NamedTuple):
     turn: Scalar  # length of a turn, in s
 
 
-class HeldNumbers(NamedTuple):
-    """The numbers of a loop that holds a stage's joints."""
+class HeldParameters(NamedTuple):
+    """The parameters of a loop that holds a stage's joints."""
 
-    law: StageNumbers
+    law: StageParameters
     posture: Array  # held configuration, shape (n,), in rad
     rotation: Array  # rotation from the stage's base frame at home into the robot's, shape (3, 3)
     gravity: Array  # gravity in the robot's base frame, shape (3,), in m/s^2
 
 
-N = TypeVar("N", bound=Any)  # a NamedTuple with the numbers of the stage's law, `law`
+N = TypeVar("N", bound=Any)  # a NamedTuple with the parameters of the stage's law, `law`
 
 
 class StageLoop(TorqueLaw[N]):
-    """Base class of the loops of stages; `_released` is the memory without a held configuration."""
+    """Base class of the loops of stages; `_released` is the state without a held configuration."""
 
     _released: FloatArray = np.zeros(0)
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(0.0, self.numbers.law.k_v)
+        return VelocityGain(0.0, self.parameters.law.k_v)
 
     def start(self, q: FloatArray) -> FloatArray:
-        """Return the memory without a held configuration; see TorqueLaw."""
+        """Return the state without a held configuration; see TorqueLaw."""
         return self._released
 
 
-class MacroController(StageLoop[MacroNumbers]):
+class MacroController(StageLoop[MacroParameters]):
     """The loop of the first stage, which is fixed to the ground.
 
     Its target is x_d - o. The offset o of the mounted stages is 0 (macro_target tip_goal), their offset at home
@@ -159,8 +158,8 @@ class MacroController(StageLoop[MacroNumbers]):
         self._released = _no_posture(self._end if self._turns else None)
         tips = [stage.model for stage in robot.stages[1:]] if offset is None else []
         at_home = end_points(robot, robot.home[None])[:, 0]
-        numbers = MacroNumbers(
-            law=law.numbers,
+        parameters = MacroParameters(
+            law=law.parameters,
             offset=_at_rest(_STILL if offset is None else offset),
             later=at_home[-1] - at_home[1],
             rotations=np.array([rotation for _, rotation in placed]),
@@ -168,40 +167,33 @@ class MacroController(StageLoop[MacroNumbers]):
             turn=0.0 if turn is None else turn,
         )
         models = [law.model, *bases[: self._bases], *tips]
-        super().__init__(models, law.gravity_compensation, numbers, robot.model.nq)
+        super().__init__(models, law.gravity_compensation, parameters, robot.model.nq)
 
     def evaluate(
-        self,
-        arms: Sequence[Arm],
-        numbers: MacroNumbers,
-        time: Scalar,
-        q: Array,
-        dq: Array,
-        reference: Array,
-        memory: Array,
+        self, arms: Arms, parameters: MacroParameters, time: Scalar, q: Array, dq: Array, reference: Array, state: Array
     ) -> tuple[Array, Array]:
-        """Return the torques of the first stage, and the memory of the held configuration; see TorqueLaw."""
+        """Return the torques of the first stage, and the state of the held configuration; see TorqueLaw."""
         own, own_q, own_dq = arms[0], q[: self._end], dq[: self._end]
         bases = [arm.tip_pose(q) for arm in arms[1 : 1 + self._bases]] if self._bases else []
-        target = reference - numbers.offset
+        target = reference - parameters.offset
         if self._minis:
-            rotations = numbers.rotations if self._ignore_base_rotation else [R for _, R in bases]
+            rotations = parameters.rotations if self._ignore_base_rotation else [R for _, R in bases]
             for (first, end), mini, R in zip(self._minis, arms[1 + self._bases :], rotations, strict=True):
                 x, _ = mini.tip_pose(q[first:end])
                 target[0] -= R.dot(x)
         if not self._turns:
-            return self._law.move(own, numbers.law, own_q, own_dq, target), memory
-        backend, distance = own.backend, reference[0] - bases[0][0] - numbers.later
-        beyond = backend.less(numbers.reach * numbers.reach, distance.dot(distance))
-        own_turn = backend.less(mini_moves(backend, numbers.turn, time), 0.5)
+            return self._law.move(own, parameters.law, own_q, own_dq, target), state
+        backend, distance = own.backend, reference[0] - bases[0][0] - parameters.later
+        beyond = backend.less(parameters.reach * parameters.reach, distance.dot(distance))
+        own_turn = backend.less(mini_moves(backend, parameters.turn, time), 0.5)
         return backend.choose(
             backend.any_of(own_turn, beyond),
-            lambda: (self._law.move(own, numbers.law, own_q, own_dq, target), self._released),
-            lambda: _hold(self._law, own, numbers.law, own_q, own_dq, memory),
+            lambda: (self._law.move(own, parameters.law, own_q, own_dq, target), self._released),
+            lambda: _hold(self._law, own, parameters.law, own_q, own_dq, state),
         )
 
 
-class MiniController(StageLoop[MiniNumbers]):
+class MiniController(StageLoop[MiniParameters]):
     """The loop of a mounted stage.
 
     Its target in its base frame is R^T (x_d - o - x_E). o is the home offset of the stages mounted on it, regardless of
@@ -249,8 +241,8 @@ class MiniController(StageLoop[MiniNumbers]):
         at_home, between = base_at_home(robot, stage)[1], robot.stages[1:stage] if ignore_base_rotation else ()
         self._between = [(below.joints.start, below.joints.stop) for below in between]
         base, _ = base_at_home(robot, stage - len(between))
-        numbers = MiniNumbers(
-            law=law.numbers,
+        parameters = MiniParameters(
+            law=law.parameters,
             offset=_at_rest(at_home.dot(r_0) if aim == "base_offset" else r_0),
             later=later_offset,
             rotation=at_home,
@@ -260,40 +252,33 @@ class MiniController(StageLoop[MiniNumbers]):
             turn=0.0 if turn is None else turn,
         )
         models = [law.model, base, *(below.model for below in between)]
-        super().__init__(models, law.gravity_compensation, numbers, robot.model.nq)
+        super().__init__(models, law.gravity_compensation, parameters, robot.model.nq)
 
     def evaluate(
-        self,
-        arms: Sequence[Arm],
-        numbers: MiniNumbers,
-        time: Scalar,
-        q: Array,
-        dq: Array,
-        reference: Array,
-        memory: Array,
+        self, arms: Arms, parameters: MiniParameters, time: Scalar, q: Array, dq: Array, reference: Array, state: Array
     ) -> tuple[Array, Array]:
-        """Return the torques of this stage, and the memory of the held configuration; see TorqueLaw."""
+        """Return the torques of this stage, and the state of the held configuration; see TorqueLaw."""
         own = arms[0]
         backend, own_q, own_dq = own.backend, q[self._first : self._end], dq[self._first : self._end]
-        way, target, gravity = self._seen(arms[1:], numbers, q, dq, reference)
+        way, target, gravity = self._seen(arms[1:], parameters, q, dq, reference)
         if not self._follows:
-            return self._law.move(own, numbers.law, own_q, own_dq, target, gravity), memory
+            return self._law.move(own, parameters.law, own_q, own_dq, target, gravity), state
         squared, near = way.dot(way), target
-        beyond = backend.less(numbers.reach * numbers.reach, squared)
+        beyond = backend.less(parameters.reach * parameters.reach, squared)
         if self._stretch:
             target = backend.choose(
-                beyond, lambda: _at_rest(near[0] * (numbers.reach / backend.sqrt(squared))), lambda: near
+                beyond, lambda: _at_rest(near[0] * (parameters.reach / backend.sqrt(squared))), lambda: near
             )
         if not self._holds:
-            return self._law.move(own, numbers.law, own_q, own_dq, target, gravity), memory
+            return self._law.move(own, parameters.law, own_q, own_dq, target, gravity), state
         return backend.choose(
-            self._waits(backend, numbers, time, beyond),
-            lambda: _hold(self._law, own, numbers.law, own_q, own_dq, memory, gravity),
-            lambda: (self._law.move(own, numbers.law, own_q, own_dq, target, gravity), self._released),
+            self._waits(backend, parameters, time, beyond),
+            lambda: _hold(self._law, own, parameters.law, own_q, own_dq, state, gravity),
+            lambda: (self._law.move(own, parameters.law, own_q, own_dq, target, gravity), self._released),
         )
 
     def _seen(
-        self, below: Sequence[Arm], numbers: MiniNumbers, q: Array, dq: Array, reference: Array
+        self, below: Arms, parameters: MiniParameters, q: Array, dq: Array, reference: Array
     ) -> tuple[Array, Array, Array]:
         """Return the vector to the target in the robot's base frame; target and gravity in the stage's."""
         base, *between = below
@@ -301,7 +286,7 @@ class MiniController(StageLoop[MiniNumbers]):
             x, R, moves = base.tip_pose_and_twist(q, dq)
         else:
             x, R = base.tip_pose(q)
-        for (first, end), arm, turned in zip(self._between, between, numbers.between, strict=True):
+        for (first, end), arm, turned in zip(self._between, between, parameters.between, strict=True):
             if self._moving:
                 offset, _, goes = arm.tip_pose_and_twist(q[first:end], dq[first:end])
                 moves = np.concatenate([moves[:3] + turned.dot(goes[:3]), moves[3:]])
@@ -309,25 +294,25 @@ class MiniController(StageLoop[MiniNumbers]):
                 offset, _ = arm.tip_pose(q[first:end])
             x = x + turned.dot(offset)
         if self._ignore_base_rotation:
-            R = numbers.rotation
+            R = parameters.rotation
         if self._aim == "own_offset":
-            return numbers.offset[0], numbers.offset, R.T.dot(numbers.gravity)
-        way = reference[0] - numbers.later - x if self._follows else numbers.offset[0]
+            return parameters.offset[0], parameters.offset, R.T.dot(parameters.gravity)
+        way = reference[0] - parameters.later - x if self._follows else parameters.offset[0]
         velocity = _STILL
         if self._moving:
             velocity = reference[1] - moves[:3] if self._follows else _STILL
             velocity = velocity if self._ignore_base_rotation else velocity - cross(moves[3:], way)
-        seen = np.array([way, velocity, _STILL, numbers.gravity]).dot(R)  # R^T of each row
+        seen = np.array([way, velocity, _STILL, parameters.gravity]).dot(R)  # R^T of each row
         return way, seen[:3], seen[3]
 
-    def _waits(self, backend: Backend, numbers: MiniNumbers, time: Scalar, beyond: Scalar) -> Scalar:
+    def _waits(self, backend: Backend, parameters: MiniParameters, time: Scalar, beyond: Scalar) -> Scalar:
         if not self._turns:
             return beyond
-        waits = backend.less(mini_moves(backend, numbers.turn, time), 0.5)
+        waits = backend.less(mini_moves(backend, parameters.turn, time), 0.5)
         return waits if self._stretch else backend.any_of(waits, beyond)
 
 
-class HeldController(StageLoop[HeldNumbers]):
+class HeldController(StageLoop[HeldParameters]):
     """The loop of a mounted stage whose joints are held at home.
 
     Args:
@@ -341,25 +326,18 @@ class HeldController(StageLoop[HeldNumbers]):
         self._law, self._ignore_base_rotation = law, ignore_base_rotation
         self._first, self._end = robot.stages[stage].joints.start, robot.stages[stage].joints.stop
         base, at_home = base_at_home(robot, stage)
-        numbers = HeldNumbers(law.numbers, robot.stages[stage].home, at_home, robot.model.gravity)
-        super().__init__([law.model, base], law.gravity_compensation, numbers, robot.model.nq)
+        parameters = HeldParameters(law.parameters, robot.stages[stage].home, at_home, robot.model.gravity)
+        super().__init__([law.model, base], law.gravity_compensation, parameters, robot.model.nq)
 
     def evaluate(
-        self,
-        arms: Sequence[Arm],
-        numbers: HeldNumbers,
-        time: Scalar,
-        q: Array,
-        dq: Array,
-        reference: Array,
-        memory: Array,
+        self, arms: Arms, parameters: HeldParameters, time: Scalar, q: Array, dq: Array, reference: Array, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of this stage; see TorqueLaw."""
         own, base = arms
-        R = numbers.rotation if self._ignore_base_rotation else base.tip_pose(q)[1]
+        R = parameters.rotation if self._ignore_base_rotation else base.tip_pose(q)[1]
         own_q, own_dq = q[self._first : self._end], dq[self._first : self._end]
-        gravity = R.T.dot(numbers.gravity)
-        return self._law.hold(own, numbers.law, own_q, own_dq, numbers.posture, gravity), memory
+        gravity = R.T.dot(parameters.gravity)
+        return self._law.hold(own, parameters.law, own_q, own_dq, parameters.posture, gravity), state
 
 
 def mini_moves(backend: Backend, turn: Scalar, time: Scalar) -> Scalar:
@@ -382,14 +360,20 @@ def _at_rest(position: Array) -> Array:
 
 
 def _no_posture(joints: int | None) -> FloatArray:
-    """Return the memory without a held configuration: joint positions, then a flag; empty if a stage never holds."""
+    """Return the state without a held configuration: joint positions, then a flag; empty if a stage never holds."""
     return np.zeros(0 if joints is None else joints + 1)
 
 
 def _hold(
-    law: StageLaw, arm: Arm, numbers: StageNumbers, q: Array, dq: Array, memory: Array, gravity: Array | None = None
+    law: StageLaw,
+    arm: Arm,
+    parameters: StageParameters,
+    q: Array,
+    dq: Array,
+    state: Array,
+    gravity: Array | None = None,
 ) -> tuple[Array, Array]:
-    """Return the torques that hold the configuration at the start of a hold, and its memory."""
+    """Return the torques that hold the configuration at the start of a hold, and its state."""
     backend = arm.backend
-    kept = backend.choose(backend.less(0.5, memory[-1]), lambda: memory, lambda: np.concatenate([q, [1.0]]))
-    return law.hold(arm, numbers, q, dq, kept[:-1], gravity), kept
+    kept = backend.choose(backend.less(0.5, state[-1]), lambda: state, lambda: np.concatenate([q, [1.0]]))
+    return law.hold(arm, parameters, q, dq, kept[:-1], gravity), kept

@@ -1,6 +1,5 @@
 """Operational-space control of the tip position or pose."""
 
-from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -11,7 +10,7 @@ from runner.base.errors import ConfigError
 from runner.controllers.controller import Loop, VelocityGain
 from runner.controllers.operational_space.tip_task import TaskName, held_orientation, task_start
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyLaw
-from runner.controllers.torque_law import Arm, TorqueLaw, second_order
+from runner.controllers.torque_law import Arm, Arms, TorqueLaw, second_order
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.robots.task_space import task_basis
@@ -48,8 +47,8 @@ class OperationalSpaceConfig(StrictModel):
     null_space_frequency: RadiansPerSecond[NonNegativePerStage]
 
 
-class OperationalSpaceNumbers(NamedTuple):
-    """The numbers of operational-space control."""
+class OperationalSpaceParameters(NamedTuple):
+    """The parameters of operational-space control."""
 
     weights: Array  # weights of desired position, velocity and acceleration in F*, shape (3,)
     k_p: Array  # omega_n^2, shape (3,), in 1/s^2, because NumPy multiplies arrays faster than an array and a float
@@ -58,7 +57,7 @@ class OperationalSpaceNumbers(NamedTuple):
     singular_below: Scalar  # singular value below which the inverse of J is damped, in m
 
 
-class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
+class OperationalSpace(TorqueLaw[OperationalSpaceParameters]):
     r"""Dynamic decoupling and linear control of the tip position of an arm with three joints.
 
     The thesis writes the law in operational space, eq. (3.32) with (3.40):
@@ -100,34 +99,34 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
         k_p, k_v = second_order(law.natural_frequency, law.damping_ratio)
         weights = np.array([k_p, k_v, 1.0]) if law.feedforward else np.array([k_p, 0.0, 0.0])
         self._damped = law.singularity_damping > 0.0
-        numbers = OperationalSpaceNumbers(
+        parameters = OperationalSpaceParameters(
             weights, np.full(3, k_p), np.full(3, k_v), law.singularity_damping**2, 0.1 * model.reach
         )
-        super().__init__([model], law.gravity_compensation, numbers)
+        super().__init__([model], law.gravity_compensation, parameters)
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        return VelocityGain(0.0, float(self.numbers.k_v[0]))
+        return VelocityGain(0.0, float(self.parameters.k_v[0]))
 
     def evaluate(
         self,
-        arms: Sequence[Arm],
-        numbers: OperationalSpaceNumbers,
+        arms: Arms,
+        parameters: OperationalSpaceParameters,
         time: Scalar,
         q: Array,
         dq: Array,
         reference: Array,
-        memory: Array,
+        state: Array,
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see TorqueLaw."""
         (arm,) = arms
-        return self.control(arm, numbers, q, dq, reference), memory
+        return self.control(arm, parameters, q, dq, reference), state
 
     def control(
         self,
         arm: Arm,
-        numbers: OperationalSpaceNumbers,
+        parameters: OperationalSpaceParameters,
         q: Array,
         dq: Array,
         reference: Array,
@@ -136,16 +135,16 @@ class OperationalSpace(TorqueLaw[OperationalSpaceNumbers]):
         """Return the torques of the law above; see Arm.inverse_dynamics for gravity, TorqueLaw for the others."""
         backend, tip = arm.backend, arm.tip(q, dq)
         J = tip.J[:3]
-        F = numbers.weights.dot(reference) - numbers.k_p * tip.x - numbers.k_v * J.dot(dq) - tip.dJ_dq[:3]
+        F = parameters.weights.dot(reference) - parameters.k_p * tip.x - parameters.k_v * J.dot(dq) - tip.dJ_dq[:3]
         solution, determinant = backend.solve_three(J, F, None if self._damped else "the tip's Jacobian is singular")
         if self._damped:
             # |det J| over the largest possible product of the other two singular values: a lower bound of the smallest.
             entries = J.ravel()
-            nearness = 2.0 * backend.absolute(determinant) / (entries.dot(entries) * numbers.singular_below)
+            nearness = 2.0 * backend.absolute(determinant) / (entries.dot(entries) * parameters.singular_below)
 
             def damped() -> Array:
                 error = reference[0] - tip.x
-                added = numbers.damping * error.dot(error) * (1.0 - nearness * nearness)
+                added = parameters.damping * error.dot(error) * (1.0 - nearness * nearness)
                 square = J.dot(J.T) + added * np.eye(3)
                 return np.asarray(J.T.dot(backend.solve_symmetric(square, F, "the tip's Jacobian is singular")))
 

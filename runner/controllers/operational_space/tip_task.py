@@ -25,8 +25,8 @@ class TipTaskConfig(Protocol):
     singularity_damping: float
 
 
-class TipNumbers(NamedTuple):
-    """The numbers of a tip task."""
+class TipParameters(NamedTuple):
+    """The parameters of a tip task."""
 
     k_p: Scalar  # omega_n^2, in 1/s^2
     k_v: Scalar  # 2 xi omega_n, in 1/s
@@ -86,7 +86,7 @@ class TipTask:
         k_p, k_v = second_order(law.natural_frequency, law.damping_ratio)
         # A rotation counts as the displacement of a point at the distance of the reach, so all rows are lengths.
         lengths = np.array(moves * [1.0] + (self.rows - moves) * [model.reach])
-        self.numbers = TipNumbers(
+        self.parameters = TipParameters(
             k_p=k_p,
             k_v=k_v,
             directions=directions,
@@ -109,44 +109,44 @@ class TipTask:
                 f"has {model.nq} ({', '.join(model.joint_names)})"
             )
 
-    def jacobian(self, numbers: TipNumbers, tip: Tip) -> tuple[Array, Array]:
+    def jacobian(self, parameters: TipParameters, tip: Tip) -> tuple[Array, Array]:
         """Return the task's Jacobian J in the base frame, shape (rows, nq), and dJ/dt dq, shape (rows,)."""
         J, dJ_dq = tip.J, tip.dJ_dq
         if not self._turns:
             J, dJ_dq = J[:3], dJ_dq[:3]
-        return (J, dJ_dq) if self._whole else (numbers.directions.dot(J), numbers.directions.dot(dJ_dq))
+        return (J, dJ_dq) if self._whole else (parameters.directions.dot(J), parameters.directions.dot(dJ_dq))
 
-    def error(self, backend: Backend, numbers: TipNumbers, tip: Tip, reference: Array) -> Array:
+    def error(self, backend: Backend, parameters: TipParameters, tip: Tip, reference: Array) -> Array:
         """Return desired less actual position and orientation, shape (rows,), in m and rad."""
         error: Array = reference[0] - tip.x
         if self._turns:
-            error = np.concatenate([error, backend.rotation_vector(numbers.orientation.dot(tip.R.T))])
-        return error if self._whole else np.asarray(numbers.directions.dot(error))
+            error = np.concatenate([error, backend.rotation_vector(parameters.orientation.dot(tip.R.T))])
+        return error if self._whole else np.asarray(parameters.directions.dot(error))
 
     def acceleration(
-        self, backend: Backend, numbers: TipNumbers, error: Array, velocity: Array, reference: Array
+        self, backend: Backend, parameters: TipParameters, error: Array, velocity: Array, reference: Array
     ) -> Array:
         """Return F*, shape (rows,), in m/s^2 and rad/s^2, from the task's error and velocity."""
-        approach: Array = numbers.k_p * error
+        approach: Array = parameters.k_p * error
         if self._bounded:
-            approach = self._bound(backend, numbers, approach)
+            approach = self._bound(backend, parameters, approach)
         if not self._feedforward:
-            return np.asarray(approach - numbers.k_v * velocity)
+            return np.asarray(approach - parameters.k_v * velocity)
         desired = reference[1:] if not self._turns else np.pad(reference[1:], ((0, 0), (0, 3)))
         if not self._whole:
-            desired = desired.dot(numbers.directions.T)
-        return np.asarray(desired[1] + numbers.k_v * (desired[0] - velocity) + approach)
+            desired = desired.dot(parameters.directions.T)
+        return np.asarray(desired[1] + parameters.k_v * (desired[0] - velocity) + approach)
 
-    def _bound(self, backend: Backend, numbers: TipNumbers, approach: Array) -> Array:
+    def _bound(self, backend: Backend, parameters: TipParameters, approach: Array) -> Array:
         way = approach[: self._moves]
         norm = backend.sqrt(way.dot(way))
         return backend.choose(
-            backend.less(numbers.max_acceleration, norm),
-            lambda: np.concatenate([way * (numbers.max_acceleration / norm), approach[self._moves :]]),
+            backend.less(parameters.max_acceleration, norm),
+            lambda: np.concatenate([way * (parameters.max_acceleration / norm), approach[self._moves :]]),
             lambda: approach,
         )
 
-    def damp(self, backend: Backend, numbers: TipNumbers, J: Array, error: Array, mobility: Array) -> Array:
+    def damp(self, backend: Backend, parameters: TipParameters, J: Array, error: Array, mobility: Array) -> Array:
         r"""Return J A J^T, shape (rows, rows), with damping on its diagonal.
 
         With rows in units of length the damping is lambda^2 = (singularity_damping |e|)^2, times the ratio of the
@@ -155,24 +155,24 @@ class TipTask:
 
         Args:
             backend: Functions over the scalars of these arrays.
-            numbers: Numbers of the task.
+            parameters: Parameters of the task.
             J: Jacobian of the task, shape (rows, nq).
             error: Error of the task, shape (rows,).
             mobility: J A J^T, shape (rows, rows).
         """
         if not self._damped:
             return mobility
-        J, error = numbers.lengths[:, None] * J, numbers.lengths * error
+        J, error = parameters.lengths[:, None] * J, parameters.lengths * error
         square = J.dot(J.T)
 
         def damped() -> Array:
-            nearness = backend.absolute(backend.smallest_eigenvalue(square)) / numbers.singular_below  # squared
-            size = np.diagonal(mobility).dot(numbers.lengths**2)
+            nearness = backend.absolute(backend.smallest_eigenvalue(square)) / parameters.singular_below  # squared
+            size = np.diagonal(mobility).dot(parameters.lengths**2)
             scale = size / backend.maximum(np.trace(square), 1e-300)
-            amount = scale * numbers.damping * error.dot(error) * (1.0 - nearness)
-            return np.asarray(mobility + np.diag(amount / numbers.lengths**2))
+            amount = scale * parameters.damping * error.dot(error) * (1.0 - nearness)
+            return np.asarray(mobility + np.diag(amount / parameters.lengths**2))
 
-        far = backend.positive_definite(square - numbers.singular_below * np.eye(self.rows))
+        far = backend.positive_definite(square - parameters.singular_below * np.eye(self.rows))
         return backend.choose(far, lambda: mobility, damped)
 
 

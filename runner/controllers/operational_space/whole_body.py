@@ -8,8 +8,8 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.controllers.controller import Loop, VelocityGain
-from runner.controllers.operational_space.tip_task import TipNumbers, TipTask
-from runner.controllers.torque_law import Arm, TorqueLaw, second_order
+from runner.controllers.operational_space.tip_task import TipParameters, TipTask
+from runner.controllers.torque_law import Arm, Arms, TorqueLaw, second_order
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
@@ -72,8 +72,8 @@ class WholeBodyConfig(WholeBodyLaw):
     period: Seconds[PositiveFloat]
 
 
-class PostureNumbers(NamedTuple):
-    """The numbers of a posture task."""
+class PostureParameters(NamedTuple):
+    """The parameters of a posture task."""
 
     k_p: Scalar  # omega_n^2, in 1/s^2
     k_v: Scalar  # 2 omega_n, in 1/s
@@ -85,18 +85,18 @@ class Posture(Protocol):
     """A posture task; its torque is M a + s, before the projection into the null space of the tip task."""
 
     @property
-    def numbers(self) -> PostureNumbers:
-        """Numbers of the task."""
+    def parameters(self) -> PostureParameters:
+        """Parameters of the task."""
         ...
 
     def acceleration_and_torque(
-        self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array
+        self, backend: Backend, parameters: PostureParameters, J: Array, q: Array, dq: Array
     ) -> tuple[Array, Array | None]:
         """Return a joint acceleration a, in rad/s^2, and a torque s, in N m or None, both of shape (nq,).
 
         Args:
             backend: Functions over the scalars of these arrays.
-            numbers: Numbers of the task.
+            parameters: Parameters of the task.
             J: Jacobian of the tip task, shape (rows, nq).
             q: Joint positions, shape (nq,), in rad.
             dq: Joint velocities, shape (nq,), in rad/s.
@@ -123,13 +123,13 @@ class JointStiffness:
 
     def __init__(self, model: RobotModel, frequency: float, rest: FloatArray, first: int) -> None:
         stiffness = frequency**2 * _inertia_at_rest(model, rest, first)
-        self.numbers = PostureNumbers(*second_order(frequency, 1.0), rest, stiffness)
+        self.parameters = PostureParameters(*second_order(frequency, 1.0), rest, stiffness)
 
     def acceleration_and_torque(
-        self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array
+        self, backend: Backend, parameters: PostureParameters, J: Array, q: Array, dq: Array
     ) -> tuple[Array, Array | None]:
         """Return -k_vn dq and the torque of the springs; see Posture."""
-        return -numbers.k_v * dq, numbers.stiffness.dot(numbers.rest - q)
+        return -parameters.k_v * dq, parameters.stiffness.dot(parameters.rest - q)
 
 
 class PostureTask:
@@ -147,18 +147,18 @@ class PostureTask:
     """
 
     def __init__(self, frequency: float, rest: FloatArray) -> None:
-        self.numbers = PostureNumbers(*second_order(frequency, 1.0), rest, np.zeros((0, 0)))
+        self.parameters = PostureParameters(*second_order(frequency, 1.0), rest, np.zeros((0, 0)))
 
     def acceleration_and_torque(
-        self, backend: Backend, numbers: PostureNumbers, J: Array, q: Array, dq: Array
+        self, backend: Backend, parameters: PostureParameters, J: Array, q: Array, dq: Array
     ) -> tuple[Array, Array | None]:
         """Return the joint acceleration in the null space of the tip task, and None; see Posture."""
-        return null_space_projection(backend, J, posture_pd(numbers, q, dq)), None
+        return null_space_projection(backend, J, posture_pd(parameters, q, dq)), None
 
 
-def posture_pd(numbers: PostureNumbers, q: Array, dq: Array) -> Array:
+def posture_pd(parameters: PostureParameters, q: Array, dq: Array) -> Array:
     """Return the joint acceleration towards a configuration, without projection, shape (nq,), in rad/s^2."""
-    return np.asarray(numbers.k_p * (numbers.rest - q) - numbers.k_v * dq)
+    return np.asarray(parameters.k_p * (parameters.rest - q) - parameters.k_v * dq)
 
 
 def null_space_projection(backend: Backend, J: Array, ddq: Array) -> Array:
@@ -179,11 +179,11 @@ def _inertia_at_rest(model: RobotModel, rest: FloatArray, first: int) -> FloatAr
     return inertia
 
 
-class WholeBodyNumbers(NamedTuple):
-    """The numbers of the whole-body law: those of the tip task and of the posture task."""
+class WholeBodyParameters(NamedTuple):
+    """The parameters of the whole-body law: those of the tip task and of the posture task."""
 
-    tip: TipNumbers
-    posture: PostureNumbers
+    tip: TipParameters
+    posture: PostureParameters
 
 
 class TaskState(NamedTuple):
@@ -215,7 +215,7 @@ class TaskState(NamedTuple):
         return np.asarray(self.J.dot(self.M_inverse_J))
 
 
-class WholeBody(TorqueLaw[WholeBodyNumbers]):
+class WholeBody(TorqueLaw[WholeBodyParameters]):
     r"""Operational-space control of the tip of an arm with more joints than the task needs (thesis method 1).
 
     .. math::
@@ -253,59 +253,61 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         self._posture: Posture = (
             JointStiffness(model, frequency, rest, first_held) if first_held else PostureTask(frequency, rest)
         )
-        numbers = WholeBodyNumbers(self._task.numbers, self._posture.numbers)
-        super().__init__([model], config.gravity_compensation, numbers)
+        parameters = WholeBodyParameters(self._task.parameters, self._posture.parameters)
+        super().__init__([model], config.gravity_compensation, parameters)
 
     @property
     def velocity_gain(self) -> VelocityGain:
         """K_v."""
-        tip, posture = self.numbers
+        tip, posture = self.parameters
         spare = self.models[0].nq > len(tip.directions)
         return VelocityGain(0.0, max(tip.k_v, posture.k_v) if spare else tip.k_v)
 
     def evaluate(
         self,
-        arms: Sequence[Arm],
-        numbers: WholeBodyNumbers,
+        arms: Arms,
+        parameters: WholeBodyParameters,
         time: Scalar,
         q: Array,
         dq: Array,
         reference: Array,
-        memory: Array,
+        state: Array,
     ) -> tuple[Array, Array]:
         """Return the torques of the law above; see TorqueLaw."""
         (arm,) = arms
-        return self.control(arm, numbers, q, dq, reference), memory
+        return self.control(arm, parameters, q, dq, reference), state
 
     def control(
         self,
         arm: Arm,
-        numbers: WholeBodyNumbers,
+        parameters: WholeBodyParameters,
         q: Array,
         dq: Array,
         reference: Array,
         gravity: Array | None = None,
     ) -> Array:
         """Return the torques of the law above; see Arm.inverse_dynamics for gravity, TorqueLaw for the others."""
-        task = self.task_state(arm, numbers, q, dq, reference)
-        return self.joint_torques(arm, numbers, task, self.acceleration(arm, numbers, task, reference), None, gravity)
+        task = self.task_state(arm, parameters, q, dq, reference)
+        return self.joint_torques(
+            arm, parameters, task, self.acceleration(arm, parameters, task, reference), None, gravity
+        )
 
-    def task_state(self, arm: Arm, numbers: WholeBodyNumbers, q: Array, dq: Array, reference: Array) -> TaskState:
+    def task_state(self, arm: Arm, parameters: WholeBodyParameters, q: Array, dq: Array, reference: Array) -> TaskState:
         """Return the state of the tip task; see TorqueLaw for the arguments."""
         tip = arm.tip(q, dq)
-        J, dJ_dq = self._task.jacobian(numbers.tip, tip)
-        error = self._task.error(arm.backend, numbers.tip, tip, reference)
+        J, dJ_dq = self._task.jacobian(parameters.tip, tip)
+        error = self._task.error(arm.backend, parameters.tip, tip, reference)
         M_inverse_J = arm.backend.solve_symmetric(arm.mass_matrix(q), J.T, "the mass matrix is singular")
         return TaskState(q, dq, tip.x, J, dJ_dq, M_inverse_J, error, J.dot(dq))
 
-    def acceleration(self, arm: Arm, numbers: WholeBodyNumbers, task: TaskState, reference: Array) -> Array:
+    def acceleration(self, arm: Arm, parameters: WholeBodyParameters, task: TaskState, reference: Array) -> Array:
         """Return F* of TipTask, shape (rows,), in m/s^2 and rad/s^2."""
-        return self._task.acceleration(arm.backend, numbers.tip, task.error, task.velocity, reference)
+        return self._task.acceleration(arm.backend, parameters.tip, task.error, task.velocity, reference)
 
     def joint_torques(
         self,
         arm: Arm,
-        numbers: WholeBodyNumbers,
+        parameters: WholeBodyParameters,
         task: TaskState,
         acceleration: Array,
         force: Array | None = None,
@@ -317,7 +319,7 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
 
         Args:
             arm: The arm.
-            numbers: Numbers of the law.
+            parameters: Parameters of the law.
             task: State of the tip task.
             acceleration: a along the rows of the task, shape (rows,).
             force: F along the rows of the task, shape (rows,), in N; None for no force.
@@ -326,11 +328,11 @@ class WholeBody(TorqueLaw[WholeBodyNumbers]):
         backend, J = arm.backend, task.J
         F = acceleration - task.dJ_dq
         # N^T tau_0 = tau_0 - J^T Lambda J M^-1 tau_0, and tau_0 = M ddq_0 + spring.
-        ddq_0, spring = self._posture.acceleration_and_torque(backend, numbers.posture, J, task.q, task.dq)
+        ddq_0, spring = self._posture.acceleration_and_torque(backend, parameters.posture, J, task.q, task.dq)
         F = F - J.dot(ddq_0)
         if spring is not None:
             F = F - task.M_inverse_J.T.dot(spring)
-        mobility = self._task.damp(backend, numbers.tip, J, task.error, task.mobility)
+        mobility = self._task.damp(backend, parameters.tip, J, task.error, task.mobility)
         moving = backend.solve_symmetric(mobility, F, "the tip's Jacobian is singular")
         if force is not None:
             moving = moving + force

@@ -179,8 +179,8 @@ def _adaptation(run: RunConfig, q: FloatArray) -> float:
     sum r_i exp(-2 r_i t). If the desired motion is one of the tip, the joint motion is linearized about the start.
     """
     law = cast(Adaptive, run.loops[0].controller)
-    numbers, arm = law.numbers.own, PinocchioArm(law.models[0], law.gravity_compensation)
-    root, brake = np.sqrt(numbers.adaptation_gain), np.sqrt(numbers.damping)[:, None]
+    parameters, arm = law.parameters.own, PinocchioArm(law.models[0], law.gravity_compensation)
+    root, brake = np.sqrt(parameters.adaptation_gain), np.sqrt(parameters.damping)[:, None]
     R: FloatArray = np.zeros((len(root), len(root)))
     for posture, dq, ddq in _desired_joints(run, q):
         Y = arm.regressor(posture, dq, dq, ddq)

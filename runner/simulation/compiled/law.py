@@ -36,7 +36,7 @@ def law_scalars(law: TorqueLaw[Any], period: float, number: Callable[[float], An
         constants_of(model, number, [number(g) for g in model.gravity.tolist()] if law.gravity_compensation else still)
         for model in law.models
     )
-    return LawScalars(number(period), scalars(law.numbers, number), arms)
+    return LawScalars(number(period), scalars(law.parameters, number), arms)
 
 
 class ExpressedArm:
@@ -125,7 +125,7 @@ def law_cache_key(law: TorqueLaw[Any]) -> str:
             f"{kind.__module__}.{kind.__qualname__}",
             law.gravity_compensation,
             plain_structure("", law.structure()),
-            scalars(law.numbers, any_number),
+            scalars(law.parameters, any_number),
             [arm_pattern(model) for model in law.models],
         )
     )

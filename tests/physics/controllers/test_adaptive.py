@@ -22,7 +22,7 @@ def closed_loop(*overrides):
 def followed(closed, desired, h):
     """Errors of the joints and V at every tick, of a law on the true arm."""
     law, true = closed.loops[0].controller, closed.robot.model
-    plant, numbers = Rk4(true, h, 1), law.numbers.own
+    plant, numbers = Rk4(true, h, 1), law.parameters.own
     plant.reset(desired[0, 0], np.zeros(true.nq))
     law.reset()
     adapts = numbers.adaptation_gain > 0.0
@@ -35,7 +35,7 @@ def followed(closed, desired, h):
             0.5 * (s @ true.mass_matrix(plant.q) @ s + (wrong**2)[adapts] @ (1.0 / numbers.adaptation_gain[adapts]))
         )
         plant.advance(law.torque(h * tick, plant.q, plant.dq, reference))
-        estimated = law.memory
+        estimated = law.state
     return np.linalg.norm(errors, axis=1), np.array(energies)
 
 
@@ -44,7 +44,7 @@ def followed(closed, desired, h):
 def test_torques_and_parameters_are_those_of_the_equations(name, friction):
     closed = closed_loop(f"robot={name}", f"controller.friction={friction}")
     law, generator, n = closed.loops[0].controller, np.random.default_rng(5), closed.robot.model.nq
-    arm, home, numbers = PinocchioArm(closed.robot.model), closed.robot.home, law.numbers.own
+    arm, home, numbers = PinocchioArm(closed.robot.model), closed.robot.home, law.parameters.own
     D, theta = closed.robot.model.mass_matrix(home).diagonal(), numbers.initial_parameters.copy()
     for _ in range(3):
         q, dq = home + generator.normal(size=n), generator.normal(size=n)
@@ -61,7 +61,7 @@ def test_torques_and_parameters_are_those_of_the_equations(name, friction):
         needed = s @ (Y * numbers.adaptation_gain) @ Y.T @ s / (s @ (D * s))
         gains = numbers.adaptation_gain * 225.0 / max(225.0, needed)
         theta = theta + closed.loops[0].period * gains * (Y.T @ s)
-        np.testing.assert_allclose(law.memory, theta, rtol=1e-10, atol=1e-14)
+        np.testing.assert_allclose(law.state, theta, rtol=1e-10, atol=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,11 @@ def test_the_scale_by_parameter_bounds_the_frequencies_of_the_adaptation(name, f
     """The eigenvalues of D^-1/2 Y Gamma Y^T D^-1/2 for the motions that set the scale."""
     share = 0.49
     closed = closed_loop(f"robot={name}", f"controller.adaptation_gain={share}", f"controller.friction={friction}")
-    gains, model, home = closed.loops[0].controller.numbers.own.adaptation_gain, closed.robot.model, closed.robot.home
+    gains, model, home = (
+        closed.loops[0].controller.parameters.own.adaptation_gain,
+        closed.robot.model,
+        closed.robot.home,
+    )
     n, root, arm = model.nq, np.sqrt(model.mass_matrix(home).diagonal()), PinocchioArm(model)
     reached = []
     for way in (*np.eye(n), np.ones(n)):

@@ -45,7 +45,7 @@ def joint_motion(controller, model, q, reference, ticks, period=0.01):
     motions = []
     for tick in range(ticks):
         controller.torque(tick * period, q, np.zeros(model.nq), reference(tick * period))
-        motions.append(np.split(controller.memory, 2))
+        motions.append(np.split(controller.state, 2))
     return motions
 
 
@@ -71,10 +71,10 @@ def test_nothing_measured_enters_the_joint_motion_but_its_start():
         calm.torque(0.01 * tick, XARM7.home, np.zeros(7), reference)
         disturbed = XARM7.home if tick == 0 else XARM7.home + generator.normal(size=7)
         shaken.torque(0.01 * tick, disturbed, generator.normal(size=7), reference)
-    np.testing.assert_array_equal(calm.memory, shaken.memory)
+    np.testing.assert_array_equal(calm.state, shaken.state)
     other = law()
     other.torque(0.0, XARM7.home + 0.1, np.zeros(7), circle(0.0, centre))
-    assert np.abs(other.memory[:7] - XARM7.home - 0.1).max() < 0.01
+    assert np.abs(other.state[:7] - XARM7.home - 0.1).max() < 0.01
 
 
 def test_the_joint_motion_ends_where_it_is_nearest_to_home():

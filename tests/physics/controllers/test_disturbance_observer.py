@@ -27,8 +27,8 @@ def assembled(*overrides):
 
 def found(law):
     """r of an observed law, shape (n,)."""
-    n = len(law.numbers.filter.limits)
-    return law.memory[-law._filter.remembers :][:n]
+    n = len(law.parameters.filter.limits)
+    return law.state[-law._filter.state_size :][:n]
 
 
 @pytest.mark.parametrize("name", ["macro", "xarm7"])

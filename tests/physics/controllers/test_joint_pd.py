@@ -40,7 +40,7 @@ def test_without_gravity_it_rests_at_the_sag_of_the_closed_form(simulated):
                       "trajectory=joint_quintic", "duration=6")  # fmt: skip
     model, home = ARMS["macro"].model, ARMS["macro"].home
     config = checked("robot=macro", "controller=joint_pd", "trajectory=joint_quintic")
-    w = config.loops[0].controller.numbers.own.k_p
+    w = config.loops[0].controller.parameters.own.k_p
     goal, rest = config.path.sample_joints(np.array([6.0]))[0, 0], trace.q[-1]
     sag = model.gravity_torque(rest) / (w * model.mass_matrix(home).diagonal())
     assert np.abs(sag).max() > 1e-3

@@ -20,7 +20,7 @@ class Spy:
 
     def __init__(self, model, law, home):
         self.model, self.feedforward = model, law.feedforward
-        self.numbers = (law.natural_frequency, law.damping_ratio, law.gravity_compensation)
+        self.parameters = (law.natural_frequency, law.damping_ratio, law.gravity_compensation)
         self.gravity_compensation = law.gravity_compensation
         self.gravity, self.told = None, []
 
@@ -203,7 +203,7 @@ def test_the_mini_knows_gravity_as_its_base_sees_it(spied, coupling, wrist_rotat
 
 def test_each_stage_gets_its_own_numbers(spied):
     loops, laws, _ = spied("controller.natural_frequency.mini=200", "controller.gravity_compensation=false")
-    assert [law.numbers for law in laws] == [(30.0, 1.0, False), (200.0, 1.0, False)]
+    assert [law.parameters for law in laws] == [(30.0, 1.0, False), (200.0, 1.0, False)]
     assert [(loop.name, loop.joints, loop.period) for loop in loops] == [
         ("macro", slice(0, 3), 0.01),
         ("mini", slice(3, 6), 0.001),

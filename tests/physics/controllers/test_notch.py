@@ -25,9 +25,9 @@ NOTCHED = ("notch=torques", "notch.frequency=[6,null,9]")
 
 
 def passed(torques, notch):
-    memory, rows, arm = np.zeros(notch.remembers), [], SimpleNamespace(backend=NUMPY)
+    memory, rows, arm = np.zeros(notch.state_size), [], SimpleNamespace(backend=NUMPY)
     for k, torque in enumerate(torques):
-        row, memory = notch.filter(arm, notch.numbers, k * H, None, None, torque, memory)
+        row, memory = notch.filter(arm, notch.parameters, k * H, None, None, torque, memory)
         rows.append(row)
     return np.array(rows)
 

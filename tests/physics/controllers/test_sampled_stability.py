@@ -36,7 +36,7 @@ def radius(config):
 
     def torque(q, dq):
         law.reset()
-        law.memory = law.start(home)
+        law.state = law.start(home)
         return law.torque(0.0, q, dq, tip if at_rest is None else at_rest).copy()
 
     rest = np.zeros(n)

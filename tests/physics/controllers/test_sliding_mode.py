@@ -46,7 +46,7 @@ def test_the_error_stays_within_the_bound_of_the_layer(simulated):
     config = configured(*wrong)
     trace = simulated(*LINE, "trajectory=joint_quintic", *wrong)
     s, e = sliding(trace, config)
-    law, model = config.loops[0].controller.numbers.own, config.arm.model
+    law, model = config.loops[0].controller.parameters.own, config.arm.model
     left_out = 0.05 * np.abs([model.gravity_torque(q) for q in trace.q]).max(axis=0) + 1.5
     assert (left_out < law.switching_gain + PHI * law.damping).all()  # what moves adds less than what is left here
     assert 0.3 * PHI < np.abs(s).max() < PHI
@@ -67,7 +67,7 @@ def test_the_layer_is_reached_in_time():
         plant.advance(law.torque(h * tick, plant.q, plant.dq, goal))
     energy = np.sqrt([s @ M @ s for s, M in rows])
     smallest, largest = (pick([np.linalg.eigvalsh(M) for _, M in rows]) for pick in (np.min, np.max))
-    fastest = law.numbers.own.switching_gain.min() / np.sqrt(largest)
+    fastest = law.parameters.own.switching_gain.min() / np.sqrt(largest)
     outside = energy > np.sqrt(smallest) * PHI
     assert outside[0]
     assert not outside[-1]

@@ -41,7 +41,7 @@ def three_stages(checked_config):
     return checked_config("robot=macro_mini_mini").arm
 
 
-class Numbers(NamedTuple):
+class Parameters(NamedTuple):
     law: Any
     gravity: Any
     force: Any
@@ -50,12 +50,12 @@ class Numbers(NamedTuple):
 class Pushing(TipForce):
     """A law that asks for F* and a given force, and keeps the motion of the tip."""
 
-    def command(self, backend, numbers, tip, memory):
+    def command(self, backend, parameters, tip, state):
         self.tip = tip
-        return tip.asked, numbers.force, memory
+        return tip.asked, parameters.force, state
 
     def with_force(self, force):
-        return self.with_numbers(force=force)
+        return self.with_parameters(force=force)
 
 
 def pushing(robot, stages="whole", rate=30.0):
@@ -68,7 +68,7 @@ def pushing(robot, stages="whole", rate=30.0):
         "null_space_frequency": rate,
     }
     task = find_force_task(TipForceConfig(actuated_stages=stages, **given), robot)
-    return Pushing(task, Numbers(task.law.numbers, robot.model.gravity, np.zeros(3)))
+    return Pushing(task, Parameters(task.law.parameters, robot.model.gravity, np.zeros(3)))
 
 
 def test_without_a_force_it_is_the_law_of_the_whole_body(combined):
@@ -113,7 +113,7 @@ def test_a_riding_stage_sees_gravity_and_target_turned_and_moving(combined):
         R, way = pose[:3, :3], reference[0] - pose[:3, 3]
         drift = R.T @ (reference[1] - motion[:3] - np.cross(motion[3:], way))
         target = np.array([R.T @ way, drift, np.zeros(3)])
-        expected = alone.control(arm, alone.numbers, q[3:], dq[3:], target, R.T @ [0.0, 0.0, -9.81])
+        expected = alone.control(arm, alone.parameters, q[3:], dq[3:], target, R.T @ [0.0, 0.0, -9.81])
         np.testing.assert_allclose(tip.torque(0.0, q, dq, reference), expected, rtol=1e-9, atol=1e-9)
         np.testing.assert_allclose(tip.tip.error, R.T @ way - mini.model.tip_position(q[3:]), atol=1e-12)
         true = R.T @ (combined.model.tip_jacobian(q)[:3] @ dq)

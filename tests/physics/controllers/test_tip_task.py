@@ -22,19 +22,19 @@ def task(orientation=None, feedforward=True, max_speed=None, singularity_damping
 
 
 def jacobian(ours, q, dq, model=XARM7):
-    return ours.jacobian(ours.numbers, PinocchioArm(model).tip(q, dq))
+    return ours.jacobian(ours.parameters, PinocchioArm(model).tip(q, dq))
 
 
 def error(ours, q, reference, model=XARM7):
-    return ours.error(NUMPY, ours.numbers, PinocchioArm(model).tip(q, np.zeros_like(q)), reference)
+    return ours.error(NUMPY, ours.parameters, PinocchioArm(model).tip(q, np.zeros_like(q)), reference)
 
 
 def acceleration(ours, *arguments):
-    return ours.acceleration(NUMPY, ours.numbers, *arguments)
+    return ours.acceleration(NUMPY, ours.parameters, *arguments)
 
 
 def added(ours, J, error, mobility):
-    return np.diagonal(ours.damp(NUMPY, ours.numbers, J, error, mobility) - mobility)
+    return np.diagonal(ours.damp(NUMPY, ours.parameters, J, error, mobility) - mobility)
 
 
 @pytest.mark.parametrize("rows", [3, 6])

@@ -21,7 +21,7 @@ REST = np.array([0.1, -0.2, 0.3, -0.4, 0.5, -0.6])
 
 def test_the_spring_is_symmetric_and_of_the_held_joints_alone():
     for first in (3, 4):
-        K = JointStiffness(COMBINED, OMEGA, REST, first).numbers.stiffness
+        K = JointStiffness(COMBINED, OMEGA, REST, first).parameters.stiffness
         np.testing.assert_allclose(K, K.T, atol=1e-12 * np.abs(K).max())
         assert np.linalg.eigvalsh(K[first:, first:])[0] > 0.0
         assert not K[:first].any()
@@ -32,7 +32,7 @@ def test_the_spring_s_inertia_is_what_the_held_joints_meet_with_the_tip_at_rest(
     J = COMBINED.tip_jacobian(REST)[:3]
     Z = np.vstack([-np.linalg.solve(J[:, :3], J[:, 3:]), np.eye(3)])  # the Mini moves, the tip does not
     expected = OMEGA**2 * Z.T @ COMBINED.mass_matrix(REST) @ Z
-    K = JointStiffness(COMBINED, OMEGA, REST, 3).numbers.stiffness
+    K = JointStiffness(COMBINED, OMEGA, REST, 3).parameters.stiffness
     np.testing.assert_allclose(K[3:, 3:], expected, atol=1e-9 * np.abs(expected).max())
 
 
@@ -42,9 +42,9 @@ def test_a_posture_asks_for_nothing_that_moves_the_tip(rows):
     for _ in range(20):
         q, dq = HOME + generator.uniform(-0.5, 0.5, 7), generator.uniform(-1.0, 1.0, 7)
         J = MODEL.tip_jacobian(q)[:rows]
-        ddq, torque = posture.acceleration_and_torque(NUMPY, posture.numbers, J, q, dq)
+        ddq, torque = posture.acceleration_and_torque(NUMPY, posture.parameters, J, q, dq)
         wanted = -2.0 * OMEGA * dq - OMEGA**2 * (q - HOME)
-        np.testing.assert_array_equal(posture_pd(posture.numbers, q, dq), wanted)
+        np.testing.assert_array_equal(posture_pd(posture.parameters, q, dq), wanted)
         np.testing.assert_allclose(ddq, wanted - np.linalg.pinv(J) @ J @ wanted, atol=1e-8 * np.abs(wanted).max())
         np.testing.assert_allclose(J @ ddq, 0.0, atol=1e-8 * np.abs(wanted).max())
         assert torque is None
@@ -65,7 +65,7 @@ def test_a_posture_only_loses_energy_while_the_tip_rests():
     def acceleration(q, dq):
         J, e = MODEL.tip_jacobian(q)[:3], 1e-6
         bias = (MODEL.tip_jacobian(q + e * dq) - MODEL.tip_jacobian(q - e * dq))[:3] @ dq / (2.0 * e)
-        return posture.acceleration_and_torque(NUMPY, posture.numbers, J, q, dq)[0] - np.linalg.pinv(J) @ bias
+        return posture.acceleration_and_torque(NUMPY, posture.parameters, J, q, dq)[0] - np.linalg.pinv(J) @ bias
 
     q, dq = HOME + np.array([0.6, 0.3, -0.6, 0.4, 0.7, -0.5, 0.8]), np.zeros(7)
     tip, energies = MODEL.tip_position(q), []

@@ -37,7 +37,7 @@ def test_the_rates_of_adaptation_are_those_at_which_errors_fade_at_rest(checked_
     config = checked_config(*REST, *law)
     own = config.loops[0].controller
     Y = PinocchioArm(own.models[0], True).regressor(config.arm.home, *np.zeros((3, 3)))
-    A = (Y * own.numbers.own.adaptation_gain) @ Y.T / own.numbers.own.damping[:, None]
+    A = (Y * own.parameters.own.adaptation_gain) @ Y.T / own.parameters.own.damping[:, None]
     q = simulated(*REST, *law, "mismatch.mass=0.9", "duration=13").q
     later, before = q[[13000, 1000]] - q[0]
     np.testing.assert_allclose(later, expm(-12.0 * A) @ before, rtol=0.0, atol=0.01 * np.linalg.norm(later))

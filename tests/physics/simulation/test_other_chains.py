@@ -265,7 +265,7 @@ def test_two_way_makes_up_for_where_all_riders_stand(bent):
 
 
 def move(law, q, dq, reference, gravity=None):
-    return law.move(PinocchioArm(law.model, law.gravity_compensation), law.numbers, q, dq, reference, gravity)
+    return law.move(PinocchioArm(law.model, law.gravity_compensation), law.parameters, q, dq, reference, gravity)
 
 
 def test_three_joints_keep_their_law_to_the_bit(macro):
@@ -318,8 +318,8 @@ def test_seven_joints_take_another_gravity(xarm7):
     np.testing.assert_allclose(move(law, XARM7_HOME, still, reference), xarm7.gravity_torque(XARM7_HOME), atol=1e-9)
     arm, none = PinocchioArm(law.model), np.zeros(3)
     for tau in (
-        law.move(arm, law.numbers, XARM7_HOME, still, reference, none),
-        law.hold(arm, law.numbers, XARM7_HOME, still, XARM7_HOME, none),
+        law.move(arm, law.parameters, XARM7_HOME, still, reference, none),
+        law.hold(arm, law.parameters, XARM7_HOME, still, XARM7_HOME, none),
     ):
         np.testing.assert_allclose(tau, 0.0, atol=1e-9)
 

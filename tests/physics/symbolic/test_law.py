@@ -175,13 +175,13 @@ class Transposed(TorqueLaw[Gains]):
 
     bias = 1.0
 
-    def evaluate(self, arms, numbers, time, q, dq, reference, memory):
+    def evaluate(self, arms, parameters, time, q, dq, reference, state):
         (arm,) = arms
         tip = arm.tip(q, dq)
-        pull = numbers.stiffness * (reference[0] - tip.x)
-        return self.bias * tip.J[:3].T.dot(pull) - numbers.damping * dq + arm.inverse_dynamics(
+        pull = parameters.stiffness * (reference[0] - tip.x)
+        return self.bias * tip.J[:3].T.dot(pull) - parameters.damping * dq + arm.inverse_dynamics(
             q, 0.0 * dq, 0.0 * dq
-        ), memory
+        ), state
 
 
 class Mutated(Transposed):
@@ -189,8 +189,8 @@ class Mutated(Transposed):
 
 
 class Stubborn(Transposed):
-    def evaluate(self, arms, numbers, time, q, dq, reference, memory):
-        return np.array([float(entry) for entry in q]), memory
+    def evaluate(self, arms, parameters, time, q, dq, reference, state):
+        return np.array([float(entry) for entry in q]), state
 
 
 def users_law(kind):
