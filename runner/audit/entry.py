@@ -26,8 +26,13 @@ Entries are in YAML files, one for each part of a source (`equations/*.yaml` in 
 If a model is not enough, `truth: xarm7.transform` names a Truth in `equations/truths/xarm7.py` of the folder.
 `symbols: xarm7.symbols` names a function of that module that draws the sample; `robot` is then omitted.
 
-Elements are expressions in the syntax of `runner/base/expressions/parser.py`. If an equation is not arithmetic, such
-as a relation between matrices, `math` contains it in Typst. `code: xarm7.left_inverse` then names the function that
+Elements are expressions in the syntax of `runner/base/expressions/parser.py`; the report shows these texts. Their names
+can be vectors and matrices of the sample, as in `Lambda: transpose(inverse(J)) @ M @ inverse(J)`. They can also be
+elements of other entries of the file, which then stand for their right form. `letters` sets names as the source does:
+
+    letters: {Lambda: Lambda(x), dq: dot(q)}    # in Typst mathematics
+
+If an equation has no such form, `math` contains it in Typst, and `code: xarm7.left_inverse` names the function that
 evaluates it. The verdict is never stored: `verdict.py` computes it.
 """
 
@@ -40,6 +45,8 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from runner.audit.sources import Source, Where, source_of
 from runner.base.data_file import read_data
+from runner.base.expressions.grammar import ExpressionError
+from runner.base.expressions.parser import parse
 from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
 
@@ -74,6 +81,14 @@ class Form(StrictModel):
         if not (self.elements or self.math):
             raise ValueError("has neither elements nor math: nothing to show")
         return self
+
+    @property
+    def readable(self) -> bool:
+        """Whether all its expressions can be parsed."""
+        try:
+            return all(map(parse, self.elements.values()))
+        except ExpressionError:
+            return False
 
 
 class Repair(Form):
@@ -119,6 +134,11 @@ class Entry(StrictModel):
     finding: str = ""
     rollout: str = ""
 
+    @property
+    def right(self) -> Form:
+        """The form that is meant to be right."""
+        return self.corrected or self.repair or self.printed
+
 
 class Content(StrictModel):
     """What a data file says.
@@ -128,6 +148,7 @@ class Content(StrictModel):
         tip: Its frame that is meant; "" is the config's tip.
         joints: Names of its joint positions; none are q1 to qn.
         symbols: Function of equations/truths that draws the sample; or what is named beside the robot's motion.
+        letters: Names as the source writes them, in Typst mathematics.
         entries: Its equations, in the order of the text.
     """
 
@@ -135,6 +156,7 @@ class Content(StrictModel):
     tip: str = ""
     joints: tuple[str, ...] = Field(default=(), strict=False)
     symbols: str | dict[str, Written] = Field(default_factory=dict)
+    letters: dict[str, str] = Field(default_factory=dict)
     entries: list[Entry]
 
     @model_validator(mode="after")
@@ -172,6 +194,12 @@ def entries(where: Where) -> Iterator[tuple[Part, Entry]]:
     for part in parts(where):
         for entry in part.entries:
             yield part, entry
+
+
+def right_elements(part: Part) -> dict[str, str]:
+    """Return the elements of all entries of a file in their right form, by name."""
+    forms = [entry.right for entry in part.entries if entry.right.readable]
+    return {name: text for form in forms for name, text in form.elements.items()}
 
 
 @lru_cache(maxsize=64)

@@ -1,21 +1,20 @@
 """Verdicts on audit entries: printed, repaired and corrected forms compared with the truth."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
-from runner.audit.entry import Entry, Form, Part
-from runner.audit.evaluation import evaluate_all, with_symbols
+from runner.audit.entry import Entry, Form, Part, right_elements
+from runner.audit.evaluation import evaluate_used, names_in, with_symbols
 from runner.audit.model_truths import AuditedArm, audited_arm, sample
 from runner.audit.sources import Source, truth_of
 from runner.audit.truth import Elements, Symbols, Truth
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
-from runner.base.expressions.grammar import ExpressionError
-from runner.base.expressions.parser import parse
+from runner.base.expressions.typesetting import Letters
 
 SAMPLES = 1000
 Verdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
@@ -52,6 +51,7 @@ class Judged:
         measured: Error of the form as printed (after repair where there is one); None where it has none.
         second: The same against the second way to the truth.
         ways: The two ways to what it claims to equal, in words; empty texts where it claims nothing.
+        letters: Names as the source writes them, in Typst mathematics.
     """
 
     source: str
@@ -60,6 +60,7 @@ class Judged:
     measured: Measured | None
     second: Measured | None
     ways: tuple[str, str]
+    letters: Letters = field(default_factory=dict)
 
 
 class Judge:
@@ -100,7 +101,7 @@ class Judge:
             raise AuditError(f"{self._part.path}: {entry.id}: {what}") from error
 
     def _judge(self, entry: Entry) -> Judged:
-        unread = not _can_be_read(entry.printed)
+        unread = not entry.printed.readable
         if unread and entry.repair is None:
             return self._judged(entry, "unreadable", None)
         if not (unread or entry.truth):
@@ -124,7 +125,7 @@ class Judge:
             raise AuditError(f"is corrected, but its verdict is '{verdict}'")
         first, second = (found.first, found.second) if found else (None, None)
         ways = self.truth(entry).ways if entry.truth else ("", "")
-        return Judged(self._part.source.name, entry, verdict, first, second, ways)
+        return Judged(self._part.source.name, entry, verdict, first, second, ways, self._part.letters)
 
     def _measure(self, entry: Entry, form: Form) -> "_Both":
         found, truth = self._evaluate(form), self.truth(entry)
@@ -137,7 +138,10 @@ class Judge:
         if form.code:
             values: Elements = truth_of(self._part.source, form.code)(self.symbols)
             return values
-        return evaluate_all(form.elements, self.symbols)
+        known = {**right_elements(self._part), **form.elements}
+        found = evaluate_used(form.elements, known, self.symbols)
+        steps = names_in(form.elements) - set(self.symbols)  # on the way to the others
+        return {name: values for name, values in found.items() if name not in steps}
 
     def truth(self, entry: Entry) -> Truth:
         """Return what an entry claims to equal."""
@@ -156,13 +160,6 @@ class _Both(NamedTuple):
     @property
     def worst(self) -> float:
         return max(each.largest for each in self)
-
-
-def _can_be_read(form: Form) -> bool:
-    try:
-        return all(map(parse, form.elements.values()))
-    except ExpressionError:
-        return False
 
 
 @lru_cache(maxsize=8)

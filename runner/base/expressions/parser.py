@@ -1,6 +1,7 @@
 """Parser of printed arithmetic into an expression tree.
 
-The evaluator's grammar reads the arithmetic. The tree is for drawing and comparison.
+The evaluator's grammar reads the arithmetic. The tree is for drawing and comparison. `*` multiplies by a number, `@`
+multiplies matrices and vectors; in the tree both are a Product.
 
 A power is written `^` or `**`, and a name can end in primes (`s2'`). The evaluation defines the meaning of a primed
 name. Every product needs its sign: the parser rejects `2 s1` and `c1(q2)`, because a lost sign and a lost bracket look
@@ -22,17 +23,20 @@ from runner.base.expressions.tree import Call, Name, Node, Number, Power, Produc
 FUNCTIONS = {
     **dict.fromkeys(("sin", "cos", "tan", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sqrt", "abs"), 1),
     "atan2": 2,
+    **{"transpose": 1, "inverse": 1, "cross": 2},
 }
 """Functions that an expression can call, with their numbers of arguments."""
+
+_FACTORS = (ast.Mult, ast.Div, ast.MatMult)
 
 PRIME = "\N{MODIFIER LETTER PRIME}"
 """Prime character that Python accepts as a letter."""
 _TO_PYTHON = {"^": "**", "'": PRIME}
-_FAULT = re.compile(r"(?P<lost>…|\.{3})|(?<=[\w')])\s+(?P<apart>\w+)|(?P<sign>[^\w\s'.+\-*/^(),]|(?<![\w'])')")
+_FAULT = re.compile(r"(?P<lost>…|\.{3})|(?<=[\w')])\s+(?P<apart>\w+)|(?P<sign>[^\w\s'.+\-*/@^(),]|(?<![\w'])')")
 _TOLD = {
     "lost": "the text is lost here",
     "apart": "'{}' follows without a sign; a product needs its '*'",
-    "sign": "'{}' is no sign of arithmetic; signs: + - * / ^ ** ( ) ,",
+    "sign": "'{}' is no sign of arithmetic; signs: + - * / @ ^ ** ( ) ,",
 }
 _NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(?![\w.])")
 
@@ -96,7 +100,7 @@ class _Reader:
     def sum(self, node: ast.expr) -> Node:
         """Return a whole expression, a bracket or an argument; a sign before the first factor applies to the term."""
         first, row = grammar.chain(node, ast.Add, ast.Sub)
-        factor, _ = grammar.chain(first, ast.Mult, ast.Div)
+        factor, _ = grammar.chain(first, *_FACTORS)
         sign = factor.op if isinstance(factor, ast.UnaryOp) and factor.col_offset == node.col_offset else None
         negative = isinstance(sign, ast.USub)
         bracketed = first.col_offset != node.col_offset
@@ -107,7 +111,7 @@ class _Reader:
         return Sum(tuple(terms), self._places[node.col_offset]) if negative or row else terms[0][1]
 
     def _product(self, node: ast.expr, signed: bool = False) -> Node:
-        first, row = grammar.chain(node, ast.Mult, ast.Div)
+        first, row = grammar.chain(node, *_FACTORS)
         start = node.col_offset
         if signed and isinstance(first, ast.UnaryOp):
             start, first = self._behind(rb"[+-] *", start), first.operand
@@ -125,7 +129,7 @@ class _Reader:
             case ast.BinOp(op=ast.Pow()):
                 sign = self._places[self._behind(rb"[) ]*", node.left.end_col_offset or 0)]
                 return Power(self._factor(node.left), self._factor(node.right), sign)
-            case ast.BinOp(op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div()):
+            case ast.BinOp(op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div() | ast.MatMult()):
                 return self.sum(node)
             case ast.Call(func=ast.Name(id=function), keywords=[]):
                 return self._call(node, function, index)
@@ -135,7 +139,9 @@ class _Reader:
                 if float(number[0]) == float("inf"):
                     self._refuse(node, f"the number {number[0]} is too large")
                 return Number(number[0], index)
-        return self._refuse(node, "is no arithmetic: numbers, names, + - * / ^ ( ) and functions with their arguments")
+        return self._refuse(
+            node, "is no arithmetic: numbers, names, + - * / @ ^ ( ) and functions with their arguments"
+        )
 
     def _call(self, node: ast.Call, function: str, index: int) -> Node:
         if function not in FUNCTIONS:

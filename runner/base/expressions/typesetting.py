@@ -1,7 +1,8 @@
 """Typst formulas of expressions: products without signs, short quotients as fractions."""
 
 import re
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence, Set
+from types import MappingProxyType
 
 from runner.base.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
 
@@ -31,6 +32,8 @@ _DIFFERENCE = re.compile(r"\d(_\d)+")
 _WORD = re.compile(r"[^\W\d]\w*'*")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
+Letters = Mapping[str, str]
+"""Typst code by name."""
 _SHORT = 160  # most characters of Typst code in a readable fraction
 
 
@@ -61,13 +64,15 @@ def _lowered(match: re.Match[str]) -> str:
     return f"{letters}{lowered if subscript.isdigit() or not subscript else f'_{subscript}'}"
 
 
-def matrix(rows: Sequence[Sequence[Node]], marked: Set[Node] = frozenset()) -> str:
+def matrix(
+    rows: Sequence[Sequence[Node]], marked: Set[Node] = frozenset(), letters: Letters = MappingProxyType({})
+) -> str:
     """Return the Typst code of a matrix of expressions."""
-    lines = [", ".join(f"display({typeset(cell, marked)})" for cell in row) for row in rows]
+    lines = [", ".join(f"display({typeset(cell, marked, letters)})" for cell in row) for row in rows]
     return f'mat(delim: "[", {"; ".join(lines)})'
 
 
-def typeset(node: Node, marked: Set[Node] = frozenset()) -> str:
+def typeset(node: Node, marked: Set[Node] = frozenset(), letters: Letters = MappingProxyType({})) -> str:
     """Return the Typst code of an expression.
 
     Brackets are plain characters: a long line can break inside them, and they do not grow with their content.
@@ -75,8 +80,9 @@ def typeset(node: Node, marked: Set[Node] = frozenset()) -> str:
     Args:
         node: The expression.
         marked: Parts of the expression that are set in `differs(...)`.
+        letters: Typst code of names that are not set by the rules of `symbol`.
     """
-    return _Typesetter(marked).written(node)
+    return _Typesetter(marked, letters).written(node)
 
 
 class _Typesetter:
@@ -84,10 +90,11 @@ class _Typesetter:
 
     Args:
         marked: Marked parts of the expression.
+        letters: Typst code of names.
     """
 
-    def __init__(self, marked: Set[Node]) -> None:
-        self._marked = marked
+    def __init__(self, marked: Set[Node], letters: Letters) -> None:
+        self._marked, self._letters = marked, letters
 
     def written(self, node: Node) -> str:
         return self._noted(node, self._plain(node))
@@ -99,9 +106,17 @@ class _Typesetter:
         match node:
             case Number():
                 return node.text
+            case Name() if node.name in self._letters:
+                return self._letters[node.name]
             case Name():
                 letters, subscript = symbol(node.name)
                 return f'italic("{letters}")' + (f'_"{subscript}"' if subscript else "")
+            case Call(function="transpose", arguments=(Call(function="inverse", arguments=(inner,)),)):
+                return f"{self._base(inner)}^(-T)"
+            case Call(function="transpose" | "inverse", arguments=(inner,)):
+                return f"{self._base(inner)}^({'T' if node.function == 'transpose' else '-1'})"
+            case Call(function="cross", arguments=(first, second)):
+                return f"{self._factor(first)} times {self._factor(second)}"
             case Call():
                 arguments = "\\, ".join(self.written(argument) for argument in node.arguments)
                 if node.function == "sqrt":
@@ -115,6 +130,10 @@ class _Typesetter:
                 return self._product(node)
             case Sum():
                 return self._sum(node)
+
+    def _base(self, node: Node) -> str:
+        text = self.written(node)
+        return text if isinstance(node, Name | Number) else f"({text})"
 
     def _product(self, node: Product) -> str:
         (_, first), (over, second) = node.factors[0], node.factors[-1]
@@ -138,7 +157,8 @@ class _Typesetter:
         return text
 
     def _factor(self, node: Node) -> str:
-        return self._noted(node, _bracketed(self._plain(node))) if isinstance(node, Sum) else self.written(node)
+        grouped = isinstance(node, Sum) or (isinstance(node, Call) and node.function == "cross")
+        return self._noted(node, _bracketed(self._plain(node))) if grouped else self.written(node)
 
 
 def _bracketed(text: str) -> str:

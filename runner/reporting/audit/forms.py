@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from types import MappingProxyType
 
 from runner.audit.entry import Entry, Form
 from runner.audit.verdict import Judged
@@ -9,7 +10,7 @@ from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
 from runner.base.expressions.tree import Name, Node, Sum, holds, shorten_expression, size
-from runner.base.expressions.typesetting import linear, matrix, typeset
+from runner.base.expressions.typesetting import Letters, linear, matrix, typeset
 from runner.reporting.audit.marks import LONG, cut, marked_formulas, pieces
 from runner.reporting.equation import EquationForm
 
@@ -36,8 +37,7 @@ class Likeness:
         for each in judged:
             entry = each.entry
             if each.verdict not in ("unreadable", "definition"):
-                right = entry.corrected or entry.repair or entry.printed
-                self._right |= {name: parse(text).root for name, text in right.elements.items()}
+                self._right |= {name: parse(text).root for name, text in entry.right.elements.items()}
 
     def words(self, entry: Entry, elements: Mapping[str, Node]) -> str:
         """Return which other element a wrong one is, but for exchanged symbols, in a sentence; nothing if none.
@@ -60,12 +60,13 @@ class Likeness:
         return f"It is the right ${_typeset_name(other)}${_exchanged(best)}."
 
 
-def forms_of(entry: Entry, likeness: Likeness) -> list[EquationForm]:
+def forms_of(entry: Entry, likeness: Likeness, letters: Letters = MappingProxyType({})) -> list[EquationForm]:
     """Return the forms of an equation, each with what it does not share with the next one marked.
 
     Args:
         entry: The equation.
         likeness: The right forms of the equations around it.
+        letters: Names as the source writes them.
     """
     forms = [form for form in (entry.printed, entry.repair, entry.corrected) if form is not None]
     read = [_read(form) for form in forms]
@@ -86,7 +87,8 @@ def forms_of(entry: Entry, likeness: Likeness) -> list[EquationForm]:
         else:
             like = likeness.words(entry, elements) if len(forms) == place + 2 and entry.corrected is not None else ""
             alone = len(forms) == 1
-            made = _shown(label, form, elements, marks[place], f"{note} {like}".strip(), like=like, alone=alone)
+            told = f"{note} {like}".strip()
+            made = _shown(label, form, elements, marks[place], told, letters, like=like, alone=alone)
             mended = entry.repair is not None and beside is not None and form is not entry.corrected
             empty = not (made.lines or like)
             found.append(_unread(label, form, beside, note) if mended and empty else made)
@@ -160,30 +162,38 @@ def _text(form: Form) -> str:
 
 
 def _shown(
-    label: str, form: Form, elements: _Elements, marked: set[Node], note: str, *, like: str, alone: bool
+    label: str,
+    form: Form,
+    elements: _Elements,
+    marked: set[Node],
+    note: str,
+    letters: Letters,
+    *,
+    like: str,
+    alone: bool,
 ) -> EquationForm:
     """Return a form that can be read: all of it where it is short or stands alone, else what is marked."""
     whole = linear(_text(form))
     groups, marks = gather_elements(elements), frozenset(marked)
     if alone or sum(map(size, elements.values())) <= _SYMBOLS:
-        return EquationForm(label, _lines(groups, marks), note=note)
+        return EquationForm(label, _lines(groups, marks, letters), note=note)
     if like:
         return EquationForm(label, note=note, whole=whole)
     shown = _short(
         [(left, _cut(part, marks)) for left, part in groups if any(holds(node, marks) for node in _nodes(part))]
         or _begun(groups)
     )
-    return EquationForm(label, _lines(shown, marks), note=note, whole=whole)
+    return EquationForm(label, _lines(shown, marks, letters), note=note, whole=whole)
 
 
-def _lines(groups: _Shown, marked: Set[Node]) -> list[list[str]]:
+def _lines(groups: _Shown, marked: Set[Node], letters: Letters) -> list[list[str]]:
     """Return the formulas of a form: each matrix on its own line, the expressions between matrices on one."""
     lines: list[list[str]] = [[]]
     for left, part in groups:
         if isinstance(part, Sequence):
-            lines += [[f"{typeset(left, marked)} = {matrix(part, marked)}"], []]
+            lines += [[f"{typeset(left, marked, letters)} = {matrix(part, marked, letters)}"], []]
         else:
-            lines[-1].append(f"{typeset(left, marked)} = {typeset(part, marked)}")
+            lines[-1].append(f"{typeset(left, marked, letters)} = {typeset(part, marked, letters)}")
     return [line for line in lines if line]
 
 

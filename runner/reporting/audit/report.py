@@ -146,7 +146,7 @@ def rows(judged: Sequence[Judged]) -> list[Equation]:
             each.entry.place,
             each.verdict,
             _error(each),
-            forms_of(each.entry, likeness),
+            forms_of(each.entry, likeness, each.letters),
             each.entry.finding,
         )
         for each in judged

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.audit.entry import Entry, parts
+from runner.audit.entry import Entry, Form, parts
 from runner.audit.verdict import AuditError, Judge
 
 RIGHT = "l1 + l2*c2"
@@ -115,3 +115,22 @@ def test_a_value_that_is_no_number_is_an_error_without_bound():
         judged = Judge(part, 200).judge(part.entries[0])
     assert judged.verdict == "wrong as printed"
     assert judged.measured.largest > 1
+
+
+@pytest.mark.parametrize(
+    ("number", "old", "new"),
+    [
+        ("(3.27)", "transpose(inverse(J)) @ M", "inverse(J) @ M"),
+        ("(3.28)", "- Lambda", "+ Lambda"),
+        ("(3.32)", "+ p", "- p"),
+        ("ẍ = F*", "k_p", "k_v"),
+    ],
+)
+def test_an_equation_of_matrices_is_judged_from_its_text(number, old, new):
+    part = next(part for part in parts("thesis") if part.path.name == "3_3.yaml")
+    right = next(entry for entry in part.entries if entry.number == number)
+    assert Judge(part, 20).judge(right).verdict == "correct"
+    texts = {name: text.replace(old, new, 1) for name, text in right.printed.elements.items()}
+    assert texts != right.printed.elements
+    spoilt = right.model_copy(update={"printed": Form(elements=texts), "corrected": right.printed})
+    assert Judge(part, 20).judge(spoilt).verdict == "wrong as printed"

@@ -182,7 +182,7 @@ def test_the_mini_s_printed_weight_holds_while_its_base_stands_upright():
 
 
 def test_the_closed_loop_decays_as_the_gains_say():
-    values = regular_symbols(5, np.random.default_rng(0))
+    values = thesis_operational.symbols(5, np.random.default_rng(0))
     found = thesis_operational.goal_closed.first(values)["acceleration"]
     q, dq = MACRO.q(values), MACRO.dq(values)
     x = MACRO.frame(3, q)[:, :3, 3]

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.audit.evaluation import evaluate
+from runner.audit.evaluation import evaluate, evaluate_used
+from runner.base.errors import RunnerError
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
 
@@ -57,6 +58,46 @@ def test_names_are_found_as_they_are_written(name):
 def test_a_number_alone_stands_at_every_sample():
     np.testing.assert_array_equal(value("2"), [2.0, 2.0, 2.0])
     np.testing.assert_array_equal(evaluate(parse("9007199254740993*1"), {}), [9007199254740992.0])
+
+
+RNG = np.random.default_rng(0)
+J, M, V, K = (RNG.normal(size=(4, *shape)) for shape in ((3, 3), (3, 3), (3,), ()))
+SHAPED = {"J": J, "M": M, "v": V, "k": K}
+
+
+def test_matrices_and_vectors_have_the_bits_of_numpy():
+    inverse = np.linalg.inv(J)
+    moved = evaluate(parse("transpose(inverse(J)) @ M @ inverse(J)"), SHAPED)
+    np.testing.assert_array_equal(moved, inverse.transpose(0, 2, 1) @ M @ inverse)
+    scaled = evaluate(parse("-k*v + J @ v"), SHAPED)
+    np.testing.assert_array_equal(scaled, -K[:, None] * V + np.einsum("tij,tj->ti", J, V))
+    np.testing.assert_array_equal(evaluate(parse("cross(v, 2*v) + v"), SHAPED), V)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("v @ J", "a vector of 3 @ a 3 by 3 matrix do not fit"),
+        ("J + v", "a 3 by 3 matrix and a vector of 3 do not fit"),
+        ("J @ k", "a 3 by 3 matrix @ a number do not fit"),
+        ("inverse(v)", "inverse takes a square matrix, not a vector of 3"),
+        ("transpose(k)", "transpose takes a matrix, not a number"),
+        ("cross(v, k)", "cross takes two vectors of 3, not a number"),
+        ("inverse(J - J)", "the matrix is singular at a sample"),
+    ],
+)
+def test_shapes_that_do_not_fit_are_told(text, told):
+    with pytest.raises(ExpressionError, match=f"has no value: {told}"):
+        evaluate(parse(text), SHAPED)
+
+
+def test_an_expression_uses_others_and_never_itself():
+    known = {"Lambda": "transpose(J) @ J", "mu": "Lambda @ v", "a": "b + k", "b": "a"}
+    np.testing.assert_array_equal(
+        evaluate_used({"F": "mu - v"}, known, SHAPED)["F"], evaluate(parse("transpose(J) @ J @ v - v"), SHAPED)
+    )
+    with pytest.raises(RunnerError, match="a uses b uses a: an element cannot use itself"):
+        evaluate_used({"x": "a"}, known, SHAPED)
 
 
 LEAVES = st.sampled_from(["x", "y", "2", "0.5", "7"])

@@ -40,10 +40,22 @@ def test_brackets_that_matter_are_seen(one, other):
     assert typeset(parse(one).root) != typeset(parse(other).root)
 
 
+def test_matrices_are_set_as_a_source_prints_them():
+    letters = {"J": "J(q)", "dq": "dot(q)"}
+    for text, expected in (
+        ("transpose(inverse(J)) @ M", 'J(q)^(-T) italic("M")'),
+        ("transpose(J)", "J(q)^(T)"),
+        ("inverse(J @ M) @ dq", '(J(q) italic("M"))^(-1) dot(q)'),
+        ("J @ cross(a, b + c)", 'J(q) \\(italic("a") times \\(italic("b") + italic("c")\\)\\)'),
+    ):
+        assert typeset(parse(text).root, letters=letters) == expected
+
+
 @pytest.mark.parametrize(
     "text",
     ["-a^2/3 + sqrt(x^2 + y^2)/(1 - sin(q1)^2)", "atan2(y, x) - asin(x)*acos(x)*arctan(abs(x))", "theta1*s2'/J_g0_32",
-     "x_y_z + Lambda", "(1 + 2)*3*4/5/6", "a/(b + c + d + e + f + g + h + i + j + k + l + m + n + o)"],
+     "x_y_z + Lambda", "transpose(inverse(J)) @ M - k*inverse(A + B) @ cross(r, F)",
+     "(1 + 2)*3*4/5/6", "a/(b + c + d + e + f + g + h + i + j + k + l + m + n + o)"],
 )  # fmt: skip
 def test_what_is_typeset_is_valid(text):
     source = typeset(parse(text).root)

@@ -8,10 +8,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from runner.audit.entry import parts, right_elements
+from runner.audit.evaluation import evaluate_used
 from runner.audit.model_truths import Dynamics, by_model, by_urdf
 from runner.audit.truth import Elements, Symbols, Truth, along, columns, derivative
 from runner.base.arrays import FloatArray
 from runner.studies.thesis.equations.truths import thesis_printed as printed
+from runner.studies.thesis.equations.truths.thesis import regular_symbols
 from runner.studies.thesis.equations.truths.thesis_arms import MACRO
 
 _WAYS = ("Pinocchio", "energies of the URDF's bodies, rates by differences")
@@ -27,50 +30,23 @@ def _solve(matrices: FloatArray, vectors: FloatArray) -> FloatArray:
     return np.asarray(np.linalg.solve(matrices, vectors[..., None])[..., 0], dtype=float)
 
 
-# The formulas with the thesis' own M, V, G and J.
+def symbols(count: int, generator: np.random.Generator) -> Symbols:
+    """Return random states as `thesis.regular_symbols` does, with the vectors and matrices of the Macro.
 
-
-def _inverse_jacobian(s: Symbols) -> FloatArray:
-    return np.asarray(np.linalg.inv(printed.linear_jacobian(MACRO.q(s))), dtype=float)
-
-
-def jacobian_rate(s: Symbols) -> Elements:
-    """Return h by (3.30) and (3.31): the rate of J by differences, times dq."""
-    q, dq = MACRO.q(s), MACRO.dq(s)
+    `J` is its linear Jacobian, `dJ` the Jacobian's rate by differences, `M`, `V` and `G` those of its dynamics, all as
+    the thesis prints them. The tip is at `x`, with the rates `dx` and `ddx`; `x_g` is a goal, `F_star` a control input.
+    """
+    s = regular_symbols(count, generator)
+    q, dq, ddq = MACRO.q(s), MACRO.dq(s), MACRO.ddq(s)
 
     def jacobian(time: FloatArray) -> FloatArray:
         return printed.linear_jacobian(q + time * dq)
 
-    return {"h": along(derivative(jacobian, np.zeros((len(q), 1)), 0), dq)}
-
-
-def kinetic_energy_matrix(s: Symbols) -> Elements:
-    """Return Lambda by (3.27)."""
-    inverse = _inverse_jacobian(s)
-    return {"Lambda": _transposed(inverse) @ printed.mass_matrix(MACRO.q(s)) @ inverse}
-
-
-def centrifugal_force(s: Symbols) -> Elements:
-    """Return mu by (3.28)."""
-    V = printed.coriolis_torque(MACRO.q(s), MACRO.dq(s))
-    at_tip = along(_transposed(_inverse_jacobian(s)), V)
-    return {"mu": at_tip - along(kinetic_energy_matrix(s)["Lambda"], jacobian_rate(s)["h"])}
-
-
-def gravity_force(s: Symbols) -> Elements:
-    """Return p by (3.29)."""
-    return {"p": along(_transposed(_inverse_jacobian(s)), printed.gravity_torque(MACRO.q(s)))}
-
-
-def _force(s: Symbols, acceleration: FloatArray) -> FloatArray:
-    inertia = along(kinetic_energy_matrix(s)["Lambda"], acceleration)
-    return np.asarray(inertia + centrifugal_force(s)["mu"] + gravity_force(s)["p"])
-
-
-def end_effector_force(s: Symbols) -> Elements:
-    """Return F by (3.26) for the motion of the sample."""
-    q, ddq = MACRO.q(s), MACRO.ddq(s)
-    return {"F": _force(s, along(printed.linear_jacobian(q), ddq) + jacobian_rate(s)["h"])}
+    J, dJ = jacobian(np.zeros((count, 1))), derivative(jacobian, np.zeros((count, 1)), 0)
+    tip = {"x": MACRO.frame(3, q)[:, :3, 3], "dx": along(J, dq), "ddx": along(J, ddq) + along(dJ, dq)}
+    goal = {"x_g": np.tile(_GOAL, (count, 1)), "k_p": np.full(count, _K_P), "k_v": np.full(count, _K_V)}
+    arm = {"M": printed.mass_matrix(q), "V": printed.coriolis_torque(q, dq), "G": printed.gravity_torque(q)}
+    return {**s, "J": J, "dJ": dJ, "dq": dq, **arm, **tip, **goal, "F_star": _input(s)}
 
 
 # The truth.
@@ -119,24 +95,15 @@ def _input(s: Symbols) -> FloatArray:
     return columns(s, ("ddq4", "ddq5", "ddq6"))
 
 
-def _torque(s: Symbols, acceleration: FloatArray) -> FloatArray:
+def _torque(s: Symbols, control_input: FloatArray) -> FloatArray:
     """Return J' F with F by (3.32) for an input F*."""
-    return along(_transposed(printed.linear_jacobian(MACRO.q(s))), _force(s, acceleration))
-
-
-def control_torque(s: Symbols) -> Elements:
-    """Return J' F with F by (3.32)."""
-    return {"tau": _torque(s, _input(s))}
+    printed = right_elements(next(part for part in parts("thesis") if part.path.name == "3_3.yaml"))
+    return evaluate_used({"tau": printed["tau"]}, printed, {**s, "F_star": control_input})["tau"]
 
 
 def chosen_input(s: Symbols) -> Elements:
     """Return the tip's acceleration that the thesis derives: F* itself."""
     return {"acceleration": _input(s)}
-
-
-def _state(s: Symbols) -> tuple[FloatArray, FloatArray]:
-    q = MACRO.q(s)
-    return MACRO.frame(3, q)[:, :3, 3], along(printed.linear_jacobian(q), MACRO.dq(s))
 
 
 def _desired(s: Symbols) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -146,14 +113,13 @@ def _desired(s: Symbols) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 def _goal_input(s: Symbols) -> FloatArray:
     """Return F* by (3.33)."""
-    x, dx = _state(s)
-    return np.asarray(-_K_V * dx - _K_P * (x - _GOAL))
+    return np.asarray(-_K_V * s["dx"] - _K_P * (s["x"] - _GOAL))
 
 
 def _tracking_input(s: Symbols) -> FloatArray:
     """Return F* by (3.40)."""
-    (x, dx), (x_d, dx_d, ddx_d) = _state(s), _desired(s)
-    return np.asarray(ddx_d - _K_V * (dx - dx_d) - _K_P * (x - x_d))
+    x_d, dx_d, ddx_d = _desired(s)
+    return np.asarray(ddx_d - _K_V * (s["dx"] - dx_d) - _K_P * (s["x"] - x_d))
 
 
 def goal_acceleration(s: Symbols) -> Elements:

@@ -19,8 +19,7 @@ _OF_MINI = {"v_M": "v_m", "J_M": "J_m", "0TE": "3T6"}  # the others end in -mini
 @lru_cache(maxsize=32)
 def _expressions(name: str) -> dict[str, Expression]:
     entry = next(entry for _, entry in entries("thesis") if entry.id == f"thesis-{name}")
-    form = entry.corrected or entry.repair or entry.printed
-    return {element: parse(text) for element, text in form.elements.items()}
+    return {element: parse(text) for element, text in entry.right.elements.items()}
 
 
 def _matrix(name: str, q: FloatArray, mini: bool = False) -> FloatArray:
