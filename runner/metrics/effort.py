@@ -46,11 +46,11 @@ def evaluate(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
     peaks, speeds = size.max(axis=2), np.abs(by_rows(traces.dq)).max(axis=2)
     work = np.abs(held * np.diff(by_rows(traces.q), axis=2)).sum(axis=2)
     steps = _squared_steps(held)
-    slides = np.array([unit == "m" for unit in traces.joint_units])
+    prismatic = np.array([unit == "m" for unit in traces.joint_units])
     result: dict[str, FloatArray] = {}
     for peak, rms, chatter, fastest, chosen in (
-        ("peak_torque", "rms_torque", "torque_chatter", "peak_joint_speed", ~slides),
-        ("peak_joint_force", "rms_joint_force", "force_chatter", "peak_sliding_speed", slides),
+        ("peak_torque", "rms_torque", "torque_chatter", "peak_joint_speed", ~prismatic),
+        ("peak_joint_force", "rms_joint_force", "force_chatter", "peak_sliding_speed", prismatic),
     ):
         joints = np.flatnonzero(chosen)
         if len(joints):
@@ -60,9 +60,9 @@ def evaluate(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
                 result |= _over_joints(name, overall, np.sqrt(totals / count), joints)
             result |= _over_joints(fastest, speeds.max(axis=1, where=chosen, initial=0.0), speeds, joints)
     share, shares = _saturation(size, peaks, traces.limits * _AT_LIMIT)
-    result |= _over_joints("saturation_fraction", share, shares, np.arange(len(slides)))
-    result["energy"] = _over(work, np.arange(len(slides)))
-    for effort, chosen in (("control_effort", ~slides), ("force_effort", slides)):
+    result |= _over_joints("saturation_fraction", share, shares, np.arange(len(prismatic)))
+    result["energy"] = _over(work, np.arange(len(prismatic)))
+    for effort, chosen in (("control_effort", ~prismatic), ("force_effort", prismatic)):
         if chosen.any():
             result[effort] = _over(squares, np.flatnonzero(chosen)) * context.period
     return result

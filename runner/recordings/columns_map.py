@@ -55,7 +55,7 @@ class Column(StrictModel):
         torque: The joint whose torque it holds, or the current of whose motor.
         tip: The coordinate of the tip in the base frame.
         unit: Its unit, such as deg, N m or mm; A for a current.
-        constant: Torque by current, in N m/A (N/A where the joint slides): the motor's constant times its gear ratio,
+        constant: Torque by current, in N m/A (N/A for a prismatic joint): the motor's constant times its gear ratio,
             below zero where a current drives the joint backwards.
     """
 
@@ -135,7 +135,7 @@ def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[C
     Args:
         path: The file, YAML.
         joints: Names of the robot's joints.
-        units: Unit of each joint's position: rad, or m where it slides.
+        units: Unit of each joint's position: rad, or m for a prismatic joint.
 
     Raises:
         RunnerError: if it cannot be read, names a joint that the robot does not have, or a unit that does not fit.
@@ -143,10 +143,10 @@ def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[C
     found = read_data(path, ColumnsMap)
     problems = [*_unknown_joints(found, joints), *absurd("", found.model_dump())]
     factors: dict[str, Factor] = {}
-    slides = {joint: unit == "m" for joint, unit in zip(joints, units, strict=True)}
+    prismatic = {joint: unit == "m" for joint, unit in zip(joints, units, strict=True)}
     wanted = {} if found.time is None else {found.time.column: (found.time.unit, "s", "time")}
     wanted |= {
-        name: (column.unit, _si_unit(column.signal, slides), f"columns.{name}")
+        name: (column.unit, _si_unit(column.signal, prismatic), f"columns.{name}")
         for name, column in found.columns.items()
         if column.unit != AMPERE
     }
@@ -159,7 +159,7 @@ def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[C
             factors[name] = Factor(float(factor), own)
     for name, column in found.columns.items():
         if column.constant is not None:
-            factors[name] = Factor(column.constant, _si_unit(column.signal, slides))
+            factors[name] = Factor(column.constant, _si_unit(column.signal, prismatic))
     if problems:
         raise RunnerError(f"{path}: {'; '.join(problems)}")
     return found, factors
@@ -175,12 +175,12 @@ def _unknown_joints(found: ColumnsMap, joints: Sequence[str]) -> Iterator[str]:
             )
 
 
-def _si_unit(signal: Signal, slides: dict[str, bool]) -> str:
+def _si_unit(signal: Signal, prismatic: dict[str, bool]) -> str:
     if signal.kind == "tip":
         return "m"
     if signal.kind == "position":
-        return "m" if slides.get(signal.of) else "rad"
-    return "N" if slides.get(signal.of) else "N m"
+        return "m" if prismatic.get(signal.of) else "rad"
+    return "N" if prismatic.get(signal.of) else "N m"
 
 
 _ALIKE = 0.8  # correlation about zero, from which on a signal is a multiple of the run's

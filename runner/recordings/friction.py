@@ -60,11 +60,11 @@ class JointFriction:
     Attributes:
         joint: Its name.
         unit: Unit of its position.
-        viscous: b, in N m s/rad; N s/m where it slides.
+        viscous: b, in N m s/rad; N s/m for a prismatic joint.
         viscous_half: Half-width.
-        coulomb: c, in N m; N where it slides.
+        coulomb: c, in N m; N for a prismatic joint.
         coulomb_half: Half-width.
-        constant: o, in N m; N where it slides.
+        constant: o, in N m; N for a prismatic joint.
         speed: Speeds of the rows, shape (N,), in rad/s.
         torque: Residual torques less what other masses and o explain, shape (N,), in N m.
     """

@@ -18,10 +18,9 @@ from runner.environments.external_wrench import Interaction
 from runner.environments.wall import Wall
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, Plant
-from runner.plants.contact_plant import WithTipContact
 from runner.plants.kinds import HasServo
-from runner.plants.payload_changes import PayloadChanges
 from runner.plants.servo import JointServo
+from runner.plants.wrappers import PayloadChanges, WithTipContact
 from runner.robots.mismatch import MISMATCHES
 from runner.robots.robot import Robot
 from runner.sensing.streams import MISMATCH

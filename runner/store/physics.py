@@ -39,13 +39,13 @@ _TABLE = """
     controllers/macro_mini: inertial_damping macro_mini stage_loops
     controllers/operational_space: operational_space tip_task whole_body
     environments: __init__=environments.__init__ environment=environments.environment external_wrench=interaction free
-        hand link_forces=pushed_links push wall
+        hand push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary
         tracking
     plants: __init__=plants.__init__ bullet bullet_servers compiled_motion=compiled.motion
-        computation=plants.computation contact_plant=touched decoupled flexible_config
-        flexible_joints=plants.flexible_joints friction kinds=plants.kinds kinematic mujoco payload_changes
-        plant=plants.plant rk4 rk4_flexible_links servo
+        computation=plants.computation decoupled flexible_config
+        flexible_joints=plants.flexible_joints friction kinds=plants.kinds kinematic mujoco
+        plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched
     plugins: features guard metric_units registry
     robots: __init__=robots.__init__ chain description
         inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_urdf model

@@ -77,7 +77,7 @@ def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
         config = validate(run.composed)
         if run_hash(run.config, config.arm.urdf) != run.hash:
             return None
-        if reason := _hindrance(config):
+        if reason := _find_obstacle(config):
             return reason, {}
         resolved = _finer(run.config, config)
         result = simulate_blocks(validate(replace(run.composed, resolved=resolved)), threads_allowed())
@@ -92,7 +92,8 @@ def _made(run: Run) -> tuple[str, Mapping[str, FloatArray]] | None:
     }
 
 
-def _hindrance(config: "RunConfig") -> str:
+def _find_obstacle(config: "RunConfig") -> str:
+    """Return the reason why a run has no finer step; "" if it has one."""
     from runner.metrics.plant_error import COMPARED, PLANT, reason_not_comparable
 
     kind = config.plant.kind

@@ -114,11 +114,11 @@ def _of_joints(trace: Trace, change: Change, period: float) -> dict[str, FloatAr
     side = np.sign(held * moved)
     found = {"energy": np.einsum("tj,ptj->p", side, d_held * moved + held * d_moved)}
     squares = 2.0 * np.einsum("tj,ptj->pj", held, d_held)
-    slides = np.array([unit == "m" for unit in trace.joint_units])
+    prismatic = np.array([unit == "m" for unit in trace.joint_units])
     steps, d_steps = np.diff(held, axis=0), np.diff(d_held, axis=1)
     for peak, rms, chatter, fastest, effort, chosen in (
-        ("peak_torque", "rms_torque", "torque_chatter", "peak_joint_speed", "control_effort", ~slides),
-        ("peak_joint_force", "rms_joint_force", "force_chatter", "peak_sliding_speed", "force_effort", slides),
+        ("peak_torque", "rms_torque", "torque_chatter", "peak_joint_speed", "control_effort", ~prismatic),
+        ("peak_joint_force", "rms_joint_force", "force_chatter", "peak_sliding_speed", "force_effort", prismatic),
     ):
         joints = np.flatnonzero(chosen)
         if not len(joints):

@@ -36,8 +36,8 @@ def to_si(resolved: dict[str, object], config_dirs: Sequence[Path] = ()) -> None
                 if unit.sliding:
                     of_joints.append((place, str(text), each == unit.sliding))
     joints = _sliding_joints(resolved, config_dirs) if of_joints else {}
-    for place, text, slides in of_joints:
-        if _of_place(place, joints) - {slides}:
+    for place, text, prismatic in of_joints:
+        if _of_place(place, joints) - {prismatic}:
             put(resolved, place, text)
 
 
@@ -60,7 +60,7 @@ def _of_place(place: Place, joints: Mapping[str, Mapping[str, bool]]) -> set[boo
     own = (
         named[last : last + 1] if isinstance(last, int) else [joint for joint in named if joint[0] == last][:1] or named
     )
-    return {slides for _, slides in own}
+    return {prismatic for _, prismatic in own}
 
 
 def key_unit(key: str) -> str:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runner.plants import Plant
-from runner.plants.payload_changes import PayloadChanges
+from runner.plants.wrappers import PayloadChanges
 
 
 class Even(Plant):

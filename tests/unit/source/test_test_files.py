@@ -52,7 +52,6 @@ SHARED = {
     "controllers/macro_mini/stage_loops": "physics/controllers/test_macro_mini.py",
     "controllers/stability": "physics/controllers/test_force_stability.py",
     "controllers/torque_filter": "physics/controllers/test_disturbance_observer.py",
-    "environments/external_wrench": "physics/environments/test_link_forces.py",
     "environments/free": "physics/environments/test_environments.py",
     "environments/hand": "physics/environments/test_environments.py",
     "environments/push": "physics/environments/test_environments.py",

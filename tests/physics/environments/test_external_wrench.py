@@ -150,10 +150,10 @@ def test_a_link_that_is_not_there(checked_config):
 @pytest.mark.parametrize(
     ("environment", "reason"),
     [
-        (Pushes([1.0, 2.0]), r"Pushes.link_forces \(test_link_forces.py, line \d+\) gave an array of shape \(1, 2\)"),
+        (Pushes([1.0, 2.0]), r"Pushes.link_forces \(test_external_wrench.py, line \d+\) gave an array of shape \(1, 2\)"),
         (Pushes([np.nan, 0.0, 0.0]), r"Pushes.link_forces .* gave nan at index \[0, 0\]; it must be finite"),
         (Loads(lambda *_: np.zeros(2)), r"Loads.joint_torques .* gave an array of shape \(2,\)"),
-        (Loads(lambda *_: 1 / 0), r"ZeroDivisionError: division by zero \(test_link_forces.py, line \d+"),
+        (Loads(lambda *_: 1 / 0), r"ZeroDivisionError: division by zero \(test_external_wrench.py, line \d+"),
     ],
     ids=["shape of forces", "nan", "shape of torques", "raises"],
 )
@@ -169,9 +169,9 @@ def test_what_it_is_handed_cannot_be_changed(run_in, argument):
         handed[argument][:] = 1.0
 
     trace = run_in(ENVIRONMENTS.guard(Loads(write)))
-    assert re.search(r"read-only \(test_link_forces.py, line \d+, in write\)", trace.failure.reason)
+    assert re.search(r"read-only \(test_external_wrench.py, line \d+, in write\)", trace.failure.reason)
     trace = run_in(ENVIRONMENTS.guard(Pushes([], None, lambda *handed: write(None, *handed))))
-    assert re.search(r"read-only \(test_link_forces.py, line \d+, in write\)", trace.failure.reason)
+    assert re.search(r"read-only \(test_external_wrench.py, line \d+, in write\)", trace.failure.reason)
 
 
 @pytest.mark.parametrize("points", [{"link2": [0.0, 1.0]}, {"link2": [np.inf, 0.0, 0.0]}, 5])

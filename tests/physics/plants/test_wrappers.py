@@ -5,7 +5,7 @@ import pytest
 
 from runner.environments import ENVIRONMENTS
 from runner.environments.wall import WallConfig
-from runner.plants.contact_plant import WithTipContact
+from runner.plants.wrappers import WithTipContact
 from runner.simulation.assembly import assemble
 
 POSTURES = {"macro": [0.3, 0.4, -0.5], "mini": [0.3, 0.4, -0.5]}
