@@ -68,15 +68,21 @@ def check_flexible_joints(config: RunConfig) -> None:
         return
     problems = [f"plant.flexible_joints: {problem}" for problem in _refused(config, config.plant, flexibility)]
     links = links_of(config.arm.model, flexibility.flexible)
-    rate, step = flexibility.largest_rate(links.mass_matrix(config.arm.home)), config.timing.step
-    if rate * step > _FASTEST:
-        steps = int(np.ceil(rate * config.timing.tick / _FASTEST))
-        problems.append(
-            f"plant.step: {step:g} s is too long for the fastest mode of the flexible joints, {rate / (2 * np.pi):.3g} "
-            f"Hz at home; allowed: up to {_FASTEST / rate:.3g} s, such as {config.timing.tick / steps:g}"
-        )
+    rate = flexibility.largest_rate(links.mass_matrix(config.arm.home))
+    problems += _long_step(config, "the flexible joints", rate)
     if problems:
         raise ConfigError(problems)
+
+
+def _long_step(config: RunConfig, parts: str, rate: float) -> list[str]:
+    """Return a problem if the plant step does not resolve the fastest mode of flexible parts, with a rate in 1/s."""
+    step, tick = config.timing.step, config.timing.tick
+    if rate * step > _FASTEST:
+        return [
+            f"plant.step: {step:g} s is too long for the fastest mode of {parts}, {rate / (2 * np.pi):.3g} Hz at home; "
+            f"allowed: up to {_FASTEST / rate:.3g} s, such as {tick / np.ceil(rate * tick / _FASTEST):g}"
+        ]
+    return []
 
 
 def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibility) -> list[str]:
@@ -140,15 +146,12 @@ def check_flexible_links(config: RunConfig) -> None:
         problems.append("torque sensors are read in rigid arms; take joint_torque_sensor.noise=null")
     problems = [f"plant.links: {problem}" for problem in problems]
     try:
-        rate, tick, step = config.plant.largest_rate(config.arm), config.timing.tick, config.timing.step
+        rate = config.plant.largest_rate(config.arm)
     except np.linalg.LinAlgError:
-        rate, tick, step = np.inf, config.timing.tick, config.timing.step
+        rate = np.inf
     if not rate < 1e9:
         problems.append("plant.motor_inertia: a link without mass turns with its motor alone; give each joint one")
-    elif rate * step > _FASTEST:
-        problems.append(
-            f"plant.step: {step:g} s is too long for the fastest mode of the links, {rate / (2 * np.pi):.3g} Hz at "
-            f"home; allowed: up to {_FASTEST / rate:.3g} s, such as {tick / np.ceil(rate * tick / _FASTEST):g}"
-        )
+    else:
+        problems += _long_step(config, "the links", rate)
     if problems:
         raise ConfigError(problems)

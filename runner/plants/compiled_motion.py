@@ -354,21 +354,21 @@ class CompiledStep(ArmCode):
         Mover(algebra, 0, n + m, n + m, at, springs).move(given[:n], h, parts)
         return parts
 
-    def advance(self, q: FloatArray, v: FloatArray, given: FloatArray, steps: int) -> None:
+    def advance(self, state: FloatArray, given: FloatArray, steps: int) -> None:
         """Advance by a number of steps, in place.
 
         Args:
-            q: Positions of the links, followed by those of the motors behind springs, shape (n + m,), in rad.
-            v: Their velocities, shape (n + m,), in rad/s.
+            state: Positions of the links and of the motors behind springs, in rad, then their velocities, in rad/s,
+                shape (2 (n + m),).
             given: Held motor torques, shape (n,), in N m. With springs, external torques on the links, shape (n,), and
                 0 for each motor whose brake is closed, else 1, shape (m,), follow them.
             steps: Number of steps.
         """
-        frame, n = self._frame, len(q)
-        state = frame.state[:, 0]
-        state[:n], state[n:], frame.rows[0, :, 0], frame.steps[0] = q, v, given, steps
+        frame = self._frame
+        own = frame.state[:, 0]
+        own[:], frame.rows[0, :, 0], frame.steps[0] = state, given, steps
         frame.call()
-        q[:], v[:] = state[:n], state[n:]
+        state[:] = own
 
 
 class CompiledLinksTorque(ArmCode):

@@ -137,11 +137,11 @@ class FlexibleJoints(Plant):
         on, nq = self._on, len(self.q)
         self._brake(on)
         x = np.concatenate([self.q, self.theta[on], self.dq, self.dtheta[on]])
-        if self._compiled is None:
+        if self._compiled is not None:
+            self._compiled.advance(x, np.concatenate([tau, self.load, self._free]), self._steps_per_tick)
+        else:
             x = runge_kutta(lambda at: self._slope(at, tau), x, self._step, self._steps_per_tick)
         places, speeds = x[: len(x) // 2], x[len(x) // 2 :]
-        if self._compiled is not None:
-            self._compiled.advance(places, speeds, np.concatenate([tau, self.load, self._free]), self._steps_per_tick)
         self.q[:], self.dq[:] = places[:nq], speeds[:nq]
         self.theta[:], self.dtheta[:] = self.q, self.dq
         self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]

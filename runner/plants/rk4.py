@@ -1,5 +1,6 @@
 """Runge-Kutta plant: integrated equations of motion."""
 
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -45,8 +46,8 @@ class Rk4(Plant):
         self._model, self._data = model.separate()
         self._step = step
         self._steps_per_tick = steps_per_tick
-        self.q = np.zeros(model.nq)
-        self.dq = np.zeros(model.nq)
+        self._state = np.zeros(2 * model.nq)
+        self.q, self.dq = np.split(self._state, 2)
 
     def reset(self, q: FloatArray, dq: FloatArray) -> None:
         """Reset the arm to a state; see Plant."""
@@ -61,11 +62,10 @@ class Rk4(Plant):
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques for one tick; see Plant."""
         if self._compiled is not None:
-            self._compiled.advance(self.q, self.dq, tau, self._steps_per_tick)
-            return
-        x = np.concatenate([self.q, self.dq])
-        x = runge_kutta(lambda at: self._slope(at, tau), x, self._step, self._steps_per_tick)
-        self.q[:], self.dq[:] = x[: len(tau)], x[len(tau) :]
+            self._compiled.advance(self._state, tau, self._steps_per_tick)
+        else:
+            slope = partial(self._slope, tau=tau)
+            self._state[:] = runge_kutta(slope, self._state, self._step, self._steps_per_tick)
 
     def _slope(self, x: FloatArray, tau: FloatArray) -> FloatArray:
         """Return the time derivative of the state: joint positions, then joint velocities."""

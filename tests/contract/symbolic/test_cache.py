@@ -30,9 +30,9 @@ def compilations(monkeypatch):
 
 
 def stepped():
-    q, v = np.array([0.3, 0.5, -0.4]), np.array([1.0, 0.5, -0.5])
-    CompiledStep(MACRO, 0.01).advance(q, v, np.array([5.0, -3.0, 2.0]), 3)
-    return np.concatenate([q, v])
+    state = np.array([0.3, 0.5, -0.4, 1.0, 0.5, -0.5])
+    CompiledStep(MACRO, 0.01).advance(state, np.array([5.0, -3.0, 2.0]), 3)
+    return state
 
 
 def test_code_is_compiled_once_and_found_by_the_next_process(place, compilations):

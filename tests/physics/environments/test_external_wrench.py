@@ -150,7 +150,10 @@ def test_a_link_that_is_not_there(checked_config):
 @pytest.mark.parametrize(
     ("environment", "reason"),
     [
-        (Pushes([1.0, 2.0]), r"Pushes.link_forces \(test_external_wrench.py, line \d+\) gave an array of shape \(1, 2\)"),
+        (
+            Pushes([1.0, 2.0]),
+            r"Pushes.link_forces \(test_external_wrench.py, line \d+\) gave an array of shape \(1, 2\)",
+        ),
         (Pushes([np.nan, 0.0, 0.0]), r"Pushes.link_forces .* gave nan at index \[0, 0\]; it must be finite"),
         (Loads(lambda *_: np.zeros(2)), r"Loads.joint_torques .* gave an array of shape \(2,\)"),
         (Loads(lambda *_: 1 / 0), r"ZeroDivisionError: division by zero \(test_external_wrench.py, line \d+"),
