@@ -8,7 +8,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from itertools import accumulate, repeat
 from operator import mul
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -174,20 +174,6 @@ def check_wall(law: Admittance, period: float, stiffness: float, damping: float,
         raise ConfigError(problems)
 
 
-class ForceLaw(Protocol):
-    """Gains of a force law, as in HybridForceConfig."""
-
-    @property
-    def force_gain(self) -> float:
-        """Gain of the force error."""
-        ...
-
-    @property
-    def force_damping(self) -> float:
-        """Damping ratio of the motion into the wall."""
-        ...
-
-
 def force_loop_radius(rate: float, force_gain: float, damping: float, delay: int = 0) -> float:
     r"""Return the spectral radius of the force loop over one period, in contact with a wall.
 
@@ -209,12 +195,18 @@ def force_loop_radius(rate: float, force_gain: float, damping: float, delay: int
 
 
 def touch_radius(
-    law: ForceLaw, mass: float, stiffness: float, drag: float, nominal_stiffness: float, period: float, delay: int
+    gains: tuple[float, float],
+    mass: float,
+    stiffness: float,
+    drag: float,
+    nominal_stiffness: float,
+    period: float,
+    delay: int,
 ) -> float:
     """Return the spectral radius of a force loop on a damping wall that differs from the nominal wall.
 
     Args:
-        law: Gains of the law.
+        gains: Gain of the force error and damping ratio of the motion into the wall, as in HybridForceConfig.
         mass: Mass of the tip along the normal, in kg.
         stiffness: Stiffness of the wall, in N/m.
         drag: Damping of the wall, in N s/m.
@@ -222,9 +214,10 @@ def touch_radius(
         period: h, in s.
         delay: Delay of the push, in periods.
     """
-    brake = 2.0 * law.force_damping * float(np.sqrt(nominal_stiffness * (1.0 + law.force_gain) * mass))
+    force_gain, damping = gains
+    brake = 2.0 * damping * float(np.sqrt(nominal_stiffness * (1.0 + force_gain) * mass))
     wall = np.array([stiffness * period, drag]) * period / mass
-    return _held_radius(-wall, -law.force_gain * wall - np.array([0.0, brake * period / mass]), delay)
+    return _held_radius(-wall, -force_gain * wall - np.array([0.0, brake * period / mass]), delay)
 
 
 def _held_radius(passive: FloatArray, gain: FloatArray, delay: int) -> float:

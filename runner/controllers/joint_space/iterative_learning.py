@@ -142,7 +142,7 @@ def _count_ticks(config: IterativeLearningConfig) -> int:
     ticks = round(every / period)
     if ticks < 1 or abs(ticks * period - every) > 1e-9 * every:
         raise ConfigError(
-            f"controller.repeats_every: {every:g} s is no multiple of controller.period, {period:g} s; such as "
+            f"controller.repeats_every: {every:g} s is not a multiple of controller.period, {period:g} s; such as "
             f"{max(ticks, 1) * period:g}"
         )
     return ticks

@@ -46,13 +46,11 @@ class InertialDamping(StageLoop[DampingParameters]):
     """
 
     def __init__(self, robot: Robot, stage: int, law: StageLaw, gain: float) -> None:
-        self._law = law
-        self._first, self._end = robot.stages[stage].joints.start, robot.stages[stage].joints.stop
         base, _ = base_at_home(robot, stage)
         parameters = DampingParameters(
             law.parameters, robot.stages[stage].home_offset, robot.model.gravity, gain / law.parameters.k_v
         )
-        super().__init__([law.model, base], law.gravity_compensation, parameters, robot.model.nq)
+        super().__init__(robot, stage, law, [base], parameters)
 
     def evaluate(
         self,
@@ -70,5 +68,4 @@ class InertialDamping(StageLoop[DampingParameters]):
         still: FloatArray = np.zeros(3)
         beside, gravity = np.array([parameters.share * (moves[:3] - reference[1]), parameters.gravity]).dot(R)
         target = np.array([parameters.offset, beside, still])
-        own_q, own_dq = q[self._first : self._end], dq[self._first : self._end]
-        return self._law.move(own, parameters.law, own_q, own_dq, target, gravity), state
+        return self._law.move(own, parameters.law, *self.own(q, dq), target, gravity), state

@@ -101,7 +101,7 @@ def _controller(config: MacroMiniConfig, robot: Robot, index: int, macro_period:
         return HeldController(robot, index, law, ignore_base_rotation)
     if config.coupling == "inertial_damping" and ignore_base_rotation:
         raise ConfigError(
-            "controller.wrist_rotation: parallel does not tell how the base turns, which inertial_damping needs; "
+            "controller.wrist_rotation: parallel ignores the rotation of the base, which inertial_damping needs; "
             "take real"
         )
     if config.coupling == "inertial_damping":

@@ -1,5 +1,6 @@
 """Control loops of mounted arms: control law and coupled target of each stage."""
 
+from collections.abc import Sequence
 from typing import Any, Literal, NamedTuple, TypeVar
 
 import numpy as np
@@ -110,9 +111,22 @@ N = TypeVar("N", bound=Any)  # a NamedTuple with the parameters of the stage's l
 
 
 class StageLoop(TorqueLaw[N]):
-    """Base class of the loops of stages; `_released` is the state without a held configuration."""
+    """Base class of the loops of stages; `_released` is the state without a held configuration.
+
+    Args:
+        robot: The robot.
+        stage: Index of the stage.
+        law: Law of the stage.
+        models: Further arms of the loop.
+        parameters: Parameters of the loop, including `law`, those of the stage's law.
+    """
 
     _released: FloatArray = np.zeros(0)
+
+    def __init__(self, robot: Robot, stage: int, law: StageLaw, models: Sequence[RobotModel], parameters: N) -> None:
+        self._law, joints = law, robot.stages[stage].joints
+        self._first, self._end = joints.start, joints.stop
+        super().__init__([law.model, *models], law.gravity_compensation, parameters, robot.model.nq)
 
     @property
     def velocity_gain(self) -> VelocityGain:
@@ -122,6 +136,10 @@ class StageLoop(TorqueLaw[N]):
     def start(self, q: FloatArray) -> FloatArray:
         """Return the state without a held configuration; see TorqueLaw."""
         return self._released
+
+    def own(self, q: Array, dq: Array) -> tuple[Array, Array]:
+        """Return the positions and velocities of the stage's joints."""
+        return q[self._first : self._end], dq[self._first : self._end]
 
 
 class MacroController(StageLoop[MacroParameters]):
@@ -151,11 +169,10 @@ class MacroController(StageLoop[MacroParameters]):
         minis = range(1, len(robot.stages))
         placed = [base_at_home(robot, mini) for mini in minis]
         bases = [model for model, _ in placed]
-        self._law, self._end = law, robot.stages[0].joints.stop
         self._turns, self._ignore_base_rotation = turn is not None, ignore_base_rotation
         self._minis = [(s.joints.start, s.joints.stop) for s in robot.stages[1:]] if offset is None else []
         self._bases = len(bases) if offset is None and not ignore_base_rotation else int(self._turns)
-        self._released = _no_posture(self._end if self._turns else None)
+        self._released = _no_posture(law.model.nq if self._turns else None)
         tips = [stage.model for stage in robot.stages[1:]] if offset is None else []
         at_home = end_points(robot, robot.home[None])[:, 0]
         parameters = MacroParameters(
@@ -166,14 +183,13 @@ class MacroController(StageLoop[MacroParameters]):
             reach=reach,
             turn=0.0 if turn is None else turn,
         )
-        models = [law.model, *bases[: self._bases], *tips]
-        super().__init__(models, law.gravity_compensation, parameters, robot.model.nq)
+        super().__init__(robot, 0, law, [*bases[: self._bases], *tips], parameters)
 
     def evaluate(
         self, arms: Arms, parameters: MacroParameters, time: Scalar, q: Array, dq: Array, reference: Array, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of the first stage, and the state of the held configuration; see TorqueLaw."""
-        own, own_q, own_dq = arms[0], q[: self._end], dq[: self._end]
+        own, (own_q, own_dq) = arms[0], self.own(q, dq)
         bases = [arm.tip_pose(q) for arm in arms[1 : 1 + self._bases]] if self._bases else []
         target = reference - parameters.offset
         if self._minis:
@@ -230,14 +246,13 @@ class MiniController(StageLoop[MiniParameters]):
         stretch: bool,
         turn: float | None,
     ) -> None:
-        self._law, self._aim, self._ignore_base_rotation = law, aim, ignore_base_rotation
+        self._aim, self._ignore_base_rotation = aim, ignore_base_rotation
         self._stretch, self._turns = stretch, turn is not None
         self._moving = moving_target and aim != "own_offset"
-        joints, r_0 = robot.stages[stage].joints, robot.stages[stage].home_offset
-        self._first, self._end = joints.start, joints.stop
+        r_0 = robot.stages[stage].home_offset
         self._follows = aim == "rest"
         self._holds = self._follows and (self._turns or not stretch)
-        self._released = _no_posture(self._end - self._first if self._holds else None)
+        self._released = _no_posture(law.model.nq if self._holds else None)
         at_home, between = base_at_home(robot, stage)[1], robot.stages[1:stage] if ignore_base_rotation else ()
         self._between = [(below.joints.start, below.joints.stop) for below in between]
         base, _ = base_at_home(robot, stage - len(between))
@@ -251,15 +266,14 @@ class MiniController(StageLoop[MiniParameters]):
             reach=reach,
             turn=0.0 if turn is None else turn,
         )
-        models = [law.model, base, *(below.model for below in between)]
-        super().__init__(models, law.gravity_compensation, parameters, robot.model.nq)
+        super().__init__(robot, stage, law, [base, *(below.model for below in between)], parameters)
 
     def evaluate(
         self, arms: Arms, parameters: MiniParameters, time: Scalar, q: Array, dq: Array, reference: Array, state: Array
     ) -> tuple[Array, Array]:
         """Return the torques of this stage, and the state of the held configuration; see TorqueLaw."""
         own = arms[0]
-        backend, own_q, own_dq = own.backend, q[self._first : self._end], dq[self._first : self._end]
+        backend, (own_q, own_dq) = own.backend, self.own(q, dq)
         way, target, gravity = self._seen(arms[1:], parameters, q, dq, reference)
         if not self._follows:
             return self._law.move(own, parameters.law, own_q, own_dq, target, gravity), state
@@ -323,11 +337,10 @@ class HeldController(StageLoop[HeldParameters]):
     """
 
     def __init__(self, robot: Robot, stage: int, law: StageLaw, ignore_base_rotation: bool) -> None:
-        self._law, self._ignore_base_rotation = law, ignore_base_rotation
-        self._first, self._end = robot.stages[stage].joints.start, robot.stages[stage].joints.stop
+        self._ignore_base_rotation = ignore_base_rotation
         base, at_home = base_at_home(robot, stage)
         parameters = HeldParameters(law.parameters, robot.stages[stage].home, at_home, robot.model.gravity)
-        super().__init__([law.model, base], law.gravity_compensation, parameters, robot.model.nq)
+        super().__init__(robot, stage, law, [base], parameters)
 
     def evaluate(
         self, arms: Arms, parameters: HeldParameters, time: Scalar, q: Array, dq: Array, reference: Array, state: Array
@@ -335,7 +348,7 @@ class HeldController(StageLoop[HeldParameters]):
         """Return the torques of this stage; see TorqueLaw."""
         own, base = arms
         R = parameters.rotation if self._ignore_base_rotation else base.tip_pose(q)[1]
-        own_q, own_dq = q[self._first : self._end], dq[self._first : self._end]
+        own_q, own_dq = self.own(q, dq)
         gravity = R.T.dot(parameters.gravity)
         return self._law.hold(own, parameters.law, own_q, own_dq, parameters.posture, gravity), state
 

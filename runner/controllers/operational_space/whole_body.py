@@ -43,7 +43,7 @@ class WholeBodyLaw(StrictModel):
 
     @classmethod
     def of_stage(cls, config: StrictModel, names: Sequence[str], index: int, **own: Any) -> Self:
-        """Return the law of a stage from a config with these keys, of which frequency and damping ratio are by stage.
+        """Return the law of a stage from a config with these keys; frequency and damping ratio are by stage.
 
         Args:
             config: The config.

@@ -73,4 +73,5 @@ def force_contact(config: RunConfig, q_start: FloatArray) -> float | None:
     normal = np.array(wall.normal) / np.linalg.norm(wall.normal)
     mass = mass_along(tip_mobility(config.arm.model, q_start, loop.joints.start), normal)
     late = math.ceil(timing.late[-1] * timing.tick / loop.period - 1e-9)
-    return touch_radius(law, mass, wall.stiffness, wall.damping, law.wall_stiffness, loop.period, late)
+    gains = law.force_gain, law.force_damping
+    return touch_radius(gains, mass, wall.stiffness, wall.damping, law.wall_stiffness, loop.period, late)

@@ -29,27 +29,19 @@ def test_a_motion_simulated_period_by_period_grows_beyond_the_limit_alone(force_
     assert not _grows(0.999 * limit, force_gain, delay)
 
 
-class Gains:
-    force_gain, force_damping = 1.0, 1.0
-
-
 @pytest.mark.parametrize("delay", [0, 1, 2])
 def test_a_wall_as_believed_is_that_of_the_force_loop(delay):
     mass, stiffness, period = 0.1, 2e4, 1e-3
     rate = period * np.sqrt(2.0 * stiffness / mass)
-    found = touch_radius(Gains(), mass, stiffness, 0.0, stiffness, period, delay)
+    found = touch_radius((1.0, 1.0), mass, stiffness, 0.0, stiffness, period, delay)
     assert found == pytest.approx(force_loop_radius(rate, 1.0, 1.0, delay), rel=1e-12)
 
 
 def test_a_wall_s_own_damping_slows_what_remains_of_a_law_without_gain():
     """Without k_f, and with a belief of next to nothing, mass, wall and damper are left: exp of the slowest mode."""
-
-    class Idle:
-        force_gain, force_damping = 0.0, 1.0
-
     mass, stiffness, drag, period = 0.1, 1e3, 5.0, 1e-3
     modes = np.roots([mass, drag, stiffness])
-    found = touch_radius(Idle(), mass, stiffness, drag, 1e-12, period, 0)
+    found = touch_radius((0.0, 1.0), mass, stiffness, drag, 1e-12, period, 0)
     assert found == pytest.approx(np.exp(modes.real.max() * period), rel=1e-6)
 
 

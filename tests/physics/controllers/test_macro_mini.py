@@ -24,12 +24,12 @@ class Spy:
         self.gravity_compensation = law.gravity_compensation
         self.gravity, self.told = None, []
 
-    def move(self, arm, numbers, q, dq, reference, gravity=None):
+    def move(self, arm, parameters, q, dq, reference, gravity=None):
         self.gravity = gravity
         self.told.append(("move", q.copy(), np.array(reference)))
         return np.zeros(3)
 
-    def hold(self, arm, numbers, q, dq, posture, gravity=None):
+    def hold(self, arm, parameters, q, dq, posture, gravity=None):
         self.gravity = gravity
         self.told.append(("hold", q.copy(), np.array(posture)))
         return np.zeros(3)

@@ -18,17 +18,17 @@ REACH = 0.2
 class Spy:
     """In a stage's law's place: keeps what it is told."""
 
-    gravity_compensation, numbers = True, ()
+    gravity_compensation, parameters = True, ()
 
     def __init__(self, model):
         self.model, self.told, self.gravity = model, [], None
 
-    def move(self, arm, numbers, q, dq, reference, gravity=None):
+    def move(self, arm, parameters, q, dq, reference, gravity=None):
         self.told.append(("move", np.array(reference)))
         self.gravity = gravity
         return np.zeros(3)
 
-    def hold(self, arm, numbers, q, dq, posture, gravity=None):
+    def hold(self, arm, parameters, q, dq, posture, gravity=None):
         self.told.append(("hold", np.array(posture)))
         self.gravity = gravity
         return np.zeros(3)

@@ -205,16 +205,16 @@ def test_other_ways_of_control_run(simulated, chain, changes):
 class Recorder:
     """A law that keeps the target it is given, or None where it is told to hold."""
 
-    gravity_compensation, numbers = True, ()
+    gravity_compensation, parameters = True, ()
 
     def __init__(self, stage):
         self.model, self.target = stage.model, None
 
-    def move(self, arm, numbers, q, dq, reference, gravity=None):
+    def move(self, arm, parameters, q, dq, reference, gravity=None):
         self.target = reference[0]
         return np.zeros(3)
 
-    def hold(self, arm, numbers, q, dq, posture, gravity=None):
+    def hold(self, arm, parameters, q, dq, posture, gravity=None):
         self.target = None
         return np.zeros(3)
 
