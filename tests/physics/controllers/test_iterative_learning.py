@@ -190,7 +190,7 @@ def test_a_stored_run_is_the_same_twice(tmp_path):
         (("trajectory=joint_quintic",), r"allowed: trajectory=circle or lissajous with trajectory.easing=none"),
         (("duration=4",), r"duration: 4 s is no longer than two of controller.repeats_every, 2 s"),
         (("controller.repeats_every=1.5",), r"repeats_every: 1.5 s, but the desired motion .* first at 0 s"),
-        (("controller.repeats_every=2.005",), r"2.005 s is no multiple of controller.period, 0.01 s; such as 2"),
+        (("controller.repeats_every=2.005",), r"2.005 s is not a multiple of controller.period, 0.01 s; such as 2"),
         (("controller.repeats_every=1e9",), r"1e\+09 s are 1e\+11 of controller.period, 0.01 s; allowed: up to"),
         (("controller.repeats_every=null",), r"repeats_every: null; allowed: the time in s"),
         (("controller.learning_gain=2",), r"controller.learning_gain"),
