@@ -4,7 +4,8 @@ import numpy as np
 
 from bench.arms import Arm, assembled
 from bench.turns import Block
-from runner.simulation.compiled.closed_loop import LoopProgram, run_all
+from runner.simulation.assembly import assemble_program
+from runner.simulation.compiled.loop_program import run_all
 from runner.simulation.sensors import make_encoders
 
 SIZES = (1, 40, 1000)
@@ -14,9 +15,10 @@ TICKS = 400
 def batches(arm: Arm, law: str) -> dict[int, Block]:
     """Return batches of runs of a law by their size, each run with noise of its own; none where it is not compiled."""
     config, closed = assembled(arm, law, "rk4", 1, TICKS)
-    loop_program = closed.compiled
-    if not isinstance(loop_program, LoopProgram):
+    found = assemble_program(config)
+    if found is None:
         return {}
+    loop_program = found[0]
     commands, times = loop_program.commands, np.arange(TICKS + 1, dtype=np.float64) * closed.tick
     shared = commands.shared(times, closed.trajectory.sample(times))
     runs = [make_encoders(closed, config.noise, config.settings.seed, run) for run in range(max(SIZES))]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from bench.arms import ARMS, Arm, assembled
-from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
+from runner.simulation.assembly import assemble_program
 from runner.symbolic import program
 
 
@@ -19,12 +19,13 @@ def main() -> bool:
 
 
 def _judge(arm: Arm, law: str) -> bool:
-    loop_program = assembled(arm, law, "rk4", 1, 1)[1].compiled
-    if not isinstance(loop_program, LoopProgram):
+    found = assemble_program(assembled(arm, law, "rk4", 1, 1)[0])
+    if found is None:
         print(f"  {arm.name}, {law}: not compiled  MISSED")
         return False
+    loop_program = found[0]
     works: dict[str, Callable[[], object]] = {
-        "law alone": lambda: CompiledCommands(loop_program.commands),
+        "law alone": loop_program.commands.program,
         "tick on rk4": lambda: loop_program.program(1),
         "tick of a batch": lambda: loop_program.program(program.LANES),
     }

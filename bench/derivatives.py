@@ -8,8 +8,7 @@ import numpy as np
 from runner.analysis.sensitivity import GROUPS
 from runner.analysis.sensitivity.analysis import slopes_of
 from runner.config.compose.compose import compose
-from runner.simulation.compiled.closed_loop import run_all
-from runner.simulation.compiled.directed import tangents
+from runner.simulation.compiled.loop_program import run_all, tangents
 
 RUNS = {
     "macro": ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis"),

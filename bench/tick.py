@@ -6,7 +6,7 @@ turns, a block of ticks each; see bench/turns.py.
 """
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from statistics import median
 
 from bench.turns import ROUNDS, Block, measure, ratio
@@ -16,6 +16,7 @@ from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.plants.bullet import Bullet
 from runner.simulation.assembly import assemble
+from runner.simulation.batch import BatchResult, BatchSimulator
 from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.sensors import make_encoders
 
@@ -82,13 +83,21 @@ def _assemble(*overrides: str) -> tuple[RunConfig, ClosedLoop]:
 
 
 def whole_run(config: RunConfig, loop: ClosedLoop) -> Callable[[], None]:
-    """Return a whole run, draws of its noise included."""
+    """Return a whole run, draws of its noise included; compiled as a whole if possible."""
+    batcher = BatchSimulator()
+    runs = batcher.repetitions(config, range(1))
+    if runs is not None:
+        return lambda: _check_all(batcher.simulate(runs))
 
     def block() -> None:
         trace = simulate(loop, make_encoders(loop, config.noise, config.settings.seed, 0))
         assert trace.failure is None
 
     return block
+
+
+def _check_all(results: Iterable[object]) -> None:
+    assert all(isinstance(each, BatchResult) for each in results)
 
 
 def pybullet_alone(config: RunConfig, torques: list[list[float]]) -> Callable[[], None]:

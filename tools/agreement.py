@@ -11,10 +11,8 @@ import numpy as np
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.simulation.assembly import assemble
-from runner.simulation.compiled import compile
-from runner.simulation.loop import simulate
-from runner.simulation.sensors import make_encoders
+from runner.simulation.compiled import commands
+from runner.simulation.run import simulate_repetition
 
 _SEEDS = 20
 _TARGET = 1e-11  # rad
@@ -45,7 +43,7 @@ def main() -> bool:
 
 def _apart(*overrides: str) -> float:
     ours = _run(*overrides)
-    with patch.object(compile, "evaluator", dict):
+    with patch.object(commands, "evaluator", dict):
         theirs = _run(*overrides)
     assert ours.failure is theirs.failure is None
     return float(np.abs(ours.q - theirs.q).max())
@@ -54,8 +52,4 @@ def _apart(*overrides: str) -> float:
 def _run(*overrides: str) -> Trace:
     own = {text.partition("=")[0]: text for text in overrides}
     config = validate(compose(list(own.values())))
-    closed = assemble(config)
-    try:
-        return simulate(closed, make_encoders(closed, config.noise, config.settings.seed, 0))
-    finally:
-        closed.close()
+    return simulate_repetition(config)

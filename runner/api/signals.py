@@ -22,7 +22,6 @@ from runner.store.run import units_of
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.base.trace import Trace
     from runner.config.run import RunConfig
 
 _JOINT = re.compile(r"(q|dq|tau)(\d+)(_command)?")
@@ -73,10 +72,11 @@ def signals_of(run: store.Run, repetition: int) -> Signals:
 def _simulated(run: store.Run, repetition: int) -> Signals:
     from runner.metrics import evaluate
     from runner.simulation.assembly import metric_context
+    from runner.simulation.run import simulate_repetition
     from runner.store.writing import trace_table
 
     config = _checked(run, repetition)
-    trace = _simulate(config, repetition)
+    trace = simulate_repetition(config, repetition)
     found = evaluate(trace, metric_context(config), [])
     for name in run.metrics:
         stored = float(run.values(name)[repetition])
@@ -107,17 +107,6 @@ def _checked(run: store.Run, repetition: int) -> "RunConfig":
     if config.arm.urdf != run.urdf:
         raise RunnerError(f"{cannot}the file of its robot has changed since the run; simulate it again with runner.run")
     return config
-
-
-def _simulate(config: "RunConfig", repetition: int) -> "Trace":
-    from runner.simulation.assembly import assemble
-    from runner.simulation.run import simulate_repetition
-
-    loop = assemble(config, repetition)
-    try:
-        return simulate_repetition(loop, config, repetition)[0]
-    finally:
-        loop.close()
 
 
 def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:

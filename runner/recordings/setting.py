@@ -13,6 +13,7 @@ from runner.metrics import MetricContext
 from runner.recordings.columns_map import Signal
 from runner.robots.robot import end_points
 from runner.simulation.assembly import metric_context
+from runner.simulation.recorder import describe
 from runner.store import Run
 
 AXES = ("x", "y", "z")
@@ -70,7 +71,6 @@ def _stored_trace(run: Run, config: RunConfig) -> Trace:
     q, t = joints("q"), np.asarray(frame["t"].to_numpy())
     points = end_points(config.arm, q, config.ignore_base_rotation)
     points[-1] = tip("tip")
-    home = end_points(config.arm, config.arm.home[None], config.ignore_base_rotation)[:, 0]
     desired = np.stack([tip(stem) for stem in ("desired", "desired_velocity", "desired_acceleration")], axis=1)
     return Trace(
         t=t,
@@ -78,11 +78,8 @@ def _stored_trace(run: Run, config: RunConfig) -> Trace:
         dq=joints("dq"),
         tau=joints("tau"),
         end_points=points,
-        offsets=home[-1] - home,
-        stage_names=config.arm.stage_names,
         desired=desired,
         limits=config.torque_limits,
-        joint_names=model.joint_names,
-        joint_units=model.joint_units,
         tick_seconds=np.zeros(len(t) - 1),
+        **describe(config.arm, config.ignore_base_rotation),
     )

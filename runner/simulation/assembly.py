@@ -25,9 +25,10 @@ from runner.robots.mismatch import MISMATCHES
 from runner.robots.robot import Robot
 from runner.sensing.streams import MISMATCH
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
-from runner.simulation.compiled.compile import compile_commands, compile_program, describe_program, find_commands
+from runner.simulation.compiled.commands import Commands, compiled, find_commands
+from runner.simulation.compiled.loop_program import LoopProgram
 from runner.simulation.contact import add_wall, touches_by_tip
+from runner.symbolic.structure import CannotCompileError
 from runner.trajectories.joint_motion import TipOfJoints
 
 
@@ -55,7 +56,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         if isinstance(environment, Wall):
             environment = None if touched else add_wall(environment, config, plant)
         interaction = Interaction(arm, environment, timing.tick) if config.has_contact else None
-        compiled = _compile(config, loops)
+        code = compiled(_find_commands(config, loops))
         on_error.pop_all()
     return ClosedLoop(
         robot=arm,
@@ -72,7 +73,7 @@ def assemble(config: RunConfig, repetition: int = 0) -> ClosedLoop:
         delay=timing.delay,
         nominal=nominal,
         motor_side=find_motor_side(config, plant, nominal),
-        compiled=compiled,
+        compiled=code,
     )
 
 
@@ -86,31 +87,40 @@ def assemble_program(config: RunConfig, repetition: int = 0) -> tuple[LoopProgra
     Raises:
         ConfigError: see assemble.
     """
-    if config.commands != "torque" or config.has_contact or config.loaded or not config.compilable:
-        return None
-    if PLANTS.motion(config.plant, config.arm) is None:
-        return None
-    compiled = _compile(config, _build_nominal(config, repetition)[1])
-    return (compiled, find_start(config)) if isinstance(compiled, LoopProgram) else None
+    loop_program = describe_program(config, repetition)
+    try:
+        if loop_program is not None:
+            loop_program.program(1)
+    except CannotCompileError:
+        return None  # the control loops have no compiled form either, and report the reason
+    return None if loop_program is None else (loop_program, find_start(config))
 
 
-def describe_loop(config: RunConfig, repetition: int = 0) -> LoopProgram | None:
-    """Return a closed loop that can be compiled as a whole, without compiling it; None if it cannot.
+def describe_program(config: RunConfig, repetition: int = 0) -> LoopProgram | None:
+    """Return a closed loop that may be compiled as a whole, without compiling it; None if it cannot.
 
     Args:
         config: The checked config.
         repetition: Number of the repetition, which determines the nominal model.
     """
-    if config.commands != "torque" or config.has_contact or not config.compilable or is_flexible(config):
+    timing = config.timing
+    if config.commands != "torque" or config.has_contact or config.loaded or not config.compilable:
         return None
-    if config.timing.delay is None:
+    motion = None if timing.delay is None else PLANTS.motion(config.plant, config.arm)
+    commands = None if motion is None else _find_commands(config, _build_nominal(config, repetition)[1])
+    if motion is None or commands is None:
         return None
-    loops = _build_nominal(config, repetition)[1]
-    commands = find_commands(
-        config.arm, config.ignore_base_rotation, loops, config.timing.tick, config.encoder_noise, config.torque_limits
-    )
-    motion = PLANTS.motion(config.plant, config.arm)
-    return None if commands is None or motion is None else describe_program(commands, motion, config.timing)
+    return LoopProgram(commands, motion, timing.tick, timing.step, timing.steps_per_tick, timing.late[0])
+
+
+def check_assembly(config: RunConfig) -> None:
+    """Assemble a run once.
+
+    Raises:
+        ConfigError: see assemble.
+    """
+    if assemble_program(config) is None:
+        assemble(config).close()
 
 
 def find_start(config: RunConfig) -> FloatArray:
@@ -140,16 +150,13 @@ def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loo
     return nominal, add_observers(config.disturbance_observer, nominal, loops, config.torque_limits, config.timing)
 
 
-def _compile(config: RunConfig, loops: tuple[Loop, ...]) -> LoopProgram | CompiledCommands | None:
-    """Return the compiled closed loop, or its compiled control loops; None if neither can be compiled."""
+def _find_commands(config: RunConfig, loops: tuple[Loop, ...]) -> Commands | None:
+    """Return the control loops for compilation; None if they cannot be compiled."""
     if config.commands != "torque" or not config.compilable or is_flexible(config):
         return None
-    commands = find_commands(
+    return find_commands(
         config.arm, config.ignore_base_rotation, loops, config.timing.tick, config.encoder_noise, config.torque_limits
     )
-    motion = None if config.has_contact or config.loaded else PLANTS.motion(config.plant, config.arm)
-    loop_program = None if motion is None else compile_program(commands, motion, config.timing)
-    return compile_commands(commands) if loop_program is None else loop_program
 
 
 def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall | None = None) -> Plant:

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
+from typing import Self
 
 import numpy as np
 
@@ -19,11 +20,11 @@ from runner.config.run import RunConfig
 from runner.metrics import MetricContext, measure
 from runner.metrics.caveats import Watch, look_together, setting_of, signals_of
 from runner.plugins.discovery import added_parts
-from runner.robots.robot import Robot, end_points
 from runner.sensing.encoders import encoder_errors
 from runner.simulation.assembly import assemble_program, metric_context, reach_of
-from runner.simulation.compiled.closed_loop import LoopProgram, Signals, run_all
-from runner.simulation.failures import ended_well, find_failure
+from runner.simulation.compiled.commands import Rows
+from runner.simulation.compiled.loop_program import LoopProgram, run_all
+from runner.simulation.recorder import describe, ended_well, find_failure
 from runner.simulation.results import Collector
 
 _MOST_BYTES = 32e6  # limit of the signals of runs that are simulated together
@@ -47,6 +48,14 @@ class RunSpec:
     repetition: int
     loop_program: LoopProgram
     q_start: FloatArray
+
+    def first(self, ticks: int) -> Self:
+        """Return the run up to a number of ticks."""
+        return (
+            self
+            if ticks >= self.config.timing.ticks
+            else replace(self, config=replace(self.config, timing=replace(self.config.timing, ticks=ticks)))
+        )
 
     @property
     def rows(self) -> int:
@@ -107,7 +116,7 @@ class BatchSimulator:
         Raises:
             ConfigError: see assemble.
         """
-        if added_parts("metric") or not config.compilable:  # one trace at a time; not compiled
+        if not config.compilable:
             return None
         numbers = range(config.settings.repetitions) if chosen is None else chosen
         if not config.varies_model:
@@ -148,30 +157,23 @@ class BatchSimulator:
         times = np.arange(rows, dtype=np.float64) * loop_program.tick
         paths = [self._desired(run, times) for run in runs]
         alike = all(path is paths[0] for path in paths)
-        errors = [
-            encoder_errors(
-                [run.config.encoder_noise for run in runs],
-                [(run.config.settings.seed, run.repetition, number) for run in runs],
-                (rows - 1) // loop.every + 1,
-            )
-            for number, loop in enumerate(loop_program.commands.loops)
-        ]
-        signals = run_all(
+        errors = draw_errors(runs, rows)
+        found = run_all(
             loop_program,
             np.array([run.loop_program.values for run in runs]),
             self._shared(runs if not alike else runs[:1], times, paths),
             errors,
             _start(runs, [wrong[:, 0] for wrong in errors]),
         )
-        seconds, well = (time.perf_counter() - began) / (len(runs) * rows), ended_well(signals)
+        seconds, well = (time.perf_counter() - began) / (len(runs) * rows), ended_well(found)
         for places in _grouped(range(len(runs)), lambda place: runs[place].scene):
             one = runs[places[0]]
-            traces = self._traces(signals, runs, places, paths[places[0]], times, seconds)
+            traces = self._traces(found, runs, places, paths[places[0]], times, seconds)
             good = []
             for index, place in enumerate(places):
                 failure = None
                 if not well[place]:
-                    failure = find_failure(signals, place, traces.t, one.config.arm.model)
+                    failure = find_failure(loop_program, found, place, traces.t, one.config.arm.model)
                 if failure is None:
                     good.append(index)
                 else:
@@ -194,7 +196,7 @@ class BatchSimulator:
 
     def _traces(
         self,
-        signals: Signals,
+        rows: Rows,
         runs: Sequence[RunSpec],
         places: Sequence[int],
         desired: FloatArray,
@@ -206,21 +208,16 @@ class BatchSimulator:
         config, own = one.config, slice(None) if len(places) == len(runs) else list(places)
         t = times[: one.rows]
         acted = np.maximum(np.arange(len(t)) - one.loop_program.delay, 0) if one.loop_program.delay else slice(len(t))
-        arm, model = config.arm, config.arm.model
-        home = self.memory.recall(_home_points, arm, config.ignore_base_rotation)
         return Trace(
             t=t,
-            q=signals.q[own, : len(t)],
-            dq=signals.dq[own, : len(t)],
-            tau=signals.torque[own][:, acted],
-            end_points=signals.end_points[:, own, : len(t)],
-            offsets=home[-1] - home,
-            stage_names=arm.stage_names,
+            q=rows.q[own, : len(t)],
+            dq=rows.dq[own, : len(t)],
+            tau=rows.command[own][:, acted],
+            end_points=rows.end_points[:, own, : len(t)],
             desired=desired[: len(t)],
             limits=np.array([runs[place].config.torque_limits for place in places]),
-            joint_names=model.joint_names,
-            joint_units=model.joint_units,
             tick_seconds=np.full(len(t) - 1, seconds),
+            **self.memory.recall(describe, config.arm, config.ignore_base_rotation),
         )
 
 
@@ -234,9 +231,21 @@ def _start(runs: Sequence[RunSpec], errors: Sequence[FloatArray]) -> FloatArray:
     return np.array([states[place] for place in range(len(runs))])
 
 
-def _home_points(arm: Robot, ignore_base_rotation: bool) -> FloatArray:
-    """Return the end point of each stage at home, shape (stages, 3), in m."""
-    return end_points(arm, arm.home[None], ignore_base_rotation)[:, 0]
+def draw_errors(runs: Sequence[RunSpec], rows: int) -> list[FloatArray]:
+    """Return the errors of the positions that each loop measures, shapes (runs, n, nq), in rad.
+
+    Args:
+        runs: Runs with the same code.
+        rows: Number of rows of the longest run.
+    """
+    return [
+        encoder_errors(
+            [run.config.encoder_noise for run in runs],
+            [(run.config.settings.seed, run.repetition, number) for run in runs],
+            (rows - 1) // loop.every + 1,
+        )
+        for number, loop in enumerate(runs[0].loop_program.commands.loops)
+    ]
 
 
 def _grouped(places: Sequence[int], key: Callable[[int], Hashable]) -> list[list[int]]:
@@ -281,6 +290,9 @@ def _collector(place: int, runs: Sequence[RunSpec], batcher: BatchSimulator) -> 
 def _collect(found: BatchResult, owners: Sequence[tuple[Collector, int]]) -> list[Collector]:
     """Measure successful repetitions, given the collector and number of each; return complete collectors."""
     traces, complete = found.traces, []
+    if added_parts("metric"):  # these take one trace at a time
+        pairs = zip(owners, (traces[row] for row in range(len(owners))), strict=True)
+        return [owner for (owner, number), trace in pairs if owner.evaluate(number, trace, found.context)]
     metrics = measure(traces, found.context)
     names, values = tuple(metrics), np.stack(list(metrics.values()), axis=1)
     parts = [(owner, [repetition for _, repetition in group]) for owner, group in groupby(owners, lambda it: it[0])]

@@ -9,7 +9,7 @@ from runner.plants import Plant
 from runner.plants.flexible_joints import MotorSide
 from runner.plugins.features import Commands
 from runner.robots.robot import Robot
-from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
+from runner.simulation.compiled.commands import Commands as CompiledCommands
 from runner.trajectories import Trajectory
 
 
@@ -32,7 +32,7 @@ class ClosedLoop:
         delay: Ticks from a command until it acts; None if delays differ, see CommandTiming.
         motor_side: Encoders and drives at the motors of flexible joints; None for rigid joints.
         nominal: The nominal robot of the controllers.
-        compiled: The compiled closed loop, or its compiled control loops; None if neither is available.
+        compiled: The control loops for compiled code; None if they are interpreted.
     """
 
     robot: Robot
@@ -49,7 +49,7 @@ class ClosedLoop:
     delay: int | None
     nominal: Robot
     motor_side: MotorSide | None = None
-    compiled: LoopProgram | CompiledCommands | None = None
+    compiled: CompiledCommands | None = None
 
     def close(self) -> None:
         """Release the resources of the plant."""

@@ -1,7 +1,6 @@
 """Contact of the tip in one run: wall in the plant or the simulation loop, external wrench, and wrist sensor."""
 
 import math
-from dataclasses import fields
 
 import numpy as np
 
@@ -74,6 +73,9 @@ class Contact:
         closed: The closed loop.
         interaction: Interaction of arm and environment; reset here.
         wrist: Force/torque sensor, with a draw for each tick.
+
+    Attributes:
+        signals: Record of the run.
     """
 
     def __init__(self, closed: ClosedLoop, interaction: Interaction, wrist: WristSensor) -> None:
@@ -81,12 +83,12 @@ class Contact:
         self._interaction = interaction
         self._wrist = wrist
         self._controllers = [loop.wrench_feedback for loop in closed.loops if loop.wrench_feedback is not None]
-        self._signals = ContactSignals(*(np.zeros((closed.ticks + 1, 6)) for _ in range(5)))
+        self.signals = ContactSignals(*(np.zeros((closed.ticks + 1, 6)) for _ in range(5)))
         interaction.reset(closed.q_start)
 
     def update(self, k: int, time: float, q: FloatArray, dq: FloatArray) -> FloatArray:
         """Update with the state of tick k; return the external joint torques. See Interaction.update."""
-        interaction, signals = self._interaction, self._signals
+        interaction, signals = self._interaction, self.signals
         contact = self._plant.contact_wrench()
         torques = interaction.update(time, q, dq, _NOTHING if contact is None else contact)
         reading = self._wrist.read(k, interaction.load)
@@ -99,9 +101,3 @@ class Contact:
         if self._controllers:
             signals.felt[k] = self._controllers[0].external_wrench  # at its last tick
         return torques
-
-    def signals(self, kept: slice) -> ContactSignals:
-        """Return the record of a range of ticks."""
-        return ContactSignals(
-            **{field.name: getattr(self._signals, field.name)[kept] for field in fields(ContactSignals)}
-        )

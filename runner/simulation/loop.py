@@ -1,19 +1,21 @@
 """Closed-loop simulation of one run, tick by tick: plant, encoders, controllers and desired motion."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol, cast
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.ticks import track_ticks
 from runner.base.trace import Trace
-from runner.sensing import Encoders, TorqueSensors, WristSensor
+from runner.controllers import Controller, Loop, PositionController
+from runner.plants import PositionPlant
+from runner.sensing import Encoders, JointEncoders, TorqueSensors, WristSensor
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.command import Command, make_plant_input
-from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram
-from runner.simulation.compiled_loop import run_commands, run_program
+from runner.simulation.compiled.commands import CompiledLoops, Rows
 from runner.simulation.contact import Contact
-from runner.simulation.recorder import CommandTiming, Recorder, constant_delay
+from runner.simulation.recorder import CHECK_EVERY, CommandTiming, Recorder, constant_delay
 from runner.simulation.sensors import JointTorques, MeasuredTip
 
 __all__ = ["ClosedLoop", "simulate"]
@@ -37,7 +39,7 @@ def simulate(
 
     Args:
         closed: The control loops; plant and controllers are reset here.
-        encoders: Joint measurement of each loop, with a draw for each of its ticks.
+        encoders: Joint measurement of each loop, with a draw for each of its ticks; built-in for compiled loops.
         wrist: Force/torque sensor, with a draw for each tick; required for contact.
         torques: Torque sensors in the joints, with a draw for each tick; required if a control law reads them.
         timing: Command that acts in each tick; None for the constant delay of the closed loop.
@@ -46,55 +48,189 @@ def simulate(
     Returns:
         The trace; it contains a failure if the run ends early.
     """
-    recorder = Recorder(closed, timing or constant_delay(closed.robot.model.nq, closed.delay or 0, closed.ticks + 1))
-    contact = None
+    ticks = closed.ticks + 1
+    timing = timing or constant_delay(closed.robot.model.nq, closed.delay or 0, ticks)
+    laws: ControlLoops
+    if closed.compiled is not None:
+        laws = CompiledLoops(closed.compiled, ticks, [cast(JointEncoders, each).errors for each in encoders])
+    else:
+        laws = InterpretedLoops(closed, encoders, tips or {}, torques, timing)
+    recorder = Recorder(closed, timing, laws.rows)
     try:
         recorder.desired[:] = closed.trajectory.sample(recorder.times)
-        recorder.joints = closed.trajectory.sample_joints(recorder.times)
+        joints = closed.trajectory.sample_joints(recorder.times)
+        contact = None
         if closed.interaction is not None and wrist is not None:
             contact = Contact(closed, closed.interaction, wrist)
+            recorder.contact = contact.signals
         # A diverging run ends as a failure, not as a warning.
         with track_ticks(recorder.clock, closed.ticks), np.errstate(over="ignore", invalid="ignore"):
-            if isinstance(closed.compiled, LoopProgram):
-                run_program(closed.compiled, closed, encoders, recorder)
-            elif isinstance(closed.compiled, CompiledCommands):
-                run_commands(closed.compiled, closed, encoders, contact, recorder)
-            else:
-                each = zip(closed.loops, encoders, strict=True)
-                commands = [Command(closed, *own, recorder, (tips or {}).get(own[0].name)) for own in each]
-                _run(closed, commands, contact, JointTorques(closed, torques, recorder), recorder)
+            laws.start(recorder.times, recorder.desired, joints, closed.q_start)
+            closed.plant.reset(closed.q_start, np.zeros_like(closed.q_start))
+            _run(closed, laws, contact, recorder)
     except (np.linalg.LinAlgError, SimulationError) as error:
         recorder.stop(0, error)
-    return recorder.trace(contact)
+    return recorder.trace()
 
 
-def _run(
-    closed: ClosedLoop,
-    commands: Sequence[Command],
-    contact: Contact | None,
-    torques: JointTorques,
-    recorder: Recorder,
-) -> None:
-    """Run control loops that are called one by one."""
-    drive, load, k, now = make_plant_input(closed, recorder), None, 0, recorder.now
-    recorder.asked = asked = np.zeros_like(recorder.clock)
-    closed.plant.reset(closed.q_start, np.zeros_like(closed.q_start))
+class ControlLoops(Protocol):
+    """The control loops of a closed loop, interpreted or compiled.
+
+    Attributes:
+        rows: Signals of the run; `update` stores the commands.
+    """
+
+    rows: Rows
+
+    def start(self, times: FloatArray, desired: FloatArray, joints: FloatArray | None, q: FloatArray) -> None:
+        """Start a run at rest.
+
+        Args:
+            times: Time of each tick, shape (T,), in s.
+            desired: Desired motion of the tip, shape (T, 3, 3).
+            joints: Desired motion of the joints, shape (T, 3, nq); None if only the tip's motion is given.
+            q: Joint positions, shape (nq,), in rad.
+        """
+
+    def update(self, k: int, q: FloatArray, dq: FloatArray) -> None:
+        """Compute and store the commands of tick k from the true state, shapes (nq,)."""
+
+
+def _run(closed: ClosedLoop, laws: ControlLoops, contact: Contact | None, recorder: Recorder) -> None:
+    """Run the control loops and the plant tick by tick."""
+    plant, update, now, acting, torques = closed.plant, laws.update, recorder.now, recorder.timing.at, recorder.torques
+    kept_q, kept_dq, commands, _, end_points = recorder.rows
+    times, clock, asked, bends, load, k = recorder.times, recorder.clock, recorder.asked, plant.bends, None, 0
     try:
         for k in range(closed.ticks + 1):
-            q, dq = recorder.observe(k)
+            clock[k] = now()
+            kept_q[k] = q = plant.q
+            kept_dq[k] = dq = plant.dq
+            if bends:
+                end_points[:, k] = plant.end_points()
             if contact is not None:
-                load = contact.update(k, recorder.times[k], q, dq)
-            torques.tell(k)
-            q, dq = (q, dq) if closed.motor_side is None else closed.motor_side.read()
+                load = contact.update(k, times[k], q, dq)
             begun = now()
-            for command in commands:
-                if k % command.every == 0:
-                    command.update(k, q, dq)
+            update(k, q, dq)
             asked[k] = now() - begun
-            recorder.keep_command(k)
+            if k % CHECK_EVERY == 0:
+                recorder.check_divergence(k)
             if k < closed.ticks:
-                drive.advance(k, load)
-                torques.keep(k)
+                command = acting(commands, k)
+                plant.advance(command) if load is None else plant.push(command, load)
+                if torques is not None:
+                    torques[k] = torques[k + 1] = cast(PositionPlant, plant).tau
         recorder.check_divergence(closed.ticks)
     except (np.linalg.LinAlgError, SimulationError) as error:
         recorder.stop(k, error)
+
+
+Law = Callable[[float, FloatArray, FloatArray, FloatArray], FloatArray]
+
+
+class InterpretedLoops:
+    """Control loops whose controllers are called one by one; see ControlLoops.
+
+    Args:
+        closed: The closed loop; its controllers are reset at the start.
+        encoders: Joint measurement of each loop, with a draw for each of its ticks.
+        tips: Tip measurements besides the encoders, by loop.
+        sensor: Torque sensors in the joints; None without sensors.
+        timing: Command that acts in each tick.
+
+    Attributes:
+        rows: Signals of the run.
+    """
+
+    def __init__(
+        self,
+        closed: ClosedLoop,
+        encoders: Sequence[Encoders],
+        tips: Mapping[str, MeasuredTip],
+        sensor: TorqueSensors | None,
+        timing: CommandTiming,
+    ) -> None:
+        self._closed, self._encoders, self._tips = closed, encoders, tips
+        self.rows = Rows.new(np.zeros, (closed.ticks + 1,), closed.robot.model.nq, len(closed.robot.stages))
+        self._torques = JointTorques(closed, sensor, timing, self.rows.command)
+
+    def start(self, times: FloatArray, desired: FloatArray, joints: FloatArray | None, q: FloatArray) -> None:
+        """Reset the controllers; see ControlLoops."""
+        closed = self._closed
+        self._current = q.copy() if closed.commands == "position" else np.zeros_like(q)
+        self._commands = [
+            _Command(closed, loop, encoders, self._tips.get(loop.name), times, self._current,
+                     joints if loop.follows_joints and joints is not None else desired)
+            for loop, encoders in zip(closed.loops, self._encoders, strict=True)
+        ]  # fmt: skip
+
+    def update(self, k: int, q: FloatArray, dq: FloatArray) -> None:
+        """Call the controllers that have a tick; see ControlLoops."""
+        self._torques.update(k)
+        if self._closed.motor_side is not None:
+            q, dq = self._closed.motor_side.read()
+        for command in self._commands:
+            if k % command.every == 0:
+                command.update(k, q, dq)
+        self.rows.command[k] = self._current
+
+
+class _Command:
+    """The command of a control loop: computed from the encoders at its ticks, clipped, and held until its next tick.
+
+    Args:
+        closed: The closed loop.
+        loop: The control loop; its controller is reset here.
+        encoders: Joint measurement of the loop, with a draw for each of its ticks.
+        tip: Tip measurement of the loop besides the encoders; None without one.
+        times: Time of each tick, shape (T,), in s.
+        commands: Current commands of all joints, shape (nq,), written in place.
+        desired: Desired motion in each tick.
+
+    Attributes:
+        every: Ticks between two ticks of the loop.
+    """
+
+    def __init__(
+        self,
+        closed: ClosedLoop,
+        loop: Loop,
+        encoders: Encoders,
+        tip: MeasuredTip | None,
+        times: FloatArray,
+        commands: FloatArray,
+        desired: FloatArray,
+    ) -> None:
+        self.every = closed.every(loop)
+        self._law = _reset(closed, loop)
+        self._measure, self._tip, self._times, self._desired = encoders.measure, tip, times, desired
+        self._motors, self._joints = closed.motor_side, loop.joints
+        self._held: FloatArray = commands[loop.joints]  # a view: values written here are the command
+        self._highest: FloatArray = closed.limits[loop.joints]
+        self._lowest: FloatArray = -self._highest
+        self._clipped = closed.commands == "torque" and bool(np.isfinite(self._highest).any())
+
+    def update(self, k: int, q: FloatArray, dq: FloatArray) -> None:
+        """Compute the command of tick k from the true state, shapes (nq,)."""
+        tick, desired = k // self.every, self._desired[k]
+        q, dq = self._measure(tick, q, dq)
+        if self._tip is not None:
+            desired = self._tip.correct(tick, q, dq, desired)
+        asked = self._law(self._times[k], q, dq, desired)
+        if self._motors is not None:
+            asked = asked + self._motors.damping()[self._joints]
+        if self._clipped:
+            np.minimum(asked, self._highest, out=asked)
+            np.maximum(asked, self._lowest, out=asked)
+        self._held[:] = asked
+
+
+def _reset(closed: ClosedLoop, loop: Loop) -> Law:
+    """Reset a loop's controller; return its control law."""
+    if closed.commands == "torque":
+        controller = cast(Controller, loop.controller)
+        controller.reset()
+        return controller.torque
+    follower = cast(PositionController, loop.controller)
+    follower.reset(closed.q_start)
+    return follower.joint_positions

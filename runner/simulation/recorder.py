@@ -2,17 +2,24 @@
 
 import time
 from collections.abc import Sequence
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
-from runner.base.trace import Failure, Trace
-from runner.robots.robot import end_points
+from runner.base.trace import ContactSignals, Failure, Trace
+from runner.robots.model import RobotModel
+from runner.robots.robot import Robot, end_points
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.contact import Contact
-from runner.simulation.failures import find_divergence
+from runner.simulation.compiled.commands import Rows
+from runner.simulation.compiled.loop_program import LoopProgram
+
+# No arm reaches this speed, so a run above it has diverged.
+DIVERGED_SPEED = 1e6  # rad/s, or m/s for a prismatic joint
+CHECK_EVERY = 64
+"""Ticks between two checks for divergence."""
 
 
 class CommandTiming:
@@ -47,71 +54,37 @@ def constant_delay(joints: int, delay: int, ticks: int) -> CommandTiming:
     return CommandTiming([slice(0, joints)], [np.maximum(np.arange(ticks) - delay, 0)])
 
 
-CHECK_EVERY = 64
-"""Ticks between two checks for divergence."""
-
-
 class Recorder:
     """Rows of every signal, one for each tick and one for the end.
 
     Args:
         closed: The closed loop of the run.
         timing: Command that acts in each tick.
+        rows: Rows of states, commands and end points. The loop stores states in them, and the control laws commands.
 
     Attributes:
         times: Time of each row, shape (T,), in s.
         desired: Desired motion of the tip, shape (T, 3, 3): position, velocity, acceleration.
-        joints: Desired motion of the joints, shape (T, 3, nq), in rad, rad/s, rad/s^2; None if only the tip's motion is
-            given.
-        command: Current commands of the loops, shape (nq,): torques in N m, or joint positions in rad.
-        commands: Commands in each tick, shape (T, nq), in the same unit.
         timing: Command that acts in each tick.
-        torques: Torques of a plant that follows positions, shape (T, nq), in N m.
+        rows: Rows of states, commands and end points.
+        torques: Torques of a plant that follows positions, shape (T, nq), in N m; None for a plant that takes torques.
         clock: Time at which each tick began, shape (T,), in ns.
-        asked: Duration of the control loops in each tick, shape (T,), in ns; None if it was not measured.
+        asked: Duration of the control loops in each tick, shape (T,), in ns.
         now: Clock of these times, in ns.
-        q: True joint positions in each tick, shape (T, nq), in rad.
-        dq: True joint velocities in each tick, shape (T, nq), in rad/s.
-        end_points: End point of each stage, shape (stages, T, 3), in m; None until they are computed.
+        contact: Signals of the contact; None without contact.
     """
 
-    def __init__(self, closed: ClosedLoop, timing: CommandTiming) -> None:
-        rows, nq = closed.ticks + 1, closed.robot.model.nq
-        self._closed, self._plant, self.timing, self.now = closed, closed.plant, timing, time.perf_counter_ns
-        self.times: FloatArray = np.arange(rows, dtype=np.float64) * closed.tick
-        self.desired: FloatArray = np.zeros((rows, 3, 3))
-        self.joints: FloatArray | None = None
-        self.command: FloatArray = closed.q_start.copy() if closed.commands == "position" else np.zeros(nq)
-        self.q, self.dq, self.commands, self.torques = (np.zeros((rows, nq)) for _ in range(4))
-        self.q[0] = closed.q_start
-        self.end_points: FloatArray | None = None
-        self._bends = closed.plant.bends
-        if self._bends:
-            self.end_points = np.zeros((len(closed.robot.stages), rows, 3))
+    def __init__(self, closed: ClosedLoop, timing: CommandTiming, rows: Rows) -> None:
+        ticks = closed.ticks + 1
+        self._closed, self.timing, self.rows, self.now = closed, timing, rows, time.perf_counter_ns
+        self.times: FloatArray = np.arange(ticks, dtype=np.float64) * closed.tick
+        self.desired: FloatArray = np.zeros((ticks, 3, 3))
+        self.torques = np.zeros_like(rows.command) if closed.commands == "position" else None
+        self.rows.q[0] = closed.q_start
+        self.clock, self.asked = (np.zeros(ticks, dtype=np.int64) for _ in range(2))
+        self.contact: ContactSignals | None = None
         self._checked = 0
-        self.clock = np.zeros(rows, dtype=np.int64)
-        self.asked: NDArray[np.int64] | None = None
-        self._kept = slice(0, rows)
         self._failure: Failure | None = None
-
-    def observe(self, k: int) -> tuple[FloatArray, FloatArray]:
-        """Store and return the plant's true state in tick k: joint positions and velocities, shapes (nq,)."""
-        self.clock[k] = self.now()
-        self.q[k] = q = self._plant.q
-        self.dq[k] = dq = self._plant.dq
-        if self._bends and self.end_points is not None:
-            self.end_points[:, k] = self._plant.end_points()
-        return q, dq
-
-    def keep_command(self, k: int) -> None:
-        """Store the commands of tick k.
-
-        Raises:
-            SimulationError: if the run has diverged, which is checked every CHECK_EVERY ticks.
-        """
-        self.commands[k] = self.command
-        if k % CHECK_EVERY == 0:
-            self.check_divergence(k)
 
     def check_divergence(self, k: int) -> None:
         """Check for divergence in the rows since the last check, up to tick k.
@@ -119,55 +92,108 @@ class Recorder:
         Raises:
             SimulationError: at the first row with a joint that is not finite or too fast.
         """
-        first = self._checked
-        found = find_divergence(
-            self.q[first : k + 1], self.dq[first : k + 1], self.times[first : k + 1], self._closed.robot.model
-        )
+        some = slice(self._checked, k + 1)
+        found = find_divergence(self.rows.q[some], self.rows.dq[some], self.times[some], self._closed.robot.model)
         if found is not None:
             raise SimulationError(found.reason, found.time, found.joint)
         self._checked = k
 
     def stop(self, k: int, error: Exception) -> None:
         """End the record with an error in tick k, or with an earlier divergence, its likely cause."""
-        failure = Failure(error.reason if isinstance(error, SimulationError) else str(error), float(self.times[k]))
+        self._failure = _failure_of(error, float(self.times[k]))
         try:
             self.check_divergence(k)
         except SimulationError as diverged:
-            failure = Failure(diverged.reason, diverged.time, diverged.joint)
-        self.end(failure)
+            self._failure = Failure(diverged.reason, diverged.time, diverged.joint)
 
-    def end(self, failure: Failure | None) -> None:
-        """End the record with a failure, at its time; None if the run succeeded."""
-        self._failure = failure
-        if failure is not None:
-            self._kept = slice(0, int(np.searchsorted(self.times, failure.time)) + 1)
-
-    def trace(self, contact: Contact | None) -> Trace:
-        """Return the record as a trace, with the signals of the contact."""
-        closed, kept = self._closed, self._kept
-        positions = closed.commands == "position"
-        acted = self.timing.throughout(self.commands)
-        home = end_points(closed.robot, closed.robot.home[None], closed.ignore_base_rotation)[:, 0]
-        return Trace(
-            t=self.times[kept],
-            q=self.q[kept],
-            dq=self.dq[kept],
-            tau=(self.torques if positions else acted)[kept],
-            q_command=self.commands[kept] if positions else None,
-            contact=None if contact is None else contact.signals(kept),
-            end_points=self._end_points(kept),
-            offsets=home[-1] - home,
-            stage_names=closed.robot.stage_names,
-            desired=self.desired[kept],
+    def trace(self) -> Trace:
+        """Return the record as a trace."""
+        closed, rows, failure = self._closed, self.rows, self._failure
+        acted = self.timing.throughout(rows.command)
+        if closed.compiled is None and not closed.plant.bends:
+            kept = slice(len(self.times) if failure is None else int(np.searchsorted(self.times, failure.time)) + 1)
+            rows.end_points[:, kept] = end_points(closed.robot, rows.q[kept], closed.ignore_base_rotation)
+        trace = Trace(
+            t=self.times,
+            q=rows.q,
+            dq=rows.dq,
+            tau=acted if self.torques is None else self.torques,
+            q_command=None if self.torques is None else rows.command,
+            contact=self.contact,
+            end_points=rows.end_points,
+            desired=self.desired,
             limits=closed.limits,
-            joint_names=closed.robot.model.joint_names,
-            joint_units=closed.robot.model.joint_units,
-            tick_seconds=np.diff(self.clock[kept]) * 1e-9,
-            failure=self._failure,
-            law_seconds=None if self.asked is None else np.asarray(self.asked[kept] * 1e-9),
+            tick_seconds=np.diff(self.clock) * 1e-9,
+            law_seconds=np.asarray(self.asked * 1e-9),
+            **describe(closed.robot, closed.ignore_base_rotation),
         )
+        return trace if failure is None else trace.ended(failure)
 
-    def _end_points(self, kept: slice) -> FloatArray:
-        if self.end_points is not None:
-            return self.end_points[:, kept]
-        return end_points(self._closed.robot, self.q[kept], self._closed.ignore_base_rotation)
+
+class RobotFields(TypedDict):
+    """Fields of a trace that describe the robot; see Trace."""
+
+    offsets: FloatArray
+    stage_names: tuple[str, ...]
+    joint_names: tuple[str, ...]
+    joint_units: tuple[str, ...]
+
+
+def describe(robot: Robot, ignore_base_rotation: bool) -> RobotFields:
+    """Return the fields of a trace that describe the robot."""
+    home = end_points(robot, robot.home[None], ignore_base_rotation)[:, 0]
+    model = robot.model
+    return RobotFields(
+        offsets=home[-1] - home,
+        stage_names=robot.stage_names,
+        joint_names=model.joint_names,
+        joint_units=model.joint_units,
+    )
+
+
+def find_divergence(q: FloatArray, dq: FloatArray, times: FloatArray, model: RobotModel) -> Failure | None:
+    """Return the first row with a joint that is not finite or too fast; None if there is none.
+
+    Args:
+        q: Joint positions, shape (T, nq), in rad.
+        dq: Joint velocities, shape (T, nq), in rad/s.
+        times: Time of each row, shape (T,), in s.
+        model: The arm, for the names of its joints.
+    """
+    wild = ~(np.isfinite(q) & (np.abs(dq) < DIVERGED_SPEED))
+    if not wild.any():
+        return None
+    row = int(np.argmax(wild.any(axis=1)))
+    joint = int(np.argmax(wild[row]))
+    reason = f"diverged: not finite or above {DIVERGED_SPEED:g} {model.joint_units[joint]}/s"
+    return Failure(reason, float(times[row]), model.joint_names[joint])
+
+
+def ended_well(rows: Rows) -> NDArray[np.bool_]:
+    """Return True for each run compiled as a whole that ended without a failure, shape (runs,)."""
+    finite = np.isfinite(rows.q).all(axis=(1, 2)) & np.isfinite(rows.command).all(axis=(1, 2))
+    slow = np.abs(rows.dq).max(axis=(1, 2)) < DIVERGED_SPEED
+    well: NDArray[np.bool_] = finite & slow & ~rows.fault.any(axis=1)
+    return well
+
+
+def find_failure(
+    loop_program: LoopProgram, rows: Rows, run: int, times: FloatArray, model: RobotModel
+) -> Failure | None:
+    """Return the failure of one of several runs compiled as a whole; None without a failure.
+
+    Args:
+        loop_program: The closed loop of one of the runs.
+        rows: Signals of the runs.
+        run: Index of the run.
+        times: Time of each row of the run, shape (T,), in s; it may have fewer rows than the signals.
+        model: Model of the arm.
+    """
+    fault = loop_program.first_fault(rows, run, times)
+    last = len(times) if fault is None else fault[0] + 1
+    diverged = find_divergence(rows.q[run, :last], rows.dq[run, :last], times[:last], model)
+    return diverged if diverged is not None or fault is None else _failure_of(fault[1], float(times[fault[0]]))
+
+
+def _failure_of(error: Exception, time: float) -> Failure:
+    return Failure(error.reason if isinstance(error, SimulationError) else str(error), time)

@@ -2,16 +2,17 @@
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.base.errors import SimulationError
 from runner.base.trace import Failure, Trace
 from runner.config.run import RunConfig
-from runner.metrics import Summary, summarize_arrays
+from runner.metrics import MetricContext, Summary, evaluate, summarize_arrays
 from runner.metrics.caveats import Found, PlantStep, Watch, signals_of
 from runner.metrics.plant_error import PlantError
 from runner.simulation.provenance import job_provenance
@@ -62,6 +63,7 @@ class Collector:
         clocked: Number of ticks whose time is stored.
         tick_seconds: Wall-clock time of each tick of some repetitions, in s.
         law_seconds: Wall-clock time of the control loops in each of these ticks, in s; empty if it was not measured.
+        notices: Messages about faults in user-supplied metrics.
     """
 
     config: RunConfig
@@ -77,6 +79,16 @@ class Collector:
     clocked: int = 0
     tick_seconds: list[FloatArray] = field(default_factory=list)
     law_seconds: list[FloatArray] = field(default_factory=list)
+    notices: list[str] = field(default_factory=list)
+
+    def evaluate(self, repetition: int, trace: Trace, context: MetricContext) -> bool:
+        """Measure and add a repetition; return True if all have ended."""
+        metrics: dict[str, float | None] = {}
+        try:
+            metrics = evaluate(trace, context, self.notices)
+        except SimulationError as error:  # from a plug-in
+            trace = replace(trace, failure=Failure(error.reason, float(trace.t[-1])))
+        return self.add(repetition, trace, metrics)
 
     def add(self, repetition: int, trace: Trace, metrics: Mapping[str, float | None]) -> bool:
         """Add a repetition that was simulated separately; return True if all have ended."""
@@ -140,6 +152,7 @@ class Collector:
         if later.failure is not None:
             self.fail(*later.failure)
         self.watch.join(later.watch)
+        self.notices += later.notices
         self.end(len(later.values), later.seconds / len(later.values), None)
 
     @cached_property
@@ -154,13 +167,13 @@ class Collector:
         return timing(np.concatenate(self.tick_seconds), self.seconds, self.seconds, laws)
 
     def result(
-        self, error: PlantError | None = None, notices: Sequence[str] = (), clock: Mapping[str, float] | None = None
+        self, error: PlantError | None = None, warnings: Sequence[str] = (), clock: Mapping[str, float] | None = None
     ) -> RunResult:
         """Return the result of the complete run.
 
         Args:
             error: Integration error of the run.
-            notices: Warnings during its simulation.
+            warnings: Warnings during its simulation, before those of its metrics.
             clock: Measured wall-clock and CPU time, in s; None for the time of its repetitions.
         """
         config = self.config
@@ -173,7 +186,7 @@ class Collector:
             caveats=self.caveats if error is None else self.watch.found(error, step),
             failure=self.failure,
             timing={**self.timing, **(clock or {})},
-            provenance=job_provenance(config, notices),
+            provenance=job_provenance(config, [*warnings, *dict.fromkeys(self.notices)]),
             plant_error=error,
         )
 

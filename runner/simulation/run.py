@@ -15,18 +15,17 @@ from functools import partial
 
 import numpy as np
 
-from runner.base.errors import ConfigError, SimulationError
-from runner.base.trace import Failure, Trace
+from runner.base.errors import ConfigError
+from runner.base.trace import Trace
 from runner.config.limits import TICKS_AT_ONCE
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.metrics import evaluate
 from runner.metrics.caveats import Watch, setting_of
 from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
 from runner.plugins.discovery import has_users_parts
 from runner.sensing import ForceTorqueSensor
 from runner.simulation.assembly import assemble, metric_context
-from runner.simulation.batch import BatchSimulator, simulate_together
+from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
 from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.results import Collector, RunResult
 from runner.simulation.sensors import make_sensors
@@ -53,7 +52,26 @@ def simulate_run(config: RunConfig, threads: int = 1) -> RunResult:
     return simulate_blocks(config, threads) or _simulate_one_by_one(config)
 
 
-def simulate_repetition(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
+def simulate_repetition(config: RunConfig, repetition: int = 0, ticks: int | None = None) -> Trace:
+    """Simulate one repetition, at most a number of its ticks.
+
+    Raises:
+        ConfigError: see assemble.
+    """
+    ticks = config.timing.ticks if ticks is None else min(ticks, config.timing.ticks)
+    batcher = BatchSimulator()
+    runs = batcher.repetitions(config, range(repetition, repetition + 1))
+    if runs is not None:
+        (found,) = batcher.simulate([runs[0].first(ticks)])
+        return found.traces[0] if isinstance(found, BatchResult) else found[1]
+    closed = assemble(config, repetition)
+    try:
+        return simulate_assembled(replace(closed, ticks=ticks), config, repetition)[0]
+    finally:
+        closed.close()
+
+
+def simulate_assembled(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
     """Simulate one repetition; return its trace, and the warnings of the controllers and of the wrist sensor."""
     made = make_sensors(closed, config, repetition)
     trace, wrist = simulate(closed, *made), made[1]
@@ -63,29 +81,24 @@ def simulate_repetition(closed: ClosedLoop, config: RunConfig, repetition: int) 
 
 
 def _simulate_one_by_one(config: RunConfig) -> RunResult:
+    """Simulate a run whose repetitions are not compiled as a whole."""
     wall, cpu = time.perf_counter(), time.process_time()
     loop, context, repetitions = assemble(config), metric_context(config), config.settings.repetitions
     watch = Watch(setting_of(config, loop.q_start), config.caveats)
     collector = Collector(config, watch, repetitions, np.zeros((repetitions, 0)))
     warnings: list[str] = []
-    notices: list[str] = []
     try:
         for repetition in range(repetitions):
             if repetition > 0 and config.varies_model:  # new model
                 last, loop = loop, assemble(config, repetition)
                 last.close()
-            trace, told = simulate_repetition(loop, config, repetition)
+            trace, told = simulate_assembled(loop, config, repetition)
             warnings = warnings or told
-            metrics: dict[str, float | None] = {}
-            try:
-                metrics = evaluate(trace, context, notices)
-            except SimulationError as error:  # from a plug-in
-                trace = replace(trace, failure=Failure(error.reason, float(trace.t[-1])))
-            collector.add(repetition, trace, metrics)
+            collector.evaluate(repetition, trace, context)
     finally:
         loop.close()
     clock = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
-    return collector.result(_plant_error(collector), [*warnings, *dict.fromkeys(notices)], clock)
+    return collector.result(_plant_error(collector), warnings, clock)
 
 
 def _plant_error(collector: Collector) -> PlantError | None:

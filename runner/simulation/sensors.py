@@ -16,7 +16,7 @@ from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, Encoders
 from runner.sensing.endpoint import EndpointSensor
 from runner.sensing.streams import COMPUTATION, JOINT_TORQUES, TIP
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.recorder import CommandTiming, Recorder
+from runner.simulation.recorder import CommandTiming
 
 
 class MeasuredTip:
@@ -95,31 +95,30 @@ class JointTorques:
     Args:
         closed: The closed loop.
         sensor: The sensors, with a draw for each tick; None without sensors.
-        recorder: Recorder with the commands and their timing.
+        timing: Command that acts in each tick.
+        commands: Commands in each tick, shape (T, nq), in N m.
     """
 
-    def __init__(self, closed: ClosedLoop, sensor: TorqueSensors | None, recorder: Recorder) -> None:
-        self._closed, self._sensor, self._recorder = closed, sensor, recorder
+    def __init__(
+        self, closed: ClosedLoop, sensor: TorqueSensors | None, timing: CommandTiming, commands: FloatArray
+    ) -> None:
+        self._plant, self._sensor, self._timing, self._commands = closed.plant, sensor, timing, commands
         self._readers = [
-            _Reader(loop.controller, closed.every(loop), np.zeros(recorder.commands.shape[1]))
+            _Reader(loop.controller, closed.every(loop), np.zeros(commands.shape[1]))
             for loop in closed.loops
             if sensor is not None and loop.controller.reads_joint_torques
         ]
 
-    def tell(self, k: int) -> None:
-        """Pass the mean torques since the last tick to controllers with a tick at k; nothing before the first."""
-        for reader in self._readers:
-            if k % reader.every == 0 and reader.count and self._sensor is not None:
-                reader.controller.read_joint_torques(self._sensor.read(k, reader.sum / reader.count))
-                reader.sum, reader.count = np.zeros_like(reader.sum), 0
-
-    def keep(self, k: int) -> None:
-        """Add the torques that acted from tick k to the next one."""
-        if not self._readers:
+    def update(self, k: int) -> None:
+        """Add the torques that acted before tick k; pass the mean since the last tick to controllers with a tick."""
+        if k == 0 or not self._readers:
             return
-        acted = self._recorder.timing.at(self._recorder.commands, k) - self._closed.plant.friction
+        acted = self._timing.at(self._commands, k - 1) - self._plant.friction
         for reader in self._readers:
             reader.sum, reader.count = reader.sum + acted, reader.count + 1
+            if k % reader.every == 0 and self._sensor is not None:
+                reader.controller.read_joint_torques(self._sensor.read(k, reader.sum / reader.count))
+                reader.sum, reader.count = np.zeros_like(reader.sum), 0
 
 
 def make_joint_torque_sensor(closed: ClosedLoop, config: RunConfig, repetition: int) -> TorqueSensors | None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from runner.config.run import RunConfig
 from runner.simulation.assembly import assemble
 from runner.simulation.batch import BatchSimulator, simulate_together
-from runner.simulation.run import simulate_repetition
+from runner.simulation.run import simulate_assembled
 
 PROBED_TICKS = 50
 """Number of ticks for a measurement of the time for a tick, if a run is simulated separately."""
@@ -30,17 +30,16 @@ def seconds_per_tick(
         within: Context of the measurement, entered after assembly and compilation; it may end the measurement.
         clock: Function that returns the time, in s.
     """
-    if config.timing.ticks <= _PROBED_TOGETHER:
-        together = seconds_together(config, _PROBED_TOGETHER, within, clock)
-        if together is not None:
-            return together
-    whole = assemble(config)
-    part = replace(whole, ticks=min(whole.ticks, PROBED_TICKS))
+    together = seconds_together(config, _PROBED_TOGETHER, within, clock)
+    if together is not None:
+        return together
+    closed = assemble(config)
+    part = replace(closed, ticks=min(closed.ticks, PROBED_TICKS))
     try:
         with within:
-            return warm_time(lambda: simulate_repetition(part, config, 0), clock) / (part.ticks + 1)
+            return warm_time(lambda: simulate_assembled(part, config, 0), clock) / (part.ticks + 1)
     finally:
-        whole.close()
+        closed.close()
 
 
 def seconds_together(
@@ -62,14 +61,16 @@ def seconds_together(
     runs = batcher.repetitions(config, repetitions)
     if runs is None:
         return None
-    copies = max(1, ticks // (len(runs) * config.timing.ticks))
+    runs = [run.first(ticks) for run in runs]
+    simulated = sum(run.config.timing.ticks for run in runs)
+    copies = max(1, ticks // simulated)
 
     def simulate_copies() -> None:
         for _ in simulate_together([runs] * copies, batcher):
             pass
 
     with within:
-        return warm_time(simulate_copies, clock) / (copies * len(runs) * config.timing.ticks)
+        return warm_time(simulate_copies, clock) / (copies * simulated)
 
 
 def warm_time(measured: Callable[[], object], clock: Callable[[], float]) -> float:

@@ -53,9 +53,9 @@ _TABLE = """
     schema: values
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds streams velocity wrench
-    simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop command compiled_loop
-        contact=loop.contact failures loop=simulation recorder results run=job sensors
-    simulation/compiled: closed_loop=compiled.closed_loop commands compile directed law maths=compiled.maths
+    simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop
+        contact=loop.contact loop=simulation recorder results run=job sensors
+    simulation/compiled: commands law loop_program=compiled.closed_loop maths=compiled.maths
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle from_file goal impulses

@@ -2,7 +2,7 @@
 
 import shlex
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +14,7 @@ from runner.config.composed import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.controllers import CONTROLLERS
-from runner.simulation.assembly import assemble
+from runner.simulation.assembly import check_assembly
 from runner.simulation.run import simulate_repetition
 from runner.simulation.tick_time import PROBED_TICKS
 from runner.store import simulated_part
@@ -142,12 +142,7 @@ def _first_ticks(config: RunConfig) -> Tick:
     Raises:
         ConfigError: if the law raises, or gives no finite torques of the right shape.
     """
-    whole = assemble(config)
-    try:
-        some = replace(whole, ticks=min(whole.ticks, PROBED_TICKS))
-        trace, _ = simulate_repetition(some, config, 0)
-    finally:
-        whole.close()
+    trace = simulate_repetition(config, ticks=PROBED_TICKS)
     failure = trace.failure
     if failure is not None and not failure.reason.startswith("diverged"):
         raise ConfigError(f"at {failure.time:g} s: {failure.reason}")
@@ -169,7 +164,7 @@ def _check_ends(tuning: Tuning, composed: Composed, part: UserPlugin, found: Fit
             text = key.override(value)
             try:
                 end = compose((*tuning.overrides, text), composed.config_dirs)
-                assemble(_validated(end, part)).close()
+                check_assembly(_validated(end, part))
                 found.add(tuning.name, _unlike((f"{part.name} with {text}", end), composed))
             except ConfigError as error:
                 found.add(f"{tuning.name} with {text}", error.problems)

@@ -8,6 +8,7 @@ from runner import store
 from runner.base.errors import StoreError
 from runner.config.run import RunConfig
 from runner.metrics.summary import MOST_LISTED
+from runner.plugins.discovery import added_parts
 from runner.plugins.metric_units import units_of
 from runner.simulation.batch import BatchSimulator, simulate_together
 from runner.simulation.provenance import command, job_provenance
@@ -24,8 +25,8 @@ Named = tuple[str, Collector]
 def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: ResultWriter) -> tuple[set[str], bool]:
     """Simulate the runs of a chunk that can share a batch; return the names of the finished ones and if one failed.
 
-    A run with too many repetitions for its record to list is left out. The caller simulates it on its own, block after
-    block.
+    Runs with metrics of a plug-in are left out, and so is a run with too many repetitions for its record to list. The
+    caller simulates each of them on its own, block after block.
 
     If the batch raises an error, for example in a plug-in, the runs that are left are not simulated here. The caller
     simulates them one by one, which shows which run caused the error.
@@ -41,7 +42,7 @@ def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: R
     batcher, texts, made, failed = BatchSimulator(), JsonTexts(), set[str](), False
     try:
         with deadline(rules.time_limit):
-            few = [(name, config) for name, config in jobs if config.settings.repetitions <= MOST_LISTED]
+            few = [] if added_parts("metric") else [job for job in jobs if job[1].settings.repetitions <= MOST_LISTED]
             found = [(name, batcher.repetitions(config)) for name, config in few]
         chosen = [(name, runs) for name, runs in found if runs is not None]
         steps = simulate_together([runs for _, runs in chosen], batcher)

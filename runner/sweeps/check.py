@@ -14,7 +14,7 @@ from runner.base.errors import ConfigError
 from runner.config.judgement import Bound
 from runner.config.limits import LimitsConfig, SweepConfig, memory_of_run
 from runner.config.run import RunConfig
-from runner.simulation.assembly import assemble
+from runner.simulation.assembly import check_assembly
 from runner.store.identity import json_text
 from runner.store.names import Names, Texts
 from runner.sweeps.differing import Resolved, is_one_arm, resolve
@@ -146,7 +146,7 @@ def _check_assembly(config: RunConfig, assembled: dict[tuple[str, bytes], Config
     if key not in assembled:
         assembled[key] = None
         try:
-            assemble(config).close()
+            check_assembly(config)
         except ConfigError as error:
             assembled[key] = error
     problem = assembled[key]

@@ -4,8 +4,7 @@ from collections.abc import Iterator
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.simulation.assembly import assemble
-from runner.simulation.compiled.closed_loop import LoopProgram
+from runner.simulation.assembly import assemble, assemble_program
 
 _LAWS = {
     "adaptive": ("robot=macro", "controller=adaptive"),
@@ -75,10 +74,9 @@ def compiled_section() -> Iterator[str]:
 
 
 def _compiled(*overrides: str) -> str:
-    closed = assemble(validate(compose(overrides)))
-    try:
-        if closed.compiled is None:
-            return "Python"
-        return "whole run" if isinstance(closed.compiled, LoopProgram) else "the law"
-    finally:
-        closed.close()
+    config = validate(compose(overrides))
+    if assemble_program(config) is not None:
+        return "whole run"
+    closed = assemble(config)
+    closed.close()
+    return "Python" if closed.compiled is None else "the law"

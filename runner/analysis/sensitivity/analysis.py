@@ -8,7 +8,7 @@ import numpy as np
 
 from runner.analysis.sensitivity.parameters import GROUPS, Parameter, find_keys, find_links
 from runner.analysis.sensitivity.slopes import Scene, Slopes
-from runner.analysis.sensitivity.smooth_metrics import Change, derivatives
+from runner.analysis.sensitivity.smooth_metrics import derivatives
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
@@ -22,7 +22,7 @@ from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4Config
 from runner.simulation.assembly import assemble_program, metric_context
 from runner.simulation.batch import BatchResult, BatchSimulator, RunSpec
-from runner.simulation.compiled.directed import tangents
+from runner.simulation.compiled.loop_program import tangents
 from runner.store import Run, simulated_part
 from runner.symbolic.engine import evaluator
 
@@ -89,8 +89,7 @@ def analyse(composed: Composed, groups: Sequence[str] = GROUPS, repetition: int 
     shared = loop_program.commands.shared(trace.t, trace.desired, scene.config.path.sample_joints(trace.t))
     moved = tangents(loop_program, scene.setting, slopes.settings, shared)
     acted = np.maximum(np.arange(len(trace.t)) - loop_program.delay, 0)
-    change = Change(moved.q, moved.dq, moved.torque[:, acted], moved.end_points)
-    found = derivatives(trace, change, metric_context(scene.config))
+    found = derivatives(trace, moved._replace(command=moved.command[:, acted]), metric_context(scene.config))
     known = {name: metrics[name] for name in metrics if name in found}
     values = {name: value for name, value in known.items() if value is not None}
     sizes = np.array([parameter.value for parameter in parameters])

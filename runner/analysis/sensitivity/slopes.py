@@ -10,12 +10,10 @@ from runner.analysis.sensitivity.parameters import Key, Parameter
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.config.run import RunConfig
-from runner.sensing.encoders import encoder_errors
-from runner.simulation.assembly import describe_loop, find_start
-from runner.simulation.batch import RunSpec
-from runner.simulation.compiled.closed_loop import LoopProgram
-from runner.simulation.compiled.directed import Setting
+from runner.simulation.assembly import describe_program, find_start
+from runner.simulation.batch import RunSpec, draw_errors
 from runner.simulation.compiled.law import structure_cache_key
+from runner.simulation.compiled.loop_program import LoopProgram, Setting
 from runner.trajectories.trajectory import Trajectory
 
 _PART = 1.0 / 512.0  # step as a fraction of the parameter's value; the stencil has nine points
@@ -35,15 +33,7 @@ class Scene(RunSpec):
     @property
     def setting(self) -> Setting:
         """Inputs of the run: numbers of the loop, start state and encoder errors."""
-        loops, settings = self.loop_program.commands.loops, self.config.settings
-        errors = [
-            encoder_errors(
-                [self.config.encoder_noise],
-                [(settings.seed, self.repetition, number)],
-                self.config.timing.ticks // loop.every + 1,
-            )[0]
-            for number, loop in enumerate(loops)
-        ]
+        errors = [wrong[0] for wrong in draw_errors([self], self.rows)]
         start = self.loop_program.commands.start(self.q_start[None], [wrong[:1] for wrong in errors])[0]
         return Setting(self.loop_program.numbers, start, errors)
 
@@ -57,7 +47,7 @@ class Scene(RunSpec):
         return self._changed(parameter.with_value(value))
 
     def _changed(self, config: RunConfig) -> "Scene":
-        loop_program = describe_loop(config, self.repetition)
+        loop_program = describe_program(config, self.repetition)
         if loop_program is None or config.timing != self.config.timing:
             raise NoDerivativeError("it changes the ticks or steps of the run, which are held")
         if _fixed(loop_program) != _fixed(self.loop_program):

@@ -5,7 +5,7 @@ such sample.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from runner.base.errors import RunnerError, unknown
 from runner.base.trace import Trace
 from runner.metrics import MetricContext
 from runner.metrics.positioning import STEADY_WINDOW
+from runner.simulation.compiled.commands import Rows
 from runner.trajectories.shaped import Shifted
 
 WITHOUT = {
@@ -26,29 +27,12 @@ WITHOUT = {
 """Metrics without a derivative, with the reason."""
 
 
-@dataclass(frozen=True)
-class Change:
-    """Derivatives of the signals of a run by parameters.
-
-    Attributes:
-        q: Derivatives of joint positions, shape (parameters, T, nq).
-        dq: Derivatives of joint velocities, shape (parameters, T, nq).
-        tau: Derivatives of torques, shape (parameters, T, nq), with rows as in the trace.
-        end_points: Derivatives of the end points of the stages, shape (stages, parameters, T, 3).
-    """
-
-    q: FloatArray
-    dq: FloatArray
-    tau: FloatArray
-    end_points: FloatArray
-
-
-def derivatives(trace: Trace, change: Change, context: MetricContext) -> dict[str, FloatArray]:
+def derivatives(trace: Trace, change: Rows, context: MetricContext) -> dict[str, FloatArray]:
     """Return the derivatives of the smooth metrics of a run by each parameter, shapes (parameters,), by metric.
 
     Args:
         trace: Trace of the run.
-        change: Derivatives of the signals of the trace.
+        change: Derivatives of the signals of the trace; the axis of the parameters is that of several runs.
         context: Context of the metrics of the run.
     """
     found = _of_tip(trace, change.end_points[-1], context) | _of_joints(trace, change, context.period)
@@ -108,8 +92,8 @@ def _of_tip(trace: Trace, tip: FloatArray, context: MetricContext) -> dict[str, 
     return found
 
 
-def _of_joints(trace: Trace, change: Change, period: float) -> dict[str, FloatArray]:
-    held, d_held = trace.tau[:-1], change.tau[:, :-1]
+def _of_joints(trace: Trace, change: Rows, period: float) -> dict[str, FloatArray]:
+    held, d_held = trace.tau[:-1], change.command[:, :-1]
     moved, d_moved = np.diff(trace.q, axis=0), np.diff(change.q, axis=1)
     side = np.sign(held * moved)
     found = {"energy": np.einsum("tj,ptj->p", side, d_held * moved + held * d_moved)}

@@ -1,8 +1,9 @@
-"""Compiled commands of control loops in a tick: measurement, control law and torque limit."""
+"""Compiled control loops of a tick: measurement, control law and torque limit; their choice, and their runs."""
 
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,8 +11,9 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
+from runner.controllers.controller import Loop
 from runner.controllers.torque_law import TorqueLaw
-from runner.plugins.guard import find_fault, place
+from runner.plugins.guard import Guarded, find_fault, place, unguarded
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
@@ -19,9 +21,11 @@ from runner.simulation.compiled.law import LawScalars, expressed_torque, law_cac
 from runner.simulation.compiled.maths import SymbolicBackend
 from runner.symbolic.code import GIVEN, ROWS, STATE, Block, Slots
 from runner.symbolic.end_points import PointScalars, expressed_points, point_scalars
+from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, both, equal, less, round_to_even, select
 from runner.symbolic.maths import Array
-from runner.symbolic.structure import any_number
+from runner.symbolic.program import Expressed, Program, program
+from runner.symbolic.structure import CannotCompileError, Values, any_number
 from runner.symbolic.vectors import as_array
 
 _OURS = ("runner", "abc", "typing", "builtins")
@@ -72,6 +76,28 @@ class Commands:
         loops = [(law_cache_key(loop.law), loop.joints, loop.every > 1, loop.follows_joints) for loop in self.loops]
         points = point_scalars(self.robot, self.ignore_base_rotation, any_number)
         return repr((loops, points, self._rounded.tolist(), self.noise.velocity))
+
+    def program(self) -> Program:
+        """Return the compiled code of a tick, for a plant that is not compiled.
+
+        Raises:
+            CannotCompileError: if a control law has no compiled form.
+        """
+
+        def express() -> Expressed:
+            at = Slots()
+            _, kept, errors = expressed_commands(self, self.scalars(at.number), at)
+            return Expressed([kept], [], at.widths, errors)
+
+        what = f"the control law of {len(self.limits)} joints"
+        return program(f"commands {self.pattern}", what, express, 1, self.are_ours)
+
+    @cached_property
+    def values(self) -> Sequence[float]:
+        """Values of the code's parameters."""
+        values = Values()
+        self.scalars(values.number)
+        return values.values
 
     @property
     def are_ours(self) -> bool:
@@ -161,6 +187,138 @@ class Commands:
         return np.concatenate(parts, axis=1)
 
 
+class Rows(NamedTuple):
+    """True signals of runs, with a row for each tick; leading axes are for several runs.
+
+    Attributes:
+        q: Joint positions, shape (..., T, nq), in rad.
+        dq: Joint velocities, shape (..., T, nq), in rad/s.
+        command: Commands: torques within their limits in N m, or joint positions in rad, shape (..., T, nq).
+        fault: Number of the failure in a compiled control law, 0 for none, shape (..., T).
+        end_points: End point of each stage, shape (stages, ..., T, 3), in m.
+    """
+
+    q: FloatArray
+    dq: FloatArray
+    command: FloatArray
+    fault: FloatArray
+    end_points: FloatArray
+
+    @classmethod
+    def of(cls, values: FloatArray, nq: int) -> "Rows":
+        """Return views of rows as compiled code stores them, shape (..., T, entries); see expressed_commands."""
+        q, dq, command = (values[..., part * nq : (part + 1) * nq] for part in range(3))
+        points = values[..., 3 * nq + 1 :].reshape(*values.shape[:-1], -1, 3)
+        return cls(q, dq, command, values[..., 3 * nq], np.moveaxis(points, -2, 0))
+
+    @classmethod
+    def new(cls, make: Callable[[tuple[int, ...]], FloatArray], lead: tuple[int, ...], nq: int, stages: int) -> "Rows":
+        """Return rows of runs and ticks, shape `lead`, in arrays from `make`, such as np.zeros."""
+        q, dq, command = (make((*lead, nq)) for _ in range(3))
+        return cls(q, dq, command, make(lead), make((stages, *lead, 3)))
+
+
+class CompiledLoops:
+    """Compiled control loops in one run, tick by tick.
+
+    Args:
+        commands: The loops.
+        ticks: Number of ticks.
+        errors: Errors of the positions at the ticks of each loop, shape (n, nq), in rad.
+
+    Attributes:
+        rows: Signals of the run.
+    """
+
+    def __init__(self, commands: Commands, ticks: int, errors: Sequence[FloatArray]) -> None:
+        program, nq = commands.program(), len(commands.limits)
+        self._commands, self._errors, self._messages = commands, errors, program.errors
+        self._frame, self._guarded = program.frame(ticks), commands.guarded
+        self.rows = Rows.of(self._frame.rows[:, :, 0], nq)
+        self._fault, self._command = self.rows.fault, self.rows.command
+        self._q, self._dq = self._frame.state[:nq, 0], self._frame.state[nq : 2 * nq, 0]
+        self._span, self._call = self._frame.span, self._frame.call
+
+    def start(self, times: FloatArray, desired: FloatArray, joints: FloatArray | None, q: FloatArray) -> None:
+        """Start at rest; see ControlLoops.start."""
+        commands, frame, errors = self._commands, self._frame, self._errors
+        wrong = commands.measured_wrong(errors, len(times))
+        frame.given[:, :, 0] = np.hstack([commands.shared(times, desired, joints), wrong])
+        frame.state[:, 0] = commands.start(q[None], [each[:1] for each in errors])[0]
+        frame.pars[:, 0] = commands.values
+        self._times = times
+
+    def update(self, k: int, q: FloatArray, dq: FloatArray) -> None:
+        """Compute tick k, after the previous one; see ControlLoops.update.
+
+        Raises:
+            LinAlgError: if a control law has no solution.
+            SimulationError: if a user-supplied law returns values that are not finite.
+        """
+        self._q[:] = q
+        self._dq[:] = dq
+        self._span[0], self._span[1] = k, k + 1
+        self._call()
+        if self._fault[k]:
+            raise np.linalg.LinAlgError(self._messages[int(self._fault[k]) - 1])
+        if self._guarded:
+            fault = self._commands.fault(self._command[k], self._times[k])
+            if fault is not None:
+                raise fault
+
+
+def find_commands(
+    robot: Robot,
+    ignore_base_rotation: bool,
+    loops: Sequence[Loop],
+    tick: float,
+    noise: EncoderNoise,
+    limits: FloatArray,
+) -> Commands | None:
+    """Return control loops for compilation; None if one of them has no compiled form.
+
+    Args:
+        robot: The robot of the loops.
+        ignore_base_rotation: True if mounted stages keep their orientation at home.
+        loops: The loops.
+        tick: Time between two ticks, in s.
+        noise: Noise, bias and resolution of the encoders.
+        limits: Torque limits, shape (nq,), in N m; infinite without a limit.
+    """
+    laws = [unguarded(loop.controller) for loop in loops]
+    if not evaluator() or not all(isinstance(law, TorqueLaw) and law.compilable for law in laws):
+        return None
+    if len(limits) > MOST_JOINTS:
+        _tell(f"the arm has {len(limits)} joints, and code is made for {MOST_JOINTS} or fewer: laws are not compiled")
+        return None
+    joints = range(len(limits))
+    codes = [
+        LoopCode(
+            law, slice(*loop.joints.indices(len(joints))), round(loop.period / tick), loop.period, loop.follows_joints
+        )
+        for law, loop in zip(laws, loops, strict=True)
+    ]
+    guarded = any(isinstance(loop.controller, Guarded) for loop in loops)
+    return Commands(robot, ignore_base_rotation, tuple(codes), noise, limits, guarded)
+
+
+def compiled(commands: Commands | None) -> Commands | None:
+    """Return control loops after their compilation; None if they cannot be compiled, after printing the reason."""
+    try:
+        if commands is not None:
+            commands.program()
+        return commands
+    except CannotCompileError as error:
+        _tell(str(error))
+        return None
+
+
+@lru_cache(maxsize=64)
+def _tell(text: str) -> None:
+    """Print a message once in a process."""
+    print(f"runner: {text}", file=sys.stderr)
+
+
 def _parts(law: TorqueLaw[Any]) -> Iterator[TorqueLaw[Any]]:
     """Yield a law and the laws inside it."""
     yield law
@@ -191,7 +349,7 @@ def expressed_commands(commands: Commands, numbers: CommandScalars, at: Slots) -
     """Return the torques of a tick, the block of stored values, and the messages of possible failures.
 
     Call this function first, because it takes the first slots. A row contains joint positions, velocities and torques,
-    each of shape (nq,), the number of the failure, 0 for none, and the end points of the stages.
+    each of shape (nq,), the number of the failure, 0 for none, and the end points of the stages; see Rows.
 
     Raises:
         CannotCompileError: if a law uses an operation that expressions do not support.

@@ -25,6 +25,7 @@ from runner.simulation import provenance
 from runner.simulation.assembly import assemble
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.loop import simulate
+from runner.simulation.run import simulate_repetition
 from runner.simulation.sensors import make_encoders
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
@@ -116,9 +117,8 @@ def _interpreted(config: RunConfig, exact: Trace) -> dict[str, float]:
 
 def _compiled_seconds(config: RunConfig) -> float:
     """Return the shortest time that a compiled run took, in s: the first one loads the code."""
-    closed = assemble(config)
-    runs = [simulate(closed, _encoders(config, closed)) for _ in range(_TIMES)]
-    return min(float(np.median(trace.tick_seconds)) for trace in runs) * closed.ticks
+    runs = [simulate_repetition(config) for _ in range(_TIMES)]
+    return min(float(np.median(trace.tick_seconds)) for trace in runs) * config.timing.ticks
 
 
 def _simulated(config: RunConfig, closed: ClosedLoop, plant: Plant) -> Trace:

@@ -126,7 +126,7 @@ def test_assembly_is_outside_the_deadline_and_the_ticks_within(monkeypatch, meas
     noted(tick_time.BatchSimulator, "repetitions", "repetitions asked for")
     noted(tick_time.BatchSimulator, "simulate", "ticks")
     noted(tick_time, "assemble", "assembled")
-    noted(tick_time, "simulate_repetition", "ticks")
+    noted(tick_time, "simulate_assembled", "ticks")
     config = validate(compose([*SHORT, f"plant={plant}", f"duration={duration}"]))
     per_tick = measure(config, within(), Steps(0.25))
     assert events == [*before, "deadline", "ticks", "ticks", "end"]

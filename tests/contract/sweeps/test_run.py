@@ -17,8 +17,8 @@ from support.patience import PATIENCE
 
 from runner import store
 from runner.base.errors import ConfigError, RunnerError, StoreError
-from runner.simulation.command import Command
-from runner.simulation.compiled.closed_loop import CommandsRun
+from runner.simulation.compiled.commands import CompiledLoops
+from runner.simulation.loop import InterpretedLoops
 from runner.sweeps import work
 from runner.sweeps.deadline import TimeLimitError
 from runner.sweeps.estimate import Estimate
@@ -187,9 +187,9 @@ def test_an_error_of_a_part_is_a_failed_run_with_its_traceback(sweep, monkeypatc
             raise RuntimeError("a bug")
         return update(self, *_)
 
-    part, name = (CommandsRun, "tick") if evaluator() else (Command, "update")
-    update = getattr(part, name)
-    monkeypatch.setattr(part, name, fall_over)
+    part = CompiledLoops if evaluator() else InterpretedLoops
+    update = part.update
+    monkeypatch.setattr(part, "update", fall_over)
     monkeypatch.setattr("runner.sweeps.run.estimate", lambda *_: Estimate(1.0))
     ended = sweep("seed=0,1")
     ((_, why, log),) = ended.failures

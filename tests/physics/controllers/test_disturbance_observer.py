@@ -11,7 +11,7 @@ from support.physics import assert_same_motion
 from runner.base.errors import ConfigError
 from runner.plants.rk4 import Rk4
 from runner.simulation.assembly import assemble
-from runner.simulation.compiled import compile
+from runner.simulation.compiled import commands
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders
 from runner.store import open_run
@@ -72,7 +72,7 @@ def test_it_knows_the_torque_that_acts(more, limits, late):
 
 
 def assemble_by_pinocchio(config):
-    with patch.object(compile, "evaluator", dict):
+    with patch.object(commands, "evaluator", dict):
         closed = assemble(config)
     assert closed.compiled is None
     return closed

@@ -10,10 +10,9 @@ from support.arms import checked
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation import batch
-from runner.simulation.assembly import assemble
-from runner.simulation.batch import BatchResult, BatchSimulator
-from runner.simulation.loop import simulate
-from runner.simulation.sensors import make_encoders
+from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
+from runner.simulation.results import Collector
+from runner.simulation.run import simulate_repetition
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a whole by llvmlite")
@@ -41,10 +40,7 @@ def together(configs):
 
 
 def alone(config, repetition=0):
-    closed = assemble(config, repetition)
-    trace = simulate(closed, make_encoders(closed, config.noise, config.settings.seed, repetition))
-    closed.close()
-    return trace
+    return simulate_repetition(config, repetition)
 
 
 def assert_same(ours, theirs):
@@ -159,8 +155,25 @@ def test_what_is_not_compiled_as_a_whole_goes_its_own_way(overrides):
 
 
 def test_metrics_of_the_user_s_look_at_one_run_at_a_time(monkeypatch):
+    config, seen, evaluate = configured("noise=thesis", "repetitions=3"), [], Collector.evaluate
+    (whole,) = simulated_together(config)
+
+    def noted(collector, repetition, trace, context):
+        seen.append((repetition, trace.q.ndim))
+        return evaluate(collector, repetition, trace, context)
+
     monkeypatch.setattr(batch, "added_parts", lambda group: (SimpleNamespace(name="mine"),))
-    assert BatchSimulator().repetitions(configured()) is None
+    monkeypatch.setattr(Collector, "evaluate", noted)
+    (found,) = simulated_together(config)
+    assert seen == [(0, 2), (1, 2), (2, 2)]
+    assert found.names == whole.names
+    np.testing.assert_array_equal(found.values, whole.values)
+    assert found.caveats == whole.caveats
+
+
+def simulated_together(config):
+    batcher = BatchSimulator()
+    return [run for group in simulate_together([batcher.repetitions(config)], batcher) for run in group]
 
 
 def test_what_runs_have_in_common_is_worked_out_once(monkeypatch):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from runner.simulation.assembly import assemble
-from runner.simulation.compiled.closed_loop import run_all
+from runner.simulation.assembly import assemble_program
+from runner.simulation.compiled.loop_program import run_all
 from runner.symbolic.engine import evaluator
 from runner.symbolic.program import LANES, Frame
 
@@ -14,26 +14,26 @@ pytestmark = pytest.mark.skipif(not evaluator(), reason="runs are compiled as a 
 @pytest.fixture(scope="module")
 def sliding(checked_config):
     """A closed loop with dry friction, whose code remembers the way that each joint slides."""
-    return assemble(
-        checked_config("robot=macro", "plant=rk4", "controller=operational_space", "trajectory=goal", "duration=0.1",
-                       "torque_limits.max=200", "plant.friction.coulomb=[0,8,1]")
-    )  # fmt: skip
+    config = checked_config("robot=macro", "plant=rk4", "controller=operational_space", "trajectory=goal",
+                            "duration=0.1", "torque_limits.max=200", "plant.friction.coulomb=[0,8,1]")  # fmt: skip
+    return config, *assemble_program(config)
 
 
-def together(closed, count):
+def together(sliding, count):
     """Return the signals of equal runs, each from a start of its own."""
-    loop_program, times = closed.compiled, np.arange(closed.ticks + 1) * closed.tick
-    q = closed.q_start + 0.05 * np.arange(count)[:, None]
+    config, loop_program, q_start = sliding
+    times = np.arange(config.timing.ticks + 1) * config.timing.tick
+    q = q_start + 0.05 * np.arange(count)[:, None]
     still = np.zeros((count, len(times), 3))
-    shared = loop_program.commands.shared(times, closed.trajectory.sample(times))
+    shared = loop_program.commands.shared(times, config.path.sample(times))
     values = np.repeat([loop_program.values], count, axis=0)
     return run_all(loop_program, values, shared, [still], loop_program.commands.start(q, [still[:, 0]]))
 
 
 def test_no_joint_slides_before_a_block_begins(sliding, monkeypatch):
     begun, ended, call = [], [], Frame.call
-    commands = sliding.compiled.commands
-    known = commands.start(sliding.q_start[None], [np.zeros((1, 3))]).shape[1]
+    _, loop_program, q_start = sliding
+    known = loop_program.commands.start(q_start[None], [np.zeros((1, 3))]).shape[1]
 
     def noted(frame):
         begun.append(frame.state[known:].copy())
@@ -50,5 +50,5 @@ def test_no_joint_slides_before_a_block_begins(sliding, monkeypatch):
 @pytest.mark.parametrize("count", [LANES, LANES + 1, 2 * LANES])
 def test_the_last_run_has_the_bits_of_a_shorter_list(sliding, count):
     found, fewer = together(sliding, count), together(sliding, 2)
-    for name in ("q", "dq", "torque"):
+    for name in ("q", "dq", "command"):
         np.testing.assert_array_equal(getattr(found, name)[:2], getattr(fewer, name))

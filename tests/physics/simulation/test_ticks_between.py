@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from runner.sensing import EncoderNoise
-from runner.simulation.compiled.closed_loop import CompiledCommands
-from runner.simulation.compiled.commands import Commands, LoopCode
+from runner.simulation.compiled.commands import Commands, CompiledLoops, LoopCode
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="laws are compiled by llvmlite")
@@ -27,12 +26,12 @@ def torques(law, every, postures):
     loop = LoopCode(law, slice(0, 3), every, 0.01 * every)
     reference = np.zeros((ticks, 3, 3))
     reference[:, 0] = law.models[0].tip_position(BENT + 0.02)
-    run = CompiledCommands(Commands(robot, False, (loop,), exact, np.full(3, np.inf))).begin(
-        0.01 * np.arange(ticks), reference, [np.zeros((-(-ticks // every), 3))], postures[0]
-    )
+    commands = Commands(robot, False, (loop,), exact, np.full(3, np.inf))
+    run = CompiledLoops(commands, ticks, [np.zeros((-(-ticks // every), 3))])
+    run.start(0.01 * np.arange(ticks), reference, None, postures[0])
     for tick, q in enumerate(postures):
-        run.tick(tick, q, np.zeros(3))
-    return run.torque
+        run.update(tick, q, np.zeros(3))
+    return run.rows.command
 
 
 def test_a_posture_without_an_answer_between_its_ticks_is_no_fault_and_the_torque_stands(law):

@@ -10,9 +10,8 @@ from runner.plants.decoupled import ArmMotion, Motion
 from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
 from runner.sensing import EncoderNoise
-from runner.simulation.compiled.closed_loop import LoopProgram
 from runner.simulation.compiled.commands import Commands, LoopCode
-from runner.simulation.compiled.directed import Setting, tangents
+from runner.simulation.compiled.loop_program import LoopProgram, Setting, tangents
 
 URDF = """<robot name="wheel"><link name="base"/><link name="rod"><inertial><origin xyz="0.4 0 0"/><mass value="2"/>
 <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.18"/></inertial></link><link name="tip"/>
@@ -70,7 +69,7 @@ def test_angles_speeds_and_torques(wheel):
     ):
         np.testing.assert_allclose(found.q[place, :, 0], by_q, rtol=1e-13, atol=1e-16)
         np.testing.assert_allclose(found.dq[place, :, 0], by_dq, rtol=1e-13, atol=1e-16)
-        assert np.all(found.torque[place] == by_torque)
+        assert np.all(found.command[place] == by_torque)
 
 
 def test_the_tip_moves_on_a_circle_as_long_as_the_link_though_that_is_1(wheel):
@@ -83,9 +82,9 @@ def test_the_tip_moves_on_a_circle_as_long_as_the_link_though_that_is_1(wheel):
 
 def test_a_clipped_torque_changes_with_its_limit_alone(wheel):
     found = derivatives(wheel(limit=2.0), wheel(torque=TORQUE + 1.0, limit=2.0), wheel(limit=3.0))
-    assert not found.torque[0].any()
+    assert not found.command[0].any()
     assert not found.q[0].any()
-    assert np.all(found.torque[1] == 1.0)
+    assert np.all(found.command[1] == 1.0)
     np.testing.assert_allclose(found.q[1, :, 0], TIMES**2 / (2.0 * INERTIA), rtol=1e-13, atol=1e-16)
 
 

@@ -15,9 +15,8 @@ from runner.controllers.torque_law import TorqueLaw
 from runner.plants import compiled_motion
 from runner.plugins.guard import unguarded
 from runner.sensing import EncoderNoise
-from runner.simulation.compiled import compile
-from runner.simulation.compiled.closed_loop import CompiledCommands
-from runner.simulation.compiled.commands import Commands, LoopCode
+from runner.simulation.compiled import commands as loops
+from runner.simulation.compiled.commands import Commands, CompiledLoops, LoopCode
 from runner.simulation.compiled.law import law_cache_key
 from runner.symbolic import program
 from runner.symbolic.structure import CannotCompileError
@@ -74,12 +73,11 @@ def compiled_torques(law, measured):
     exact = EncoderNoise(*np.zeros((3, n)), "none", "exact")
     commands = Commands(robot, False, (LoopCode(law, slice(0, n), 1, 0.01),), exact, np.full(n, np.inf))
     references = np.array([reference for _, _, reference in measured])
-    run = CompiledCommands(commands).begin(
-        0.01 * np.arange(len(measured)), references, [np.zeros((len(measured), n))], measured[0][0]
-    )
+    run = CompiledLoops(commands, len(measured), [np.zeros((len(measured), n))])
+    run.start(0.01 * np.arange(len(measured)), references, None, measured[0][0])
     for tick, (q, dq, _) in enumerate(measured):
-        run.tick(tick, q, dq)
-    return run.torque
+        run.update(tick, q, dq)
+    return run.rows.command
 
 
 def assert_agree(law, ours, measured, tolerance=1e-12):
@@ -152,7 +150,7 @@ def test_numbers_are_parameters_and_zeros_are_not(monkeypatch):
     config = configured("macro", "operational_space", "controller.natural_frequency=25.0")
     measured = states(config.arm.model, config.arm.home)
     compiled_torques(law, measured)
-    monkeypatch.setattr("runner.simulation.compiled.closed_loop.Expressed", None)  # nothing is expressed any more
+    monkeypatch.setattr("runner.simulation.compiled.commands.Expressed", None)  # nothing is expressed any more
     assert_agree(other, other, measured)
 
 
@@ -209,18 +207,17 @@ def found(controller, joints=3):
     robot = SimpleNamespace(model=law.models[0], stages=(None,))
     exact = EncoderNoise(*np.zeros((3, joints)), "none", "exact")
     loop = Loop("whole", slice(0, joints), 0.01, controller)
-    return compile.find_commands(robot, False, [loop], 0.01, exact, np.full(joints, np.inf))
+    return loops.find_commands(robot, False, [loop], 0.01, exact, np.full(joints, np.inf))
 
 
 def test_a_guarded_law_of_a_user_s_is_compiled_and_guarded_and_its_code_is_not_kept(code_cache):
     program._program.cache_clear()
     law, _ = users_law(Transposed)
-    run = compile.compile_commands(found(guard_law(law, 3))).begin(
-        np.zeros(1), np.zeros((1, 3, 3)), [np.zeros((1, 3))], np.zeros(3)
-    )
+    run = CompiledLoops(loops.compiled(found(guard_law(law, 3))), 1, [np.zeros((1, 3))])
+    run.start(np.zeros(1), np.zeros((1, 3, 3)), None, np.zeros(3))
     assert list(code_cache.iterdir()) == []
     with pytest.raises(SimulationError, match=r"Transposed.evaluate .* gave nan at index \[0\]; it must be finite"):
-        run.tick(0, np.full(3, np.nan), np.zeros(3))
+        run.update(0, np.full(3, np.nan), np.zeros(3))
 
 
 def test_a_mutated_term_is_caught():
@@ -231,10 +228,10 @@ def test_a_mutated_term_is_caught():
 
 def test_a_law_that_cannot_be_compiled_says_why_once_and_runs_as_it_is(capsys):
     law, measured = users_law(Stubborn)
-    compile._tell.cache_clear()
+    loops._tell.cache_clear()
     with pytest.raises(CannotCompileError, match="does what expressions cannot do"):
         compiled_torques(law, measured)
-    assert [compile.compile_commands(found(law)) for _ in range(2)] == [None, None]
+    assert [loops.compiled(found(law)) for _ in range(2)] == [None, None]
     said = capsys.readouterr().err.splitlines()
     assert [line for line in said if "not compiled" in line] == [
         line for line in said if line.startswith("runner: Stubborn is not compiled, and runs through Pinocchio: ")
@@ -250,7 +247,7 @@ def test_a_law_that_keeps_something_unknown_is_not_compiled():
 
 
 def test_arms_of_many_joints_run_through_pinocchio(capsys):
-    compile._tell.cache_clear()
+    loops._tell.cache_clear()
     law = law_of("snake", "operational_space")
     assert found(law, 30) is None
     assert compiled_motion.CompiledStep.compile(law.models[0], 0.01) is None
@@ -258,7 +255,7 @@ def test_arms_of_many_joints_run_through_pinocchio(capsys):
 
 
 def test_without_the_library_laws_run_as_they_are(monkeypatch):
-    monkeypatch.setattr(compile, "evaluator", dict)
+    monkeypatch.setattr(loops, "evaluator", dict)
     monkeypatch.setattr(compiled_motion, "evaluator", dict)
     law = law_of("macro", "operational_space")
     assert found(law) is None

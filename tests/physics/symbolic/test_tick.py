@@ -7,10 +7,12 @@ import pytest
 from support.arms import checked
 from support.physics import assert_same_motion
 
-from runner.simulation.assembly import assemble
-from runner.simulation.compiled import compile
-from runner.simulation.compiled.closed_loop import CompiledCommands, LoopProgram, run_all
+from runner.simulation.assembly import assemble, assemble_program
+from runner.simulation.batch import BatchSimulator
+from runner.simulation.compiled import commands
+from runner.simulation.compiled.loop_program import run_all
 from runner.simulation.loop import simulate
+from runner.simulation.run import simulate_repetition
 from runner.simulation.sensors import make_encoders
 
 NOISY = "noise=thesis", "torque_limits=thesis"
@@ -51,18 +53,15 @@ RUNS = [
 
 
 def run(*overrides, seed=0):
-    config = checked(*overrides, "plant=rk4", f"seed={seed}")
-    closed = assemble(config)
-    return closed, simulate(closed, make_encoders(closed, config.noise, seed, 0))
+    return simulate_repetition(checked(*overrides, "plant=rk4", f"seed={seed}"))
 
 
 def run_both(monkeypatch, *overrides, seed=0):
-    closed, ours = run(*overrides, seed=seed)
+    ours = run(*overrides, seed=seed)
     with monkeypatch.context() as without:
-        without.setattr(compile, "evaluator", dict)
-        other, theirs = run(*overrides, seed=seed)
-    assert isinstance(closed.compiled, LoopProgram)
-    assert other.compiled is None
+        without.setattr(commands, "evaluator", dict)
+        theirs = run(*overrides, seed=seed)
+    assert (ours.law_seconds is None, theirs.law_seconds is None) == (True, False)  # compiled as a whole, interpreted
     return ours, theirs
 
 
@@ -80,12 +79,12 @@ def test_whole_runs_are_those_of_pinocchio(monkeypatch, overrides, seed):
 
 
 def test_torques_stop_at_their_limits():
-    _, trace = run("robot=macro", "controller=operational_space", "trajectory=goal", "torque_limits.max=30")
+    trace = run("robot=macro", "controller=operational_space", "trajectory=goal", "torque_limits.max=30")
     assert np.abs(trace.tau).max() == 30.0
 
 
 def test_the_same_run_has_the_same_bits():
-    first, second = (run(*RUNS[0], "duration=0.5")[1] for _ in range(2))
+    first, second = (run(*RUNS[0], "duration=0.5") for _ in range(2))
     np.testing.assert_array_equal(first.q, second.q)
     np.testing.assert_array_equal(first.tau, second.tau)
 
@@ -101,21 +100,25 @@ def test_divergence_ends_a_run_at_the_same_tick_and_joint(monkeypatch):
 
 def test_a_law_without_an_answer_ends_a_run_with_its_reason():
     config = checked("robot=macro", "controller=operational_space", "controller.singularity_damping=0", "plant=rk4")
-    closed = replace(assemble(config), q_start=np.array([0.0, 0.0, np.pi / 2]))
-    trace = simulate(closed, make_encoders(closed, config.noise, 0, 0))
+    (spec,) = BatchSimulator().repetitions(config)
+    ((_, trace),) = BatchSimulator().simulate([replace(spec, q_start=np.array([0.0, 0.0, np.pi / 2]))])
     assert (trace.failure.reason, trace.failure.time) == ("the tip's Jacobian is singular", 0.0)
     assert len(trace.t) == 1
 
 
-def together(closed, errors):
+def times_of(config):
+    return np.arange(config.timing.ticks + 1) * config.timing.tick
+
+
+def together(config, errors):
     """Return the signals of runs of a closed loop that differ in the errors of their encoders."""
-    whole, times = closed.compiled, np.arange(closed.ticks + 1) * closed.tick
+    (whole, q_start), times = assemble_program(config), times_of(config)
     return run_all(
         whole,
         np.repeat([whole.values], len(errors), axis=0),
-        whole.commands.shared(times, closed.trajectory.sample(times)),
+        whole.commands.shared(times, config.path.sample(times)),
         [np.array(of_loop) for of_loop in zip(*errors, strict=True)],
-        np.concatenate([whole.commands.start(closed.q_start[None], [each[:1] for each in own]) for own in errors]),
+        np.concatenate([whole.commands.start(q_start[None], [each[:1] for each in own]) for own in errors]),
     )
 
 
@@ -124,22 +127,21 @@ def test_a_run_has_the_same_bits_alone_and_at_any_place_among_others(overrides):
     config = checked(*overrides, "plant=rk4", "trajectory=quintic", "duration=0.5")
     closed = assemble(config)
     errors = [[each.errors for each in make_encoders(closed, config.noise, seed, 0)] for seed in range(21)]
-    alone = [together(closed, [own]) for own in errors]
+    alone = [together(config, [own]) for own in errors]
     assert np.abs(alone[0].q - alone[1].q).max() > 0.0 or not config.noise.position.any()
     for count in (2, 7, 8, 21):
-        found = together(closed, errors[:count][::-1])
+        found = together(config, errors[:count][::-1])
         for place, single in enumerate(alone[:count][::-1]):
-            for name in ("q", "dq", "torque", "fault"):
+            for name in ("q", "dq", "command", "fault"):
                 np.testing.assert_array_equal(getattr(found, name)[place], getattr(single, name)[0])
             np.testing.assert_array_equal(found.end_points[:, place], single.end_points[:, 0])
 
 
 def test_runs_on_several_paths_are_computed_together():
     config = checked("robot=macro", "controller=operational_space", "plant=rk4", "duration=0.5")
-    closed = assemble(config)
-    whole, times = closed.compiled, np.arange(closed.ticks + 1) * closed.tick
-    paths = closed.trajectory.sample(times) + 0.01 * np.arange(11)[:, None, None, None] * np.array([[1.0], [0], [0]])
-    start = whole.commands.start(closed.q_start[None], [np.zeros((1, 3))])
+    (whole, q_start), times = assemble_program(config), times_of(config)
+    paths = config.path.sample(times) + 0.01 * np.arange(11)[:, None, None, None] * np.array([[1.0], [0], [0]])
+    start = whole.commands.start(q_start[None], [np.zeros((1, 3))])
     still = [np.zeros((11, len(times), 3))]
     values = np.repeat([whole.values], 11, axis=0)
     found = run_all(whole, values, whole.commands.shared(times, paths), still, np.repeat(start, 11, axis=0))
@@ -151,10 +153,10 @@ def test_runs_on_several_paths_are_computed_together():
 
 def test_a_run_that_diverges_leaves_those_beside_it_alone():
     config = checked("robot=macro", "controller=operational_space", "plant=rk4", "duration=1")
-    closed = assemble(config)
-    good, wild = [np.zeros((closed.ticks + 1, 3))], [np.full((closed.ticks + 1, 3), 1e200)]
-    found = together(closed, [wild, good, wild])
-    np.testing.assert_array_equal(found.q[1], together(closed, [good]).q[0])
+    rows = config.timing.ticks + 1
+    good, wild = [np.zeros((rows, 3))], [np.full((rows, 3), 1e200)]
+    found = together(config, [wild, good, wild])
+    np.testing.assert_array_equal(found.q[1], together(config, [good]).q[0])
     assert not np.isfinite(found.q[[0, 2]]).all()
 
 
@@ -162,11 +164,11 @@ def test_a_run_that_diverges_leaves_those_beside_it_alone():
 def test_bullet_gets_its_torques_from_compiled_laws(monkeypatch):
     overrides = "robot=combined", "controller=whole_body", "plant=bullet", "duration=0.2", *NOISY
     traces = []
-    for library in (compile.evaluator, dict):
-        monkeypatch.setattr(compile, "evaluator", library)
+    for library in (commands.evaluator, dict):
+        monkeypatch.setattr(commands, "evaluator", library)
         config = checked(*overrides)
         closed = assemble(config)
-        assert isinstance(closed.compiled, CompiledCommands) == (library is not dict)
+        assert (closed.compiled is not None) == (library is not dict)
         traces.append(simulate(closed, make_encoders(closed, config.noise, 0, 0)))
         closed.close()
     np.testing.assert_allclose(traces[0].q, traces[1].q, rtol=0.0, atol=1e-11)

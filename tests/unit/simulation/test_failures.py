@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.simulation.failures import DIVERGED_SPEED, find_divergence
+from runner.simulation.recorder import DIVERGED_SPEED, find_divergence
 
 MODEL = SimpleNamespace(joint_names=["q1", "q2"], joint_units=["rad", "m"])
 TIMES = 0.1 * np.arange(5)
