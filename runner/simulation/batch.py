@@ -11,20 +11,22 @@ from itertools import groupby
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.cache import Memory
 from runner.base.ticks import add_ticks
-from runner.base.trace import Trace
+from runner.base.trace import Failure, Trace
 from runner.config.run import RunConfig
 from runner.metrics import MetricContext, measure
 from runner.metrics.caveats import Watch, look_together, setting_of, signals_of
 from runner.plugins.discovery import added_parts
+from runner.robots.model import RobotModel
 from runner.sensing.encoders import encoder_errors
 from runner.simulation.assembly import assemble_program, metric_context, reach_of
 from runner.simulation.compiled.commands import Rows
 from runner.simulation.compiled.loop_program import LoopProgram, run_all
-from runner.simulation.recorder import describe, ended_well, find_failure
+from runner.simulation.recorder import DIVERGED_SPEED, describe, failure_of, find_divergence
 from runner.simulation.results import Collector
 
 _MOST_BYTES = 32e6  # limit of the signals of runs that are simulated together
@@ -165,7 +167,7 @@ class BatchSimulator:
             errors,
             _start(runs, [wrong[:, 0] for wrong in errors]),
         )
-        seconds, well = (time.perf_counter() - began) / (len(runs) * rows), ended_well(found)
+        seconds, well = (time.perf_counter() - began) / (len(runs) * rows), _ended_well(found)
         for places in _grouped(range(len(runs)), lambda place: runs[place].scene):
             one = runs[places[0]]
             traces = self._traces(found, runs, places, paths[places[0]], times, seconds)
@@ -173,7 +175,7 @@ class BatchSimulator:
             for index, place in enumerate(places):
                 failure = None
                 if not well[place]:
-                    failure = find_failure(loop_program, found, place, traces.t, one.config.arm.model)
+                    failure = _find_failure(loop_program, found, place, traces.t, one.config.arm.model)
                 if failure is None:
                     good.append(index)
                 else:
@@ -246,6 +248,32 @@ def draw_errors(runs: Sequence[RunSpec], rows: int) -> list[FloatArray]:
         )
         for number, loop in enumerate(runs[0].loop_program.commands.loops)
     ]
+
+
+def _ended_well(rows: Rows) -> NDArray[np.bool_]:
+    """Return True for each run compiled as a whole that ended without a failure, shape (runs,)."""
+    finite = np.isfinite(rows.q).all(axis=(1, 2)) & np.isfinite(rows.command).all(axis=(1, 2))
+    slow = np.abs(rows.dq).max(axis=(1, 2)) < DIVERGED_SPEED
+    well: NDArray[np.bool_] = finite & slow & ~rows.fault.any(axis=1)
+    return well
+
+
+def _find_failure(
+    loop_program: LoopProgram, rows: Rows, run: int, times: FloatArray, model: RobotModel
+) -> Failure | None:
+    """Return the failure of one of several runs compiled as a whole; None without a failure.
+
+    Args:
+        loop_program: The closed loop of one of the runs.
+        rows: Signals of the runs.
+        run: Index of the run.
+        times: Time of each row of the run, shape (T,), in s; it may have fewer rows than the signals.
+        model: Model of the arm.
+    """
+    fault = loop_program.first_fault(rows, run, times)
+    last = len(times) if fault is None else fault[0] + 1
+    diverged = find_divergence(rows.q[run, :last], rows.dq[run, :last], times[:last], model)
+    return diverged if diverged is not None or fault is None else failure_of(fault[1], float(times[fault[0]]))
 
 
 def _grouped(places: Sequence[int], key: Callable[[int], Hashable]) -> list[list[int]]:

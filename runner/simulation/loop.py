@@ -178,17 +178,7 @@ class InterpretedLoops:
 class _Command:
     """The command of a control loop: computed from the encoders at its ticks, clipped, and held until its next tick.
 
-    Args:
-        closed: The closed loop.
-        loop: The control loop; its controller is reset here.
-        encoders: Joint measurement of the loop, with a draw for each of its ticks.
-        tip: Tip measurement of the loop besides the encoders; None without one.
-        times: Time of each tick, shape (T,), in s.
-        commands: Current commands of all joints, shape (nq,), written in place.
-        desired: Desired motion in each tick.
-
-    Attributes:
-        every: Ticks between two ticks of the loop.
+    It is written to the loop's joints of `commands`, shape (nq,). The loop has a tick in each `every`-th tick of a run.
     """
 
     def __init__(

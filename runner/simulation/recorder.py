@@ -14,7 +14,6 @@ from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, end_points
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.compiled.commands import Rows
-from runner.simulation.compiled.loop_program import LoopProgram
 
 # No arm reaches this speed, so a run above it has diverged.
 DIVERGED_SPEED = 1e6  # rad/s, or m/s for a prismatic joint
@@ -100,7 +99,7 @@ class Recorder:
 
     def stop(self, k: int, error: Exception) -> None:
         """End the record with an error in tick k, or with an earlier divergence, its likely cause."""
-        self._failure = _failure_of(error, float(self.times[k]))
+        self._failure = failure_of(error, float(self.times[k]))
         try:
             self.check_divergence(k)
         except SimulationError as diverged:
@@ -169,31 +168,6 @@ def find_divergence(q: FloatArray, dq: FloatArray, times: FloatArray, model: Rob
     return Failure(reason, float(times[row]), model.joint_names[joint])
 
 
-def ended_well(rows: Rows) -> NDArray[np.bool_]:
-    """Return True for each run compiled as a whole that ended without a failure, shape (runs,)."""
-    finite = np.isfinite(rows.q).all(axis=(1, 2)) & np.isfinite(rows.command).all(axis=(1, 2))
-    slow = np.abs(rows.dq).max(axis=(1, 2)) < DIVERGED_SPEED
-    well: NDArray[np.bool_] = finite & slow & ~rows.fault.any(axis=1)
-    return well
-
-
-def find_failure(
-    loop_program: LoopProgram, rows: Rows, run: int, times: FloatArray, model: RobotModel
-) -> Failure | None:
-    """Return the failure of one of several runs compiled as a whole; None without a failure.
-
-    Args:
-        loop_program: The closed loop of one of the runs.
-        rows: Signals of the runs.
-        run: Index of the run.
-        times: Time of each row of the run, shape (T,), in s; it may have fewer rows than the signals.
-        model: Model of the arm.
-    """
-    fault = loop_program.first_fault(rows, run, times)
-    last = len(times) if fault is None else fault[0] + 1
-    diverged = find_divergence(rows.q[run, :last], rows.dq[run, :last], times[:last], model)
-    return diverged if diverged is not None or fault is None else _failure_of(fault[1], float(times[fault[0]]))
-
-
-def _failure_of(error: Exception, time: float) -> Failure:
+def failure_of(error: Exception, time: float) -> Failure:
+    """Return the failure of an error at a time, in s."""
     return Failure(error.reason if isinstance(error, SimulationError) else str(error), time)
