@@ -141,24 +141,14 @@ class RobotFields(TypedDict):
 def describe(robot: Robot, ignore_base_rotation: bool) -> RobotFields:
     """Return the fields of a trace that describe the robot."""
     home = end_points(robot, robot.home[None], ignore_base_rotation)[:, 0]
-    model = robot.model
+    names, model = robot.stage_names, robot.model
     return RobotFields(
-        offsets=home[-1] - home,
-        stage_names=robot.stage_names,
-        joint_names=model.joint_names,
-        joint_units=model.joint_units,
+        offsets=home[-1] - home, stage_names=names, joint_names=model.joint_names, joint_units=model.joint_units
     )
 
 
 def find_divergence(q: FloatArray, dq: FloatArray, times: FloatArray, model: RobotModel) -> Failure | None:
-    """Return the first row with a joint that is not finite or too fast; None if there is none.
-
-    Args:
-        q: Joint positions, shape (T, nq), in rad.
-        dq: Joint velocities, shape (T, nq), in rad/s.
-        times: Time of each row, shape (T,), in s.
-        model: The arm, for the names of its joints.
-    """
+    """Return the first row of q or dq, shapes (T, nq), that is not finite or too fast; None if there is none."""
     wild = ~(np.isfinite(q) & (np.abs(dq) < DIVERGED_SPEED))
     if not wild.any():
         return None

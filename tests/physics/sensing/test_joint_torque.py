@@ -24,7 +24,7 @@ def found(*overrides):
         trace = simulate(
             closed, make_encoders(closed, config.noise, 0, 0), None, make_joint_torque_sensor(closed, config, 0)
         )
-        return closed.loops[0].controller._memory[:3], trace
+        return closed.loops[0].controller.state[:3], trace
     finally:
         closed.close()
 
@@ -81,7 +81,7 @@ def test_each_loop_reads_the_mean_since_its_last_tick(simulated):
     )
     closed.close()
     assert trace.failure is None
-    assert all(np.isfinite(loop.controller._memory).all() for loop in closed.loops)
+    assert all(np.isfinite(loop.controller.state).all() for loop in closed.loops)
 
 
 REFUSED = {
