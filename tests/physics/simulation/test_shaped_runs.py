@@ -48,7 +48,7 @@ def test_the_mode_that_is_named_rests(simulated, kind):
 
 
 def test_on_a_move_of_the_whole_arm_a_shaper_for_each_mode_beats_a_slower_move(simulated):
-    """The table of docs/vibration.md, in mm."""
+    """Peak vibration after the move, in mm."""
 
     def rings(duration, *shaper):
         arm = (*FLEXIBLE, "plant.step=0.0025", "trajectory=quintic", "trajectory.goal=[0.4,0.7,0.6]", "duration=4")
