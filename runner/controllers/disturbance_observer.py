@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Literal, NamedTuple, Protocol, cast
+from typing import Literal, NamedTuple, cast
 
 import numpy as np
 from pydantic import PositiveFloat
@@ -150,27 +150,13 @@ def momentum_balance(p: Array, b: Array, h: Scalar, before: Array, acted: Array)
     return (p - 0.5 * h * b - before) / h - acted, p + 0.5 * h * b
 
 
-class Ticks(Protocol):
-    """Tick and delays of a run.
-
-    Attributes:
-        tick: Time between two ticks of the fastest loop, in s.
-        late: Delay of commands of each loop, in these ticks.
-    """
-
-    @property
-    def tick(self) -> float:
-        """See above."""
-        ...
-
-    @property
-    def late(self) -> tuple[int, ...]:
-        """See above."""
-        ...
-
-
 def add_observers(
-    config: DisturbanceObserverConfig, robot: Robot, loops: tuple[Loop, ...], limits: FloatArray, ticks: Ticks
+    config: DisturbanceObserverConfig,
+    robot: Robot,
+    loops: tuple[Loop, ...],
+    limits: FloatArray,
+    tick: float,
+    late: Sequence[int],
 ) -> tuple[Loop, ...]:
     """Return the control loops with the disturbance observers of a config, if any.
 
@@ -179,15 +165,16 @@ def add_observers(
         robot: The nominal robot.
         loops: Loops that command torques.
         limits: Torque limit of each joint, shape (nq,), in N m; infinite if there is none.
-        ticks: Tick and delays of the run.
+        tick: Time between two ticks of the fastest loop, in s.
+        late: Delay of commands of each loop, in these ticks.
     """
     bandwidths = config.by_loop(loops)
     if bandwidths is None:
         return loops
-    measures, carried = config.torque == "measured", []
-    for loop, bandwidth, delay in zip(loops, bandwidths, ticks.late, strict=True):
-        late = 0 if measures else delay // round(loop.period / ticks.tick)
-        observer = MomentumObserver(robot, loop.joints, bandwidth, loop.period, limits[loop.joints], late, measures)
+    measures, observed = config.torque == "measured", []
+    for loop, bandwidth, delay in zip(loops, bandwidths, late, strict=True):
+        own = 0 if measures else delay // round(loop.period / tick)
+        observer = MomentumObserver(robot, loop.joints, bandwidth, loop.period, limits[loop.joints], own, measures)
         law = with_filter(cast(Controller, loop.controller), observer, robot.model)
-        carried.append(replace(loop, controller=law))
-    return tuple(carried)
+        observed.append(replace(loop, controller=law))
+    return tuple(observed)

@@ -83,7 +83,7 @@ def contact_map(contact: ServoContact) -> FloatArray:
     values = np.linalg.svd(J, compute_uv=False)
     if values[-1] < _REACHED * values[0]:
         raise np.linalg.LinAlgError
-    lead = np.linalg.pinv(J)
+    J_inverse = np.linalg.pinv(J)
     press, moved = _wrenches(contact, J)
     pull, slow, towards, along = _servo_gradients(contact)
     stay, push = _arm(contact, J)
@@ -100,10 +100,10 @@ def contact_map(contact: ServoContact) -> FloatArray:
         reading = reading + contact.seen * (load - reading)
         before = dq
         if tick == 0:
-            felt = reading + moved @ (dq - last) / period if contact.inertia else reading
+            wrench = reading + moved @ (dq - last) / period if contact.inertia else reading
             last = dq
-            x, dx = (Phi[:, i, 0, None] * x + Phi[:, i, 1, None] * dx + Gamma[:, i, None] * felt for i in (0, 1))
-            commands = [lead @ x, *commands]
+            x, dx = (Phi[:, i, 0, None] * x + Phi[:, i, 1, None] * dx + Gamma[:, i, None] * wrench for i in (0, 1))
+            commands = [J_inverse @ x, *commands]
         acting = commands[late if tick >= rest else late + 1]
         left = ticks - (tick - rest) % ticks if contact.interpolate else 1
         way = (acting - point) / left

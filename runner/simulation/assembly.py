@@ -147,7 +147,8 @@ def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loo
     loops = tell_limits(loops, config.torque_limits)
     if config.notch is not None:
         loops = add_notch(nominal, loops, config.notch.by_joint(config.arm), config.notch.width)
-    return nominal, add_observers(config.disturbance_observer, nominal, loops, config.torque_limits, config.timing)
+    observer, timing = config.disturbance_observer, config.timing
+    return nominal, add_observers(observer, nominal, loops, config.torque_limits, timing.tick, timing.late)
 
 
 def _find_commands(config: RunConfig, loops: tuple[Loop, ...]) -> Commands | None:

@@ -103,7 +103,7 @@ class AdmittanceControl(PositionController):
         self._filter.step(at_tip if self._at_tip else at_flange)
         rest = self._approach.follow(reference[0] + self._config.period * reference[1])
         wanted = pin.SE3(self._filter.rotation @ self._orientation, rest + self._filter.translation)
-        command, reached = self._motion.lead(time, wanted)
+        command, reached = self._motion.follow(time, wanted)
         if not self._motion.free:
             held, turned = reached.translation - rest, reached.rotation @ self._orientation.T
             way = np.concatenate([held - translation, pin.log3(turned @ rotation.T)])

@@ -94,10 +94,10 @@ class IterativeLearning(Controller):
 
     def with_limits(self, limits: FloatArray) -> "IterativeLearning":
         """Return the law with its torque limits set; see ControlLaw."""
-        told = copy(self)
-        told._limits = limits
-        told.reset()
-        return told
+        other = copy(self)
+        other._limits = limits
+        other.reset()
+        return other
 
     def reset(self) -> None:
         """Clear the learned torques and the joint motion."""

@@ -59,7 +59,7 @@ class LimitedMotion:
         pin.framesForwardKinematics(self._model, self._data, self._q)
         return self._data.oMf[self._frame].copy()
 
-    def lead(self, time: float, wanted: "pin.SE3") -> "tuple[FloatArray, pin.SE3]":
+    def follow(self, time: float, wanted: "pin.SE3") -> "tuple[FloatArray, pin.SE3]":
         """Return the joint positions for a desired pose, shape (nq,), in rad, and the pose that they reach."""
         J = pin.computeFrameJacobian(self._model, self._data, self._q, self._frame, pin.LOCAL_WORLD_ALIGNED)
         tip = self._data.oMf[self._frame]

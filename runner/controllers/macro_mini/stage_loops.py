@@ -274,7 +274,7 @@ class MiniController(StageLoop[MiniParameters]):
         """Return the torques of this stage, and the state of the held configuration; see TorqueLaw."""
         own = arms[0]
         backend, (own_q, own_dq) = own.backend, self.own(q, dq)
-        way, target, gravity = self._seen(arms[1:], parameters, q, dq, reference)
+        way, target, gravity = self._target(arms[1:], parameters, q, dq, reference)
         if not self._follows:
             return self._law.move(own, parameters.law, own_q, own_dq, target, gravity), state
         squared, near = way.dot(way), target
@@ -291,7 +291,7 @@ class MiniController(StageLoop[MiniParameters]):
             lambda: (self._law.move(own, parameters.law, own_q, own_dq, target, gravity), self._released),
         )
 
-    def _seen(
+    def _target(
         self, below: Arms, parameters: MiniParameters, q: Array, dq: Array, reference: Array
     ) -> tuple[Array, Array, Array]:
         """Return the vector to the target in the robot's base frame; target and gravity in the stage's."""
