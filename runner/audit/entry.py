@@ -118,6 +118,7 @@ class Entry(StrictModel):
         tolerance: Largest error, in its unit, that rounding may cause.
         finding: What is wrong and what it does, in words; Text of a report.
         rollout: Function of equations/rollouts that runs the wrong form beside the right one, or "".
+        letters: Names as the source writes them in this equation.
     """
 
     id: str
@@ -133,6 +134,7 @@ class Entry(StrictModel):
     tolerance: float = Field(default=1e-9, gt=0)
     finding: str = ""
     rollout: str = ""
+    letters: dict[str, str] = Field(default_factory=dict)
 
     @property
     def right(self) -> Form:

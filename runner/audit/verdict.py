@@ -125,7 +125,9 @@ class Judge:
             raise AuditError(f"is corrected, but its verdict is '{verdict}'")
         first, second = (found.first, found.second) if found else (None, None)
         ways = self.truth(entry).ways if entry.truth else ("", "")
-        return Judged(self._part.source.name, entry, verdict, first, second, ways, self._part.letters)
+        return Judged(
+            self._part.source.name, entry, verdict, first, second, ways, {**self._part.letters, **entry.letters}
+        )
 
     def _measure(self, entry: Entry, form: Form) -> "_Both":
         found, truth = self._evaluate(form), self.truth(entry)

@@ -34,11 +34,6 @@ def chain(values: Symbols) -> Elements:
     return {"P_H": along(flange, np.column_stack([values["p"], np.ones(len(flange))]))[:, :3]}
 
 
-def tip(values: Symbols) -> Elements:
-    """Return the tip by rotation and shift: eq. 3."""
-    return {"P_H": four_tips(values)["P_H1"]}
-
-
 def four_tips(values: Symbols) -> Elements:
     """Return the tip from each of the four poses: eq. 4."""
     return {f"P_H{k}": along(values[f"R{k}"], values["p"]) + values[f"P{k}"] for k in range(1, POSES + 1)}
@@ -62,11 +57,6 @@ def _stacked(values: Symbols) -> FloatArray:
 
 def _shifts(values: Symbols) -> FloatArray:
     return np.concatenate([values[f"P{k}"] - values["P1"] for k in range(2, POSES + 1)], axis=1)
-
-
-def direction(values: Symbols) -> Elements:
-    """Return the tool's direction times the difference of the two tools' lengths: eq. 6."""
-    return {"t": values["p"] - values["short"]}
 
 
 def turned(values: Symbols) -> Elements:

@@ -12,13 +12,13 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     """Return random wrenches in a frame S1 and random frames S2.
 
     `F` and `M_p` are the force and the moment about S1's origin, p, in S1. `R` turns vectors of S1 into S2, `P` is S1's
-    origin in S2; `qp` is the vector from S2's origin, q, to p, in S1; `r_p` is the lever of the force from p, `r_q`
-    from q.
+    origin in S2; `qp` is the vector from S2's origin, q, to p, in S1, `P_2` that from p to q; `r_p` is the lever of the
+    force from p, `r_q` from q.
     """
     R = BY_MODEL.pose(generator.uniform(-np.pi, np.pi, (count, JOINTS)))[:, :3, :3]
     P, F, lever = (generator.uniform(-size, size, (count, 3)) for size in (100, 20, 80))
     qp = along(R.transpose(0, 2, 1), P)
-    return {"R": R, "P": P, "F": F, "r_p": lever, "r_q": lever + qp, "qp": qp, "M_p": np.cross(lever, F)}
+    return {"R": R, "P": P, "F": F, "r_p": lever, "r_q": lever + qp, "qp": qp, "P_2": -qp, "M_p": np.cross(lever, F)}
 
 
 def by_lever(values: Symbols) -> Elements:
@@ -51,11 +51,6 @@ def composed(values: Symbols) -> Elements:
     turn = shift.copy()
     shift[:, :3, 3], turn[:, :3, :3] = values["P"], values["R"]
     return {"T": shift @ turn}
-
-
-def inverted_origin(values: Symbols) -> Elements:
-    """Return -R times the origin of S2 in S1, -qp."""
-    return {"P": -along(values["R"], -values["qp"])}
 
 
 def _by_vectors(values: Symbols) -> Elements:

@@ -38,10 +38,6 @@ def tip_column(s: Symbols) -> Elements:
 # Velocity.
 
 
-def _times_velocity(arm: Arm, rows: slice) -> Way:
-    return lambda s: {"v": along(by_model(arm.model).jacobian(arm.q(s))[:, rows], arm.dq(s))}
-
-
 def _velocity(arm: Arm, rows: slice) -> Truth:
     def by_motion(s: Symbols) -> Elements:
         q, dq, start = arm.q(s), arm.dq(s), np.zeros((len(s["q1"]), 1))
@@ -56,9 +52,6 @@ def _velocity(arm: Arm, rows: slice) -> Truth:
 
 macro_twist = _velocity(MACRO, slice(0, 6))
 macro_velocity, mini_velocity = _velocity(MACRO, slice(0, 3)), _velocity(MINI, slice(0, 3))
-macro_times_velocity = _times_velocity(MACRO, slice(0, 6))
-macro_linear_times_velocity = _times_velocity(MACRO, slice(0, 3))
-mini_linear_times_velocity = _times_velocity(MINI, slice(0, 3))
 
 
 # The general formulas, on the Macro.

@@ -53,14 +53,6 @@ mini_step_1, mini_step_2, mini_step_3 = (_truth(model_step, Arm.step, MINI, link
 macro_frame_2, mini_frame_2 = (_truth(model_frame, Arm.frame, arm, 2) for arm in (MACRO, MINI))
 
 
-def _chained(arm: Arm) -> Way:
-    return lambda s: {"T": product([model_step(arm, link, arm.q(s)) for link in (1, 2, 3)])}
-
-
-macro_product, mini_product = _chained(MACRO), _chained(MINI)
-"""(3.1) and (4.1): the three steps of an arm one after the other."""
-
-
 def _any_link(s: Symbols) -> FloatArray:
     T = np.tile(np.eye(4), (len(s["theta"]), 1, 1))
     T[:, :3, :3] = Rotation.from_euler("ZX", np.column_stack([s["theta"], s["alpha"]])).as_matrix()

@@ -4,10 +4,12 @@ from itertools import combinations
 
 import numpy as np
 
-from runner.audit.truth import Elements, Symbols, Truth, along, coordinates, product, rotation
+from runner.audit.model_truths import by_model
+from runner.audit.truth import Elements, Symbols, Truth, coordinates, product, rotation
 from runner.base.arrays import FloatArray
+from runner.studies.thesis.equations.truths import thesis
 from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, GRAVITY, MACRO, MINI, Arm
-from runner.studies.thesis.equations.truths.thesis_kinematics import tip_pose
+from runner.studies.thesis.equations.truths.thesis_kinematics import model_step, tip_pose
 
 _BASE_OF_MINI = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # 3_R_3', from the Mini's base
 
@@ -89,6 +91,31 @@ macro_reach, mini_reach = _reach(MACRO), _reach(MINI)
 macro_home, mini_home, combined_home = _at_home(MACRO), _at_home(MINI), _at_home(COMBINED)
 
 
+# What equations of transforms, velocities and points name.
+
+
+def symbols(count: int, generator: np.random.Generator) -> Symbols:
+    """Return random states as `thesis.symbols` does, with the vectors and matrices of both arms.
+
+    `T_01` to `T_2E` and `T_34` to `T_56` are the transforms of the links, `J` is the Jacobian of the Macro, `J_Mv` and
+    `J_mv` are the linear ones, `dq_M` and `dq_m` joint velocities. The tip is at `x_d` and the end of the Macro at
+    `x_E`, both in frame 0; `r` is the tip in frame 3, whose turn is `R_03`.
+    """
+    s = thesis.symbols(count, generator)
+    q_M, q_m = MACRO.q(s), MINI.q(s)
+    names = (("T_01", "T_12", "T_2E"), ("T_34", "T_45", "T_56"))
+    steps = {
+        name: model_step(arm, link, q)
+        for arm, q, row in zip((MACRO, MINI), (q_M, q_m), names, strict=True)
+        for link, name in enumerate(row, start=1)
+    }
+    J, J_m = by_model(MACRO.model).jacobian(q_M), by_model(MINI.model).jacobian(q_m)
+    rates = {"J": J, "J_Mv": J[:, :3], "J_mv": J_m[:, :3], "dq_M": MACRO.dq(s), "dq_m": MINI.dq(s)}
+    points = {"x_d": tip_pose(COMBINED, COMBINED.q(s)), "x_E": tip_pose(MACRO, q_M), "r": tip_pose(MINI, q_m)}
+    moved = {name: pose[:, :3, 3] for name, pose in points.items()}
+    return {**s, **steps, **rates, **moved, "R_03": base_of_mini(q_M)}
+
+
 # Joint axes, and the frame between the arms.
 
 
@@ -136,24 +163,7 @@ def base_of_mini(q: FloatArray) -> FloatArray:
     return np.asarray(tip_pose(MACRO, q)[:, :3, :3] @ _BASE_OF_MINI)
 
 
-def difference_in_base_frame(s: Symbols) -> Elements:
-    """Return tip minus Macro end point, both in frame 0, section 5.2."""
-    tip, wrist = tip_pose(COMBINED, COMBINED.q(s)), tip_pose(MACRO, MACRO.q(s))
-    return {"r": tip[:, :3, 3] - wrist[:, :3, 3]}
-
-
-def difference_in_frame_3(s: Symbols) -> Elements:
-    """Return the same turned into frame 3."""
-    return {"r": along(base_of_mini(MACRO.q(s)).transpose(0, 2, 1), difference_in_base_frame(s)["r"])}
-
-
 mini_offset = MINI.both(lambda d, s: {"r": d.pose(MINI.q(s))[:, :3, 3]})
-
-
-def path_of_macro(s: Symbols) -> Elements:
-    """Return tip minus Mini reference, expressed in the base frame, section 5.2."""
-    turned = along(base_of_mini(MACRO.q(s)), tip_pose(MINI, MINI.q(s))[:, :3, 3])
-    return {"x": tip_pose(COMBINED, COMBINED.q(s))[:, :3, 3] - turned}
 
 
 macro_end_point = MACRO.both(lambda d, s: {"x": d.pose(MACRO.q(s))[:, :3, 3]})
