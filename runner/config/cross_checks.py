@@ -9,9 +9,8 @@ from runner.config.run import RunConfig
 from runner.controllers import Loop
 from runner.controllers.force.hybrid_force import HybridForceConfig
 from runner.plants import PLANTS, PlantConfig
-from runner.plants.computation import EXACT, ComputationConfig
 from runner.plants.decoupled import TorquePlantConfig
-from runner.plants.kinds import ComputesLate
+from runner.plants.kinds import options_of
 from runner.sensing.endpoint import EndpointTicks
 
 
@@ -37,18 +36,13 @@ def check_schedule(config: RunConfig) -> None:
 _MAX_TICKS = 10_000_000
 
 
-def computation_of(plant: PlantConfig) -> ComputationConfig:
-    """Return the computation between control laws and joints; a plant without such a key has no delay."""
-    return plant.computation if isinstance(plant, ComputesLate) else EXACT
-
-
 def count_late(plant: PlantConfig, loops: Sequence[Loop]) -> tuple[int, ...]:
     """Return the delay of the commands of each loop, in ticks of the fastest loop, without jitter.
 
     Raises:
         ConfigError: for a mapping that names other loops, or a delay longer than any run.
     """
-    late = computation_of(plant).by_loop([loop.name for loop in loops])
+    late = options_of(plant).computation.by_loop([loop.name for loop in loops])
     if max(late) > _MAX_TICKS:
         raise ConfigError(f"plant.computation.delay: {max(late)} ticks found; allowed: up to {_MAX_TICKS}")
     return tuple(late)
@@ -60,7 +54,7 @@ def check_computation(config: RunConfig) -> None:
     Raises:
         ConfigError: if joint positions have them, or the pattern is too long.
     """
-    computation, timing, key = computation_of(config.plant), config.timing, "plant.computation"
+    computation, timing, key = options_of(config.plant).computation, config.timing, "plant.computation"
     if computation.is_even:
         return
     problems = []

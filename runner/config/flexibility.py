@@ -7,9 +7,8 @@ from runner.config.run import RunConfig
 from runner.controllers.joint_space.motor_pd import MotorPdConfig
 from runner.plants import Plant
 from runner.plants.decoupled import TorquePlantConfig, find_motion
-from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, MotorSide, links_of
-from runner.plants.kinds import HasFlexibleJoints
+from runner.plants.kinds import options_of
 from runner.plants.plant import unwrapped
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
 from runner.robots.chain import stiffen_robot
@@ -25,13 +24,8 @@ def find_flexibility(config: RunConfig) -> Flexibility | None:
     Raises:
         ConfigError: see FlexibleJointsConfig.by_joint.
     """
-    joints = _flexible_joints(config)
+    joints = options_of(config.plant).flexible_joints
     return None if joints is None else joints.by_joint(config.arm)
-
-
-def _flexible_joints(config: RunConfig) -> FlexibleJointsConfig | None:
-    """Return the config of flexible joints; None for rigid joints."""
-    return config.plant.flexible_joints if isinstance(config.plant, HasFlexibleJoints) else None
 
 
 def with_nominal_motors(config: RunConfig, nominal: Robot) -> Robot:
@@ -45,7 +39,7 @@ def with_nominal_motors(config: RunConfig, nominal: Robot) -> Robot:
 
 def find_motor_side(config: RunConfig, plant: Plant, nominal: Robot) -> MotorSide | None:
     """Return the motor-side model of drives and encoders; None for rigid joints."""
-    springs, joints = unwrapped(plant), _flexible_joints(config)
+    springs, joints = unwrapped(plant), options_of(config.plant).flexible_joints
     if not isinstance(springs, FlexibleJoints):
         return None
     known = joints is not None and joints.static_deflection == "known"
@@ -107,7 +101,7 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
         problems.append("the payload cannot change on the way; take robot.payload.schedule=[]")
     if isinstance(config.joint_torque_sensor, JointTorqueNoise):
         problems.append("torque sensors are read at rigid joints; take joint_torque_sensor.noise=null")
-    joints = _flexible_joints(config)
+    joints = options_of(config.plant).flexible_joints
     theta = joints is not None and joints.encoders == "motor" and joints.static_deflection == "unknown"
     if isinstance(config.controller, MotorPdConfig) and not theta:
         problems.append(

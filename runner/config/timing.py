@@ -9,7 +9,7 @@ from runner.config.arms import RobotOutline
 from runner.config.settings import RunSettings
 from runner.controllers import CONTROLLERS, ControllerConfig
 from runner.plants import PLANTS, PlantConfig
-from runner.plants.kinds import HasServo
+from runner.plants.kinds import options_of
 from runner.schema.values import by_stage
 from runner.trajectories import Trajectory
 
@@ -60,17 +60,17 @@ def count_steps(arm: RobotOutline, plant: PlantConfig, controller: ControllerCon
     """
     periods = _periods(arm, controller.period)
     slowest = max(periods.values())
-    servo = plant.servo.period if isinstance(plant, HasServo) and PLANTS.commands(plant.kind) == "torque" else None
+    servo = options_of(plant).servo if PLANTS.commands(plant.kind) == "torque" else None
     if servo is not None and CONTROLLERS.commands(controller.kind) == "position":
-        periods = {"plant.servo.period": servo, **periods}
+        periods = {"plant.servo.period": servo.period, **periods}
     fastest = min(periods, key=lambda name: periods[name])
     tick = periods[fastest]
     step = PLANTS.features(plant.kind).default_step(tick, len(arm.stages)) if plant.step is None else plant.step
     problems = []
     if fastest != "plant.servo.period" and "plant.servo.period" in periods:
         problems.append(
-            f"plant.servo.period: {servo:g} s is longer than controller.period, {slowest:g} s; the servo "
-            "must be as fast as its commands, or faster"
+            f"plant.servo.period: {periods['plant.servo.period']:g} s is longer than controller.period, {slowest:g} s; "
+            "the servo must be as fast as its commands, or faster"
         )
     problems += [
         f"{name}: {period:g} s is no multiple of the fastest loop's, {fastest} with {tick:g} s"

@@ -16,7 +16,6 @@ from runner.config.cross_checks import (
     check_observer,
     check_reading,
     check_schedule,
-    computation_of,
     count_late,
     endpoint_ticks,
 )
@@ -32,7 +31,7 @@ from runner.config.settings import TorqueLimitsConfig
 from runner.config.timing import Steps, Timing, count_steps, count_ticks
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig
-from runner.plants.kinds import HasServo, RotatesMountedBase
+from runner.plants.kinds import options_of
 from runner.plugins.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig
 from runner.robots.robot import Robot, end_points
@@ -102,14 +101,14 @@ def _build(groups: Parts, arm: Robot, steps: Steps, problems: Problems) -> Parts
     path = problems.attempt(_shape, groups, arm, path, loops)
     build_path(check_path, arm, path)
     ticks = problems.attempt(count_ticks, groups["settings"], steps, path)
-    late = problems.recall(count_late, plant, loops)
+    late, even = problems.recall(count_late, plant, loops), options_of(plant).computation.is_even
     problems.report()
     return {
         "arm": arm,
         "loops": loops,
         "commands": CONTROLLERS.commands(controller.kind),
         "path": path,
-        "timing": Timing(**vars(steps), late=require(late), even=computation_of(plant).is_even, ticks=require(ticks)),
+        "timing": Timing(**vars(steps), late=require(late), even=even, ticks=require(ticks)),
         "ignore_base_rotation": ignore_base_rotation,
     }
 
@@ -160,7 +159,7 @@ def _check_commands(plant: PlantConfig, controller: ControllerConfig) -> None:
             f"plant.kind: {plant.kind} follows joint positions, and {controller.kind} gives torques; take plant="
             f"{' or plant='.join(fit)}, or a controller that commands joint positions"
         )
-    if given == "position" and taken == "torque" and not isinstance(plant, HasServo):
+    if given == "position" and taken == "torque" and options_of(plant).servo is None:
         raise ConfigError(
             f"plant.kind: {plant.kind} takes torques and has no servo, and {controller.kind} commands joint "
             "positions; take another plant or controller"
@@ -179,8 +178,7 @@ def _check_mass(arm: Robot, plant: PlantConfig) -> None:
 
 
 def _ignores_base_rotation(arm: Robot, plant: PlantConfig) -> bool:
-    turns = plant.wrist_rotation if isinstance(plant, RotatesMountedBase) else "real"
-    return len(arm.stages) > 1 and turns == "parallel"
+    return len(arm.stages) > 1 and options_of(plant).wrist_rotation == "parallel"
 
 
 def _build_path(arm: Robot, trajectory: KindConfig, ignore_base_rotation: bool) -> Trajectory:

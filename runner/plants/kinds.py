@@ -3,17 +3,17 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any, Literal, Protocol, runtime_checkable
+from typing import Any, Literal, Protocol
 
 import numpy as np
 
 from runner.base import engines
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, SimulationError
-from runner.plants.computation import ComputationConfig
+from runner.plants.computation import EXACT, ComputationConfig
 from runner.plants.decoupled import Motion
 from runner.plants.flexible_config import FlexibleJointsConfig
-from runner.plants.plant import Plant, unwrapped
+from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
 from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Asked, Attribute, Guard, Method, checked, refuse
@@ -31,39 +31,28 @@ class PlantConfig(KindConfig, Protocol):
         ...
 
 
-@runtime_checkable
-class RotatesMountedBase(Protocol):
-    """A plant config with a choice of base rotation; without it, the base stage rotates the mounted stage's base."""
+@dataclass(frozen=True)
+class PlantOptions:
+    """Optional keys of a plant's config, with the values for a config without them.
 
-    wrist_rotation: Literal["real", "parallel"]
+    Attributes:
+        wrist_rotation: Whether the base stage rotates the base of the mounted stage.
+        computation: Delay and misses of commands.
+        flexible_joints: Springs between motors and links; None for rigid joints.
+        servo: Position servos of a torque plant, for controllers that command joint positions; None without servos.
+        in_place_of: Missing kind that the plant replaces; None if no kind is missing.
+    """
 
-
-@runtime_checkable
-class ComputesLate(Protocol):
-    """A plant config with computation delay; without it, commands act at once."""
-
-    computation: ComputationConfig
-
-
-@runtime_checkable
-class HasFlexibleJoints(Protocol):
-    """A plant config with optional springs between motors and links; None for rigid joints."""
-
-    flexible_joints: FlexibleJointsConfig | None
+    wrist_rotation: Literal["real", "parallel"] = "real"
+    computation: ComputationConfig = EXACT
+    flexible_joints: FlexibleJointsConfig | None = None
+    servo: ServoConfig | None = None
+    in_place_of: str | None = None
 
 
-@runtime_checkable
-class HasServo(Protocol):
-    """A torque plant config with position servos, for controllers that command joint positions."""
-
-    servo: ServoConfig
-
-
-@runtime_checkable
-class IsFallback(Protocol):
-    """A plant config that may replace a missing kind; None if no kind is missing."""
-
-    in_place_of: str | None
+def options_of(config: PlantConfig) -> PlantOptions:
+    """Return the optional keys of a plant's config."""
+    return read_features(PlantOptions, config)
 
 
 @dataclass(frozen=True)
@@ -104,6 +93,13 @@ def _check_wrench(answer: Any, asked: Asked) -> FloatArray | None:
     return None if answer is None else checked(answer, (6,), asked)
 
 
+def _innermost(part: Any) -> Any:
+    """Return the user-supplied plant that moves the arm, inside all wrappers, also those without a base class."""
+    while hasattr(part, "plant"):
+        part = part.plant
+    return part
+
+
 GUARD = Guard(
     "plant",
     Plant,
@@ -115,9 +111,9 @@ GUARD = Guard(
     set_gravity=Method(),
     advance=Method(),
     close=Attribute(),
-    add_wall=Method(lambda answer, *_: answer is not False, optional=True, owner=unwrapped, fail=refuse),
-    contact_wrench=Method(_check_wrench, optional=True, owner=unwrapped),
-    tool_reaction=Method(_check_wrench, optional=True, owner=unwrapped),
+    add_wall=Method(lambda answer, *_: answer is not False, optional=True, owner=_innermost, fail=refuse),
+    contact_wrench=Method(_check_wrench, optional=True, owner=_innermost),
+    tool_reaction=Method(_check_wrench, optional=True, owner=_innermost),
 )
 """Checks of a user-supplied plant."""
 
@@ -159,6 +155,7 @@ class Plants(Registry[PlantConfig, [Robot, float, int], Plant]):
         """Return the modes of a built-in plant about a configuration, motors held; none if it is rigid."""
         if not self.is_ours(config.kind):
             return []
-        if isinstance(config, HasFlexibleJoints) and config.flexible_joints is not None:
-            return config.flexible_joints.modes(robot, q)
+        joints = options_of(config).flexible_joints
+        if joints is not None:
+            return joints.modes(robot, q)
         return self.features(config.kind).modes(config, robot, q)

@@ -1,8 +1,7 @@
 """Optional members of the module of a kind, with their defaults."""
 
 from dataclasses import dataclass, fields
-from types import ModuleType
-from typing import Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
 Commands = Literal["torque", "position"]
 """Command from a controller to a plant: joint torques or joint positions."""
@@ -19,10 +18,11 @@ class Features:
     COMMANDS: Commands = "torque"
 
 
-F = TypeVar("F", bound=Features)
+F = TypeVar("F", bound=Any)
 
 
-def read_features(of_group: type[F], module: ModuleType) -> F:
-    """Return the optional members of a module."""
-    own = vars(module)
-    return of_group(**{field.name: own[field.name] for field in fields(of_group) if field.name in own})
+def read_features(of_group: type[F], part: object) -> F:
+    """Return the optional members of a module or a config, as a dataclass with their defaults."""
+    own = vars(part)
+    found: F = of_group(**{field.name: own[field.name] for field in fields(of_group) if field.name in own})
+    return found

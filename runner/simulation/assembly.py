@@ -18,7 +18,7 @@ from runner.environments.external_wrench import Interaction
 from runner.environments.wall import Wall
 from runner.metrics import MetricContext
 from runner.plants import PLANTS, Plant
-from runner.plants.kinds import HasServo
+from runner.plants.kinds import options_of
 from runner.plants.servo import JointServo
 from runner.plants.wrappers import PayloadChanges, WithTipContact
 from runner.robots.mismatch import MISMATCHES
@@ -167,12 +167,14 @@ def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall 
     if PLANTS.commands(config.plant.kind) == "position":
         return PLANTS.build(config.plant, arm, timing.tick, ticks_per_command)
     plant = _make_torque_plant(config) if touched is None else _make_touched_plant(config, touched)
-    if config.commands == "torque" or not isinstance(config.plant, HasServo):
+    servo = options_of(config.plant).servo
+    if config.commands == "torque" or servo is None:
         return plant
     with ExitStack() as on_error:
         on_error.callback(plant.close)
-        servo, limits = config.plant.servo, config.torque_limits
-        driven = JointServo(plant, nominal.model, servo, arm.home, limits, ticks_per_command, timing.late[0])
+        driven = JointServo(
+            plant, nominal.model, servo, arm.home, config.torque_limits, ticks_per_command, timing.late[0]
+        )
         on_error.pop_all()
     return driven
 

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.config.cross_checks import computation_of, endpoint_ticks
+from runner.config.cross_checks import endpoint_ticks
 from runner.config.run import RunConfig
 from runner.controllers.controller import ControlLaw
 from runner.plants import Plant
+from runner.plants.kinds import options_of
 from runner.plugins.registry import KindConfig
 from runner.robots.model import RobotModel
 from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, Encoders, TorqueSensors, WristSensor
@@ -156,7 +157,7 @@ def make_command_timing(closed: ClosedLoop, config: RunConfig, repetition: int) 
     """
     if closed.delay is not None:
         return None
-    computation, seed = computation_of(config.plant), config.settings.seed
+    computation, seed = options_of(config.plant).computation, config.settings.seed
     rows = [
         computation.arrivals(
             late, closed.every(loop), closed.ticks + 1, np.random.default_rng([seed, repetition, COMPUTATION, place])

@@ -14,7 +14,7 @@ from runner.controllers.kinds import CommandsForce
 from runner.controllers.stability import touch_radius
 from runner.environments.wall import WallConfig
 from runner.plants import PLANTS
-from runner.plants.kinds import HasServo
+from runner.plants.kinds import options_of
 from runner.plants.servo import ServoLaw
 from runner.plants.servo_contact_stability import ServoContact
 from runner.robots.task_space import mass_along, tip_mobility
@@ -29,8 +29,8 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
         q_start: Joint positions at the start, shape (nq,), in rad.
     """
     plant, law, wall, timing = config.plant, config.controller, config.environment, config.timing
-    sensor = config.wrist_sensor
-    if not isinstance(wall, WallConfig) or not isinstance(law, CommandsForce) or not isinstance(plant, HasServo):
+    servo, sensor = options_of(plant).servo, config.wrist_sensor
+    if not isinstance(wall, WallConfig) or not isinstance(law, CommandsForce) or servo is None:
         return None
     if PLANTS.commands(plant.kind) != "torque" or config.commands != "position" or len(config.arm.stages) > 1:
         return None
@@ -40,13 +40,13 @@ def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None
     return ServoContact(
         arm=config.arm,
         q=q_start,
-        servo=ServoLaw(config.arm.model, plant.servo, config.arm.home),
+        servo=ServoLaw(config.arm.model, servo, config.arm.home),
         step=timing.step,
         steps=timing.steps_per_tick,
         tick=timing.tick,
         ticks=round(law.period / timing.tick),
         delay=timing.late[0],
-        interpolate=plant.servo.interpolate,
+        interpolate=servo.interpolate,
         implicit=PLANTS.features(plant.kind).IMPLICIT_CONTACT,
         law=law.law,
         at_tip=law.wrench_frame == "tip",

@@ -85,7 +85,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
     from runner.metrics.caveats.contact_stability import force_contact, servo_contact
     from runner.metrics.caveats.mjcf import left_out_of
     from runner.metrics.caveats.time_constants import slowest_part
-    from runner.plants.kinds import IsFallback
+    from runner.plants.kinds import options_of
 
     model = config.arm.model
     units, position_limits, mass = _of_model(model)
@@ -109,7 +109,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         noise=config.encoder_noise,
         mismatch=config.model_error,
         mass=mass,
-        in_place_of=config.plant.in_place_of if isinstance(config.plant, IsFallback) else None,
+        in_place_of=options_of(config.plant).in_place_of,
         contact=None if q_start is None else servo_contact(config, q_start),
         touch=None if q_start is None else force_contact(config, q_start),
         velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,

@@ -1,10 +1,12 @@
 """Plants from outside the package: each part that they may offer, and its use by the loop."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from runner.plants.kinds import GUARD
 from runner.store import open_run
 
 TORQUE_PLANT = """
@@ -201,3 +203,11 @@ def test_a_config_says_whether_bases_turn_and_where_it_does_not_they_do(own_part
         tips[plant[-1]] = open_run(ending.folder).trace()["tip_x"].to_numpy()
     np.testing.assert_array_equal(tips["plant=silent"], tips["plant=turning"])
     assert np.abs(tips["plant.wrist_rotation=parallel"] - tips["plant=turning"]).max() > 1e-4
+
+
+def test_walls_reach_the_plant_inside_a_wrapper_without_a_base_class():
+    walls = []
+    inside = SimpleNamespace(q=np.zeros(1), dq=np.zeros(1), add_wall=lambda *given: walls.append(given))
+    guarded = GUARD(SimpleNamespace(plant=inside, q=inside.q, dq=inside.dq))
+    assert guarded.add_wall(np.zeros(3), np.ones(3), 1.0, 2.0) is True
+    assert len(walls) == 1

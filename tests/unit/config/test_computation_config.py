@@ -1,12 +1,15 @@
 """Computation delay of loops: delays in ticks, patterns of misses, and what takes none."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
-from runner.config.cross_checks import computation_of, count_late
+from runner.config.cross_checks import count_late
 from runner.config.validation import validate
 from runner.plants.computation import EXACT
+from runner.plants.kinds import options_of
 
 ARM = ("robot=macro", "trajectory=goal", "duration=0.1")
 
@@ -23,7 +26,7 @@ def test_commands_act_as_many_ticks_late_as_the_key_says(delay):
 
 
 def test_a_plant_without_the_key_takes_commands_at_once():
-    assert computation_of(object()) is EXACT
+    assert options_of(SimpleNamespace()).computation is EXACT
     assert EXACT.is_even
 
 
