@@ -23,6 +23,8 @@ _LAWS = {
     "sliding_mode": ("robot=macro", "controller=sliding_mode"),
     "whole_body": ("robot=combined", "controller=whole_body"),
     "macro_mini": ("robot=combined", "controller=macro_mini"),
+    "impedance": ("robot=macro", "controller=impedance"),
+    "hybrid_force": ("robot=macro", "controller=hybrid_force"),
     "differential_inverse_kinematics": ("robot=xarm7", "controller=differential_inverse_kinematics"),
     "admittance": ("robot=meca500", "controller=admittance"),
 }
