@@ -1,4 +1,4 @@
-"""What is compiled, as a table for docs/reference.md: each case is assembled, and the code is asked."""
+"""Table of compiled laws and options for docs/reference.md, from assembled runs."""
 
 from collections.abc import Iterator
 
@@ -40,22 +40,22 @@ _CASES = {
     "several steps a tick": ("plant.step=0.005",),
     "viscous and dry friction": ("plant.friction.viscous=1", "plant.friction.coulomb=1"),
     "a payload": ("robot.payload.mass=0.5",),
-    "beliefs drawn for each repetition": ("mismatch.mass=1.1", "mismatch.spread=0.1"),
+    "a model error drawn for each repetition": ("mismatch.mass=1.1", "mismatch.spread=0.1"),
     "loops of several periods": (
         "robot=combined",
         "controller=macro_mini",
         "controller.period={macro: 0.01, mini: 0.001}",
     ),
-    "stages that do not feel each other": ("robot=combined", "controller=whole_body", "plant.dynamics=decoupled"),
+    "stages with decoupled dynamics": ("robot=combined", "controller=whole_body", "plant.dynamics=decoupled"),
     "a push": ("environment=push",),
     "a hand": ("environment=hand_guiding",),
 }
 _HEAD = """\
-On arms of up to 12 joints, where llvmlite is installed. A *whole run* is machine code from the first tick to the last,
-and advances together with others that differ in numbers alone: repetitions, seeds, gains, limits, noise, masses, goals,
-durations. *The law*: machine code gives the torques, in a loop of Python. *Python*: nothing is compiled. The config
-alone decides; where metrics of yours are installed, whole runs advance one by one. For laws and plants of yours see
-[controllers](plugins.md#controller) and [plants](plugins.md#plant).
+Code is compiled for arms of up to 12 joints if llvmlite is installed. A *whole run* is machine code, and runs that
+differ only in numbers advance together: repetitions, seeds, gains, limits, noise, masses, goals, durations. *The law*:
+only the torques are machine code, in a Python loop. *Python*: nothing is compiled. Only the config determines this.
+With installed metric plug-ins whole runs advance one by one. See also [compiled laws](plugins.md#a-compiled-law) and
+[plants](plugins.md#plant).
 
 """
 _BASE = ("robot=macro", "controller=operational_space", "trajectory=quintic")
@@ -68,7 +68,7 @@ def compiled_section() -> Iterator[str]:
     yield f"| Controller | {' | '.join(f'`plant={plant}`' for plant in plants)} |\n|---|---|---|\n"
     for name, overrides in _LAWS.items():
         yield f"| `{name}` | {' | '.join(_compiled(*overrides, f'plant={plant}') for plant in plants)} |\n"
-    yield "\n`operational_space` on `plant=rk4`, or what the line names, with\n\n| | |\n|---|---|\n"
+    yield "\n`operational_space` on `plant=rk4`, or the options of the line, with\n\n| | |\n|---|---|\n"
     for name, overrides in _CASES.items():
         own = {text.partition("=")[0]: text for text in (*_BASE, "plant=rk4", *overrides)}
         yield f"| {name} | {_compiled(*own.values())} |\n"

@@ -38,22 +38,21 @@ _HEAD = """\
 
 All config keys, metrics and commands. Made by `python -m tools.docs.reference` from the models: do not edit.
 
-Units are SI, angles in rad; a joint that slides counts in m where one that turns counts in rad. A default such as
-`${robot.period}` is the value of another key. "By stage" means: one value for a robot of one arm; for a robot of
-several a mapping with one for each. A number other than 0 lies between 1e-12 and 1e12 in magnitude (one of a list may
-be smaller), a name has at most 200 characters.
+Units are SI, angles in rad; prismatic joints use m instead of rad. A default such as `${robot.period}` is the value
+of another key. "By stage" means one value for a robot of one arm, and a mapping with one for each stage of several
+arms. The magnitude of a number other than 0 is between 1e-12 and 1e12 (a number in a list may be smaller). A name has
+at most 200 characters.
 
 ## Units
 
-A number may have its unit behind it, in YAML and on the command line: `controller.period=20ms`,
-`robot.home=[0,-30deg,90deg]`, `noise.position=0.1deg`, `controller.period=interval(5ms,50ms)` to `runner tune`. It is
-stored as the number in SI units, in the config of a run and on the axes of a sweep: `controller.period=0.02` is the
-same run. A unit that does not fit its key is refused, and so is any unit where a key has none. Signs that a shell or
-Hydra reads otherwise stand in quotes: `"gravity='9.8m/s^2'"`. A key of joints takes angles where a joint turns and
-lengths where it slides; one value for joints of both kinds has no unit. A plug-in's key has the unit of its type in the
-config, as in `reach: Metres[PositiveFloat]`; `runner.schema.units` has these types.
+A number may have a unit, in YAML and on the command line: `controller.period=20ms`, `robot.home=[0,-30deg,90deg]`,
+`noise.position=0.1deg`, or `controller.period=interval(5ms,50ms)` for `runner tune`. The config and the axes of a
+sweep store the number in SI units, so `controller.period=0.02` is the same run. `runner` rejects a unit that does not
+fit its key. Quote characters that the shell or Hydra interprets: `"gravity='9.8m/s^2'"`. A key of joints takes angles
+for revolute joints and lengths for prismatic ones; one value for both kinds has no unit. A plug-in's key has the unit
+of its type, such as `reach: Metres[PositiveFloat]`; `runner.schema.units` has these types.
 
-| A key in | may be written in |
+| Unit of the key | Accepted units |
 |---|---|
 """
 _OPTION = {"input_shaper": "zv", "notch": "torques", "preset": "full_equations", "wrist_sensor": "ideal"}
@@ -69,7 +68,7 @@ def reference_text() -> str:
         *_units(),
         "## Keys\n\n",
         *_keys(),
-        "## What is compiled\n\n",
+        "## Compiled code\n\n",
         *compiled_section(),
         "## Metrics\n\n",
         *_metrics(),
@@ -90,17 +89,17 @@ def _units() -> Iterator[str]:
 def _keys() -> Iterator[str]:
     yield "### At the root\n\n"
     yield _table("", RunSettings, _read("run"))
-    yield "Of a sweep, `runner -m`:\n\n"
+    yield "For sweeps, `runner -m`:\n\n"
     yield _table("sweep", SweepConfig, _read("run")["sweep"])
     yield "".join(_sweeper())
-    yield "Of [caveats](caveats.md), why a result may mislead:\n\n"
+    yield "For [warnings](caveats.md) that a result may mislead:\n\n"
     yield _table("caveats", CaveatsConfig, _read("caveats")["caveats"])
-    yield "Of `runner calibrate`:\n\n"
+    yield "For `runner calibrate`:\n\n"
     yield _table("", CalibrationSettings, _read("calibrate"))
     yield "### robot\n\n" + _options("robot")
     defaults = _read("robot_defaults")["robot"]
     yield _table("robot", OneArmConfig, defaults)
-    yield "A robot of arms that ride on each other has `robot.stages.NAME` for each in place of an arm's own keys:\n\n"
+    yield "A robot of several arms has `robot.stages.NAME` for each, instead of the keys of one arm:\n\n"
     yield _table("robot.stages.NAME", StageConfig, {**defaults, "mount": None})
     kinds = {group: known for group, known in GROUPS.items() if isinstance(known, Kinds) and known.default is None}
     for group, registry in {**kinds, "calibration": CALIBRATIONS}.items():
@@ -116,12 +115,12 @@ def _keys() -> Iterator[str]:
         yield f"### {group}\n\n{_options(group)}Defaults are those of `{group}={option}`.\n\n"
         yield _table(group, model, _read(f"{group}/{option}"))
     yield "### spec\n\n" + _options("spec")
-    yield "[Bounds](how_sure.md) on metrics: of each as many as are wanted, by the metric's name.\n\n"
+    yield "[Bounds](how_sure.md) on metrics, by the metric's name.\n\n"
     yield _table("spec.metrics.NAME", Bound, {name: field.default for name, field in Bound.model_fields.items()})
 
 
 def _sweeper() -> Iterator[str]:
-    """Yield the keys of Hydra's door to our sweeps, whose meanings stand in its file."""
+    """Yield the keys of the sweeper, with the comments of its file as meanings."""
     text = (conf_dir() / "hydra" / "sweeper" / "runner.yaml").read_text(encoding="utf-8")
     yield "| Key | Meaning | Default |\n|---|---|---|\n"
     for name, default, meaning in re.findall(r"^([a-z]\w*): +(\S+) +# (.+)$", text, re.M):
@@ -209,7 +208,7 @@ def _bullets(docstring: str) -> dict[str, str]:
 
 
 def _chapters() -> Iterator[str]:
-    yield "What a chapter of a [study](paper.md) may call. `runs` is filled in.\n\n| Call | Gives |\n|---|---|\n"
+    yield "Functions for chapters of a [study](paper.md). `runs` is filled in.\n\n| Call | Result |\n|---|---|\n"
     for module in SHARED:
         for name, function in public_functions(module).items():
             call = f"{name}{_signature(function)}"
