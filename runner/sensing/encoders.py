@@ -40,6 +40,11 @@ class EncoderNoise:
     velocity: Velocity
     velocity_bandwidth: float = DEFAULT_BANDWIDTH
 
+    def round(self, positions: FloatArray) -> None:
+        """Round positions, shape (..., nq), to the resolution in place."""
+        some = self.resolution > 0.0
+        positions[..., some] = np.round(positions[..., some] / self.resolution[some]) * self.resolution[some]
+
 
 class NoiseConfig(StrictModel):
     """Noise, bias and resolution of the joint encoders.
@@ -128,8 +133,7 @@ class JointEncoders:
     def __init__(self, ticks: int, period: float, noise: EncoderNoise, generator: np.random.Generator) -> None:
         self.errors: FloatArray = _errors([noise], ticks, [generator])[0]
         """Noise and bias of the joint positions at each tick, shape (ticks, nq), in rad."""
-        self._rounded = noise.resolution > 0.0
-        self._resolution = noise.resolution[self._rounded]
+        self._noise, self._rounded = noise, bool(noise.resolution.any())
         self._period = period
         self._way = noise.velocity
         self._gains = gains(noise.velocity, noise.velocity_bandwidth, period)
@@ -142,8 +146,8 @@ class JointEncoders:
         effect on it.
         """
         measured = q + self.errors[tick]
-        if len(self._resolution):
-            measured[self._rounded] = np.round(measured[self._rounded] / self._resolution) * self._resolution
+        if self._rounded:
+            self._noise.round(measured)
         if self._way == "exact":
             return measured, dq
         state = first_state(self._way, measured) if self._state is None else self._state

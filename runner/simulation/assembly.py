@@ -155,9 +155,7 @@ def _find_commands(config: RunConfig, loops: tuple[Loop, ...]) -> Commands | Non
     """Return the control loops for compilation; None if they cannot be compiled."""
     if config.commands != "torque" or not config.compilable or is_flexible(config):
         return None
-    return find_commands(
-        config.arm, config.ignore_base_rotation, loops, config.timing.tick, config.encoder_noise, config.torque_limits
-    )
+    return find_commands(config, loops)
 
 
 def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall | None = None) -> Plant:

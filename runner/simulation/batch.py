@@ -217,7 +217,7 @@ class BatchSimulator:
             tau=rows.command[own][:, acted],
             end_points=rows.end_points[:, own, : len(t)],
             desired=desired[: len(t)],
-            limits=np.array([runs[place].config.torque_limits for place in places]),
+            limits=np.array([runs[place].loop_program.commands.limits for place in places]),
             tick_seconds=np.full(len(t) - 1, seconds),
             **self.memory.recall(describe, config.arm, config.ignore_base_rotation),
         )

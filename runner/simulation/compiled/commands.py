@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
+from runner.config.run import RunConfig
 from runner.controllers.controller import Loop
 from runner.controllers.torque_law import TorqueLaw
 from runner.plugins.guard import Guarded, find_fault, place, unguarded
@@ -175,10 +176,9 @@ class Commands:
             errors: First errors of the positions that each loop measures, shape (runs, nq), in rad.
         """
         parts = [q, np.zeros_like(q)]
-        steps, some = self.noise.resolution[self._rounded], self._rounded
         for loop, wrong in zip(self.loops, errors, strict=True):
             measured = q + wrong
-            measured[:, some] = np.round(measured[:, some] / steps) * steps
+            self.noise.round(measured)
             parts += first_state(self.noise.velocity, measured)
             if len(loop.law.start(measured[0])):
                 parts.append(np.array([loop.law.start(own) for own in measured]))
@@ -267,24 +267,9 @@ class CompiledLoops:
                 raise fault
 
 
-def find_commands(
-    robot: Robot,
-    ignore_base_rotation: bool,
-    loops: Sequence[Loop],
-    tick: float,
-    noise: EncoderNoise,
-    limits: FloatArray,
-) -> Commands | None:
-    """Return control loops for compilation; None if one of them has no compiled form.
-
-    Args:
-        robot: The robot of the loops.
-        ignore_base_rotation: True if mounted stages keep their orientation at home.
-        loops: The loops.
-        tick: Time between two ticks, in s.
-        noise: Noise, bias and resolution of the encoders.
-        limits: Torque limits, shape (nq,), in N m; infinite without a limit.
-    """
+def find_commands(config: RunConfig, loops: Sequence[Loop]) -> Commands | None:
+    """Return the control loops of a run for compilation; None if one of them has no compiled form."""
+    limits, tick = config.torque_limits, config.timing.tick
     laws = [unguarded(loop.controller) for loop in loops]
     if not evaluator() or not all(isinstance(law, TorqueLaw) and law.compilable for law in laws):
         return None
@@ -299,7 +284,7 @@ def find_commands(
         for law, loop in zip(laws, loops, strict=True)
     ]
     guarded = any(isinstance(loop.controller, Guarded) for loop in loops)
-    return Commands(robot, ignore_base_rotation, tuple(codes), noise, limits, guarded)
+    return Commands(config.arm, config.ignore_base_rotation, tuple(codes), config.encoder_noise, limits, guarded)
 
 
 def compiled(commands: Commands | None) -> Commands | None:

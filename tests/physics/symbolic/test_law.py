@@ -207,7 +207,11 @@ def found(controller, joints=3):
     robot = SimpleNamespace(model=law.models[0], stages=(None,))
     exact = EncoderNoise(*np.zeros((3, joints)), "none", "exact")
     loop = Loop("whole", slice(0, joints), 0.01, controller)
-    return loops.find_commands(robot, False, [loop], 0.01, exact, np.full(joints, np.inf))
+    timing, limits = SimpleNamespace(tick=0.01), np.full(joints, np.inf)
+    config = SimpleNamespace(
+        arm=robot, ignore_base_rotation=False, timing=timing, encoder_noise=exact, torque_limits=limits
+    )
+    return loops.find_commands(config, [loop])
 
 
 def test_a_guarded_law_of_a_user_s_is_compiled_and_guarded_and_its_code_is_not_kept(code_cache):

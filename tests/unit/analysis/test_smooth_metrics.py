@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.analysis.sensitivity.smooth_metrics import WITHOUT, Change, derivatives
+from runner.analysis.sensitivity.smooth_metrics import WITHOUT, derivatives
 from runner.metrics import MetricContext, evaluate
+from runner.simulation.compiled.commands import Rows
 from runner.trajectories.motion import quintic_motion
 
 STEP, ROWS, PARAMETERS = 1e-6, 400, 2
@@ -22,7 +23,7 @@ def test_every_metric_that_is_not_left_out_has_the_derivative_of_its_differences
     context = MetricContext(trajectory, 1e-3, float(T[1]))
     trace = hand_made_trace(T, tip, trajectory.sample(T)[:, 0], q, dq, tau, units=units)
     scales = np.array([1.0, -0.3])[:, None, None]
-    change = Change(scales * d_q, scales * d_dq, scales * d_tau, (scales * d_tip)[None])
+    change = Rows(scales * d_q, scales * d_dq, scales * d_tau, None, (scales * d_tip)[None])
 
     def moved(size):
         return evaluate(
