@@ -106,6 +106,7 @@ def together(config, within, clock):
     ("measure", "plant", "duration", "before", "ticks"),
     [
         (together, "rk4", 0.05, ["repetitions asked for"], 15),
+        (together, "rk4", 1.0, ["repetitions asked for"], 15),
         (seconds_per_tick, "mujoco", 0.05, ["repetitions asked for", "assembled"], 6),
         (seconds_per_tick, "mujoco", 1.0, ["repetitions asked for", "assembled"], PROBED_TICKS + 1),
     ],
