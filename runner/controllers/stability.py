@@ -54,15 +54,10 @@ def critical_value(
 
 
 class VelocityLoop(NamedTuple):
-    """A sampled velocity loop relative to its stability limit.
+    """A sampled velocity loop relative to its stability limit."""
 
-    Attributes:
-        share: h lambda_max(M^-1 K_v) / 2; above 1 the loop is unstable.
-        coupling: lambda_max(M^-1 diag M) if K_v has a part proportional to diag M; else 1.
-    """
-
-    share: float
-    coupling: float
+    share: float  # h lambda_max(M^-1 K_v) / 2; above 1 the loop is unstable
+    coupling: float  # lambda_max(M^-1 diag M) if K_v has a part proportional to diag M; else 1
 
 
 def velocity_loop(loops: Sequence[Loop], arm: Robot, path: Trajectory) -> VelocityLoop | None:

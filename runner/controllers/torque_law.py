@@ -16,19 +16,12 @@ from runner.symbolic.maths import NUMPY, Array, Backend, Scalar
 
 
 class Tip(NamedTuple):
-    """State of the tip of an arm, in the base frame; valid until the arm computes the next one.
+    """State of the tip of an arm, in the base frame; valid until the arm computes the next one."""
 
-    Attributes:
-        x: Position, shape (3,), in m.
-        R: Rotation from the tip's frame, shape (3, 3).
-        J: Basic Jacobian, shape (6, nq), linear rows first.
-        dJ_dq: dJ/dt dq, shape (6,), in m/s^2 and rad/s^2.
-    """
-
-    x: Array
-    R: Array
-    J: Array
-    dJ_dq: Array  # noqa: N815 - as the papers write it
+    x: Array  # position, shape (3,), in m
+    R: Array  # rotation from the tip's frame, shape (3, 3)
+    J: Array  # basic Jacobian, shape (6, nq), linear rows first
+    dJ_dq: Array  # dJ/dt dq, shape (6,), in m/s^2 and rad/s^2  # noqa: N815 - as in the papers
 
 
 class Arm(Protocol):

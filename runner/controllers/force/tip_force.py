@@ -46,27 +46,16 @@ class TipForceConfig(StrictModel):
 
 
 class ForceTask(NamedTuple):
-    """Stage that exerts a force on the environment, and the loops of the stages below it.
-
-    Attributes:
-        robot: The robot.
-        name: Name of the last stage.
-        joints: Joints of the last stage or of the whole arm.
-        law: Law of its tip without a force.
-        base: Robot with the base of the stage as its tip; None if the whole arm exerts the force.
-        feedforward: True if the law uses the desired velocity and acceleration.
-        period: Time between two ticks of the law, in s.
-        below: Loops of the stages that keep its base on the path; empty if the whole arm exerts the force.
-    """
+    """Stage that exerts a force on the environment, and the loops of the stages below it."""
 
     robot: Robot
-    name: str
-    joints: slice
-    law: WholeBody
-    base: RobotModel | None
-    feedforward: bool
-    period: float
-    below: tuple[Loop, ...]
+    name: str  # name of the last stage
+    joints: slice  # joints of the last stage or of the whole arm
+    law: WholeBody  # law of its tip without a force
+    base: RobotModel | None  # robot with the base of the stage as its tip; None if the whole arm exerts the force
+    feedforward: bool  # True if the law uses the desired velocity and acceleration
+    period: float  # time between two ticks of the law, in s
+    below: tuple[Loop, ...]  # loops of the stages that keep its base on the path; empty for the whole arm
 
     def loops(self, controller: Controller, uses_wrench: bool) -> tuple[Loop, ...]:
         """Return the loops of the robot with a controller of the tip; it can use the wrist sensor."""
@@ -74,25 +63,15 @@ class ForceTask(NamedTuple):
 
 
 class TipMotion(NamedTuple):
-    """Motion of the tip for a force law, along the rows of the task.
+    """Motion of the tip for a force law, along the rows of the task."""
 
-    Attributes:
-        axes: Directions of the rows in the robot's base frame, shape (rows, 3).
-        error: Desired less actual position, shape (rows,), in m.
-        lag: Desired less actual velocity, shape (rows,), in m/s; the desired velocity is 0 without feedforward.
-        velocity: Velocity of the tip relative to the robot's base, shape (rows,), in m/s.
-        asked: F* of TipTask, shape (rows,), in m/s^2.
-        desired: Desired acceleration, shape (rows,), in m/s^2; 0 without feedforward.
-        mobility: Lambda^-1, shape (rows, rows), in 1/kg.
-    """
-
-    axes: Array
-    error: Array
-    lag: Array
-    velocity: Array
-    asked: Array
-    desired: Array
-    mobility: Array
+    axes: Array  # directions of the rows in the robot's base frame, shape (rows, 3)
+    error: Array  # desired less actual position, shape (rows,), in m
+    lag: Array  # desired less actual velocity, shape (rows,), in m/s; the desired velocity is 0 without feedforward
+    velocity: Array  # velocity of the tip relative to the robot's base, shape (rows,), in m/s
+    asked: Array  # F* of TipTask, shape (rows,), in m/s^2
+    desired: Array  # desired acceleration, shape (rows,), in m/s^2; 0 without feedforward
+    mobility: Array  # Lambda^-1, shape (rows, rows), in 1/kg
 
 
 N = TypeVar("N", bound=Any)  # a NamedTuple with the parameters of the WholeBody law and gravity, `law` and `gravity`

@@ -53,19 +53,12 @@ class JointMotionParameters(NamedTuple):
 
 
 class DesiredJoints(NamedTuple):
-    """The desired state of the joints at a tick.
+    """The desired state of the joints at a tick."""
 
-    Attributes:
-        q: Positions, shape (nq,), in rad.
-        dq: Velocities, shape (nq,), in rad/s.
-        ddq: Accelerations, shape (nq,), in rad/s^2.
-        period: Time between two ticks, in s.
-    """
-
-    q: Array
-    dq: Array
-    ddq: Array
-    period: Scalar
+    q: Array  # positions, shape (nq,), in rad
+    dq: Array  # velocities, shape (nq,), in rad/s
+    ddq: Array  # accelerations, shape (nq,), in rad/s^2
+    period: Scalar  # time between two ticks, in s
 
     def reference(self, rate: Scalar, q: Array, dq: Array) -> tuple[Array, Array]:
         """Return dq_r = dq_d + lambda (q_d - q) and its derivative ddq_r, for a rate lambda, in 1/s."""

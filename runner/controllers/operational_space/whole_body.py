@@ -187,27 +187,16 @@ class WholeBodyParameters(NamedTuple):
 
 
 class TaskState(NamedTuple):
-    """State of the tip task of an arm, along the rows of the task.
+    """State of the tip task of an arm, along the rows of the task."""
 
-    Attributes:
-        q: Joint positions of the arm, shape (n,), in rad.
-        dq: Joint velocities of the arm, shape (n,), in rad/s.
-        x: Position of the tip in the base frame, shape (3,), in m.
-        J: Jacobian, shape (rows, n).
-        dJ_dq: dJ/dt dq, shape (rows,), in m/s^2 and rad/s^2.
-        M_inverse_J: M^-1 J^T, shape (n, rows).
-        error: Desired less actual position and orientation, shape (rows,), in m and rad.
-        velocity: Velocity of the tip, shape (rows,), in m/s and rad/s.
-    """
-
-    q: Array
-    dq: Array
-    x: Array
-    J: Array
-    dJ_dq: Array  # noqa: N815 - as the papers write it
-    M_inverse_J: Array
-    error: Array
-    velocity: Array
+    q: Array  # joint positions of the arm, shape (n,), in rad
+    dq: Array  # joint velocities of the arm, shape (n,), in rad/s
+    x: Array  # position of the tip in the base frame, shape (3,), in m
+    J: Array  # Jacobian, shape (rows, n)
+    dJ_dq: Array  # dJ/dt dq, shape (rows,), in m/s^2 and rad/s^2  # noqa: N815 - as in the papers
+    M_inverse_J: Array  # M^-1 J^T, shape (n, rows)
+    error: Array  # desired less actual position and orientation, shape (rows,), in m and rad
+    velocity: Array  # velocity of the tip, shape (rows,), in m/s and rad/s
 
     @property
     def mobility(self) -> Array:
