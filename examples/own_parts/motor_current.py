@@ -14,7 +14,7 @@ class MotorCurrentConfig(StrictModel):
 
     Attributes:
         kind: Its name in the registry.
-        constant: Torque constant that is believed, over the true one.
+        constant: Assumed torque constant, relative to the true one.
         resolution: Step of the torque, in N m; 0 for none.
     """
 

@@ -1,4 +1,4 @@
-"""Controllers that are wrong about the mass of one link alone."""
+"""Error of the controller's model: the mass of one link."""
 
 from typing import Annotated, Literal
 
@@ -17,7 +17,7 @@ class OneLinkConfig(StrictModel):
         kind: Its name in the registry.
         joint: Number of the joint that moves the link, counted from 1.
         mass: Factor on its mass and inertia.
-        spread: Largest relative error beyond that, drawn anew in each repetition.
+        spread: Largest additional relative error, drawn in each repetition.
     """
 
     kind: Literal["one_link"]

@@ -10,7 +10,7 @@ from runner.schema.model import StrictModel
 
 
 class GravityPDConfig(StrictModel):
-    """What controller/gravity_pd.yaml may say: period in s, natural_frequency in rad/s, approach in 1/s."""
+    """Keys of controller/gravity_pd.yaml: period in s, natural_frequency in rad/s, approach in 1/s."""
 
     kind: Literal["gravity_pd"]
     period: PositiveFloat

@@ -12,7 +12,7 @@ from runner.trajectories.nearest import distance_to_curve
 
 
 class HelixConfig(StrictModel):
-    """What trajectory/helix.yaml may say: start, radius and height in m, duration in s."""
+    """Keys of trajectory/helix.yaml: start, radius and height in m, duration in s."""
 
     kind: Literal["helix"]
     start: list[float] | None = Field(min_length=3, max_length=3)

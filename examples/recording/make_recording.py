@@ -1,4 +1,4 @@
-"""Make recording.csv: what a logger would have written beside a real arm, here a simulated one that differs.
+"""Create recording.csv: the log of an arm that differs from the run, here simulated.
 
     python examples/recording/make_recording.py recording.csv
 
