@@ -19,7 +19,8 @@ _FORMULA = re.compile(r"<p>(.*?)</p>", re.DOTALL)
 _KEPT = 5000  # formulas of one process, more than all reports have
 _made: dict[tuple[str, bool], Code | None] = {}
 # Browsers put a combining accent to the left of its letter.
-_ACCENTS = {"\u0302": "\u02c6", "\u0307": "\u02d9", "\u0308": "\u00a8", "\u0303": "\u02dc"}
+_ACCENTS = {"\u0302": "\u02c6", "\u0307": "\u02d9", "\u0308": "\u00a8", "\u0303": "\u02dc", "\u20d7": "\u2192"}
+_TALL = frozenset(("mfrac", "mtable", "msqrt", "munder", "munderover"))  # what brackets grow with
 _WHOLE = 12  # most symbols of a formula in a line of text that does not break
 _BEFORE, _BEHIND = frozenset("=≈≠≤≥<>→+−±"), frozenset(",;")  # where a longer one breaks
 
@@ -80,9 +81,15 @@ def _tidied(formula: ET.Element) -> Iterator[str]:
     for each in formula.iter():
         for name in ("style", "scriptlevel", *(() if each.find(".//mfrac") is not None else ("displaystyle",))):
             each.attrib.pop(name, None)  # without an effect here
+        if each.tag == "mo" and len(each):
+            each.text, each[:] = each[0].text, []  # a line of ours, which the export makes a text
         if each.tag == "mo" and each.text in _ACCENTS:
             each.text = _ACCENTS[each.text]
             each.set("stretchy", "false")
+        if each.tag == "mrow" and len(each) > 1 and not any(part.tag in _TALL for part in each.iter()):
+            for sign in (each[0], each[-1]):
+                if sign.tag == "mo":
+                    sign.set("stretchy", "false")  # Chromium leaves space around a stretchy one
         for before, marked in pairwise(each):
             if marked.get("class") == "differs" and before.tag != "mo" and marked[0].text in _BEFORE:
                 marked[0].set("form", "infix")  # the first sign in a row would be a prefix, without a space

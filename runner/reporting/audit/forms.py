@@ -82,7 +82,7 @@ def forms_of(entry: Entry, likeness: Likeness, letters: Letters = MappingProxyTy
             found.append(EquationForm(label, [[_math(forms, place)]], note=note))
         elif elements is None:
             found.append(_unread(f"{label}, as the text has it", form, beside, note))
-        elif form is entry.repair and read[0] is None and entry.corrected is None:
+        elif form is entry.repair and read[0] is None and not (entry.printed.math or entry.corrected):
             found.append(_unread(label, form, beside, note))
         else:
             like = likeness.words(entry, elements) if len(forms) == place + 2 and entry.corrected is not None else ""

@@ -99,6 +99,13 @@ def test_what_differs_is_marked_in_both_forms(document):
     assert marks == [{("q", "1"), ("q", "2"), ("q", "5")}, {("θ", "1"), ("θ", "2")}]
 
 
+def test_a_repaired_relation_is_mathematics_where_the_damaged_one_is(document):
+    rows = {row.number: row for table in tables(document, Equations) for row in table.rows}
+    printed, repaired = rows["S2 P"].forms
+    assert printed.lines
+    assert repaired.lines == [['""^(S_2) P_(S_1) = - ""_(S_1)^(S_2) R dot ""^(S_1) P_(S_2)']]
+
+
 def test_a_shifted_column_is_named_and_not_printed_again(document):
     rows = {row.number: row for table in tables(document, Equations) for row in table.rows}
     assert 'the right $italic("J")_"12"$, with $italic("q")_"1"$' in rows["J_13"].forms[0].note

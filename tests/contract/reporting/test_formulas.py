@@ -25,6 +25,17 @@ def test_accents_are_spacing_ones():
     assert accents == {"\u02d9": "false", "\u02c6": "false", "\u00a8": "false"}
 
 
+@pytest.mark.parametrize(("typst", "tag"), [("overline(x)", "mover"), ("underline(x)", "munder")])
+def test_a_line_over_or_under_a_letter_stays(typst, tag):
+    lined = ET.fromstring(made(typst)).find(tag)
+    assert ["".join(part.itertext()) for part in lined] == ["𝑥", "¯"]
+
+
+def test_brackets_grow_with_fractions_only():
+    assert [each.get("stretchy") for each in ET.fromstring(made("M(q)")).iter("mo")] == ["false", "false"]
+    assert [each.get("stretchy") for each in ET.fromstring(made("(a/b)")).iter("mo")] == [None, None]
+
+
 def test_what_differs_is_a_marked_row_whose_sign_has_spaces():
     row = ET.fromstring(made("a differs(+ b)")).find("mrow")
     assert row.get("class") == "differs"
