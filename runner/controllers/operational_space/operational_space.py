@@ -191,8 +191,7 @@ def build(config: OperationalSpaceConfig, robot: Robot) -> tuple[Loop, ...]:
         )
     orientation = held_orientation(config.task, robot.model, robot.home)
     (period,) = by_stage("controller.period", config.period, names)
-    (null_space_frequency,) = by_stage("controller.null_space_frequency", config.null_space_frequency, names)
-    law = WholeBodyLaw.of_stage(config, names, 0, null_space_frequency=null_space_frequency)
+    law = WholeBodyLaw.of_stage(config, names, 0)
     controller = tip_law(robot.model, law, robot.home, orientation)
     return (Loop(names[0], slice(0, robot.model.nq), period, controller),)
 

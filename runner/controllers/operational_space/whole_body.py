@@ -43,7 +43,7 @@ class WholeBodyLaw(StrictModel):
 
     @classmethod
     def of_stage(cls, config: StrictModel, names: Sequence[str], index: int, **own: Any) -> Self:
-        """Return the law of a stage from a config with these keys; frequency and damping ratio are by stage.
+        """Return the law of a stage from a config with these keys; frequencies and damping ratio are by stage.
 
         Args:
             config: The config.
@@ -55,8 +55,9 @@ class WholeBodyLaw(StrictModel):
             ConfigError: if a value is missing for a stage.
         """
         values = {"max_tip_speed": None} | {key: value for key, value in config if key in cls.model_fields}
-        for key in ("natural_frequency", "damping_ratio"):
-            values[key] = by_stage(f"controller.{key}", values[key], names)[index]
+        for key in ("natural_frequency", "damping_ratio", "null_space_frequency"):
+            if key not in own:
+                values[key] = by_stage(f"controller.{key}", values[key], names)[index]
         return cls(**(values | own))
 
 
