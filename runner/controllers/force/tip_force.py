@@ -137,7 +137,7 @@ def find_force_task(config: TipForceConfig, robot: Robot) -> ForceTask:
     frequencies = by_stage("controller.natural_frequency", config.natural_frequency, names)
     ratios = by_stage("controller.damping_ratio", config.damping_ratio, names)
     periods = by_stage("controller.period", config.period, names)
-    law = WholeBodyLaw.of_stage(config, names, -1)
+    law = WholeBodyLaw.of_stage(config, names, -1, null_space_frequency=config.null_space_frequency)
     apart = config.actuated_stages == "last_stage" and len(names) > 1
     stage, frame = robot.stages[-1], robot.stages[-1].base_frame
     first_held = None if len(names) > 1 and not apart else 0  # springs hold the stages that are mounted on others
