@@ -24,6 +24,7 @@ def _check_points(points: Any, _: Asked) -> dict[str, FloatArray]:
 _GUARD = Guard(
     "environment",
     Environment,
+    begin=Method(optional=True),
     reset=Method(),
     wrench=Method(array(6)),
     points=Attribute(_check_points, optional=True, fail=refuse),

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from runner.base.arrays import FloatArray
 
 
@@ -14,6 +16,14 @@ class Environment:
     """
 
     points: Mapping[str, Sequence[float]] = {}
+
+    def begin(self, tick: float, generator: np.random.Generator) -> None:
+        """Prepare for a repetition, before `reset`.
+
+        Args:
+            tick: Time between two updates, in s.
+            generator: Generator of the random numbers of the environment, which follows from seed and repetition.
+        """
 
     def reset(self, tip: FloatArray) -> None:
         """Reset the environment at the start of a run, with the tip position in the base frame, shape (3,), in m."""

@@ -43,6 +43,11 @@ class Interaction:
         self.load = np.zeros(6)
         """Wrench of environment and tool on the flange: force in N, moment about its origin in N m, along its axes."""
 
+    def begin(self, generator: np.random.Generator) -> None:
+        """Prepare the environment for a repetition with its generator of random numbers."""
+        if self._environment is not None:
+            self._environment.begin(self._tick, generator)
+
     def reset(self, q: FloatArray) -> None:
         """Reset to rest at joint positions, shape (nq,), in rad."""
         self._last_dq = np.zeros_like(q)

@@ -1,6 +1,7 @@
-"""Temporary wrench on the tip or force on a link, constant or sinusoidal."""
+"""Wrench on the tip or force on a link: a step, a sine, an impulse and band-limited white noise."""
 
 import math
+from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
@@ -10,7 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.environments.environment import Environment
 from runner.schema.model import StrictModel
-from runner.schema.units import Hertz, NewtonMetres, Newtons, Seconds
+from runner.schema.units import Hertz, NewtonMetres, Newtons, NewtonSeconds, Seconds
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 
@@ -27,6 +28,10 @@ class PushConfig(StrictModel):
         start_time: Start time of the push, in s.
         duration: Duration of the push, in s; None means until the end of the run.
         frequency: Frequency of a sinusoidal push, in Hz; 0 for a constant push.
+        impulse: Impulse along the axes of the base, in N s, as a force over the first control step of the push.
+        noise: Standard deviation of a random force along each axis of the base during the push, in N.
+        bandwidth: Bandwidth of the random force, in Hz. The force keeps its value for 1/(2 bandwidth) s; None means one
+            control step, so that it is white up to half the rate of control.
     """
 
     kind: Literal["push"]
@@ -36,36 +41,56 @@ class PushConfig(StrictModel):
     start_time: Seconds[NonNegativeFloat]
     duration: Seconds[PositiveFloat | None]
     frequency: Hertz[NonNegativeFloat]
+    impulse: NewtonSeconds[Vector]
+    noise: Newtons[NonNegativeFloat]
+    bandwidth: Hertz[PositiveFloat | None]
 
 
 class Push(Environment):
     """Push on the tip; see Environment."""
 
     def __init__(self, config: PushConfig) -> None:
-        self._wrench = np.array([*config.force, *config.moment])
-        self._start = config.start_time
+        self._config, self._wrench = config, np.array([*config.force, *config.moment])
         self._end = math.inf if config.duration is None else config.start_time + config.duration
-        self._rate = 2.0 * math.pi * config.frequency
+        self._tick, self._hold, self._drawn, self._noise = 0.0, math.inf, -1, np.zeros(3)
+        self._draw: Callable[[], FloatArray] = lambda: np.zeros(3)
+
+    def begin(self, tick: float, generator: np.random.Generator) -> None:
+        """Prepare the random force of a repetition; see Environment.begin."""
+        config = self._config
+        self._tick, self._draw = tick, lambda: generator.standard_normal(3)
+        self._hold = tick if config.bandwidth is None else max(tick, 0.5 / config.bandwidth)
+        self._drawn, self._noise = -1, np.zeros(3)
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return the wrench on the tip; see Environment.wrench."""
-        return self._wrench * self.share(time)
-
-    def share(self, time: float) -> float:
-        """Return the factor of force and moment, from -1 to 1, at a time in s."""
-        since = time - self._start
+        config, since = self._config, time - self._config.start_time
         if since < -1e-9 or time > self._end - 1e-9:
-            return 0.0
-        return math.sin(self._rate * since) if self._rate else 1.0
+            return np.zeros(6)
+        wrench: FloatArray = self._wrench * (
+            math.sin(2.0 * math.pi * config.frequency * since) if config.frequency else 1.0
+        )
+        if since < self._tick - 1e-9:
+            wrench[:3] += np.array(config.impulse) / self._tick
+        if config.noise:
+            for _ in range(self._drawn, int(since / self._hold + 1e-9)):
+                self._noise = config.noise * self._draw()
+                self._drawn += 1
+            wrench[:3] += self._noise
+        return wrench
 
 
 class PushOnLink(Environment):
     """Push on a link; see Environment."""
 
     def __init__(self, config: PushConfig, link: str) -> None:
-        self._push, self._force = Push(config), np.array(config.force)
+        self._push = Push(config)
         self.points = {link: (0.0, 0.0, 0.0)}
         """Point of application in the link's frame, in m, by link."""
+
+    def begin(self, tick: float, generator: np.random.Generator) -> None:
+        """Prepare the random force of a repetition; see Environment.begin."""
+        self._push.begin(tick, generator)
 
     def wrench(self, time: float, tip: FloatArray, velocity: FloatArray) -> FloatArray:
         """Return zero, because nothing acts on the tip; see Environment.wrench."""
@@ -73,7 +98,7 @@ class PushOnLink(Environment):
 
     def link_forces(self, time: float, positions: FloatArray, velocities: FloatArray) -> FloatArray:
         """Return the force on the link; see Environment.link_forces."""
-        return self._push.share(time) * self._force[None]
+        return self._push.wrench(time, positions[0], velocities[0])[None, :3]
 
 
 CONFIG = PushConfig

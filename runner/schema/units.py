@@ -22,6 +22,7 @@ WRITTEN: Mapping[str, Mapping[str, Decimal | float]] = {
     "rad/s": {"rad/s": _ONE, "deg/s": _DEGREE, "rpm": _RPM},
     "rad/s^2": {"rad/s^2": _ONE, "deg/s^2": _DEGREE},
     "N": {"N": _ONE, "mN": _MILLI, "kN": _KILO},
+    "N s": {"N s": _ONE, "mN s": _MILLI},
     "N m": {"N m": _ONE, "mN m": _MILLI, "kN m": _KILO},
     "kg": {"kg": _ONE, "g": _MILLI},
     "kg m^2": {"kg m^2": _ONE, "kg cm^2": Decimal("1e-4"), "g m^2": _MILLI, "g cm^2": Decimal("1e-7")},
@@ -72,6 +73,7 @@ RadiansPerSecond = Annotated[T, Unit("rad/s")]
 Kilograms = Annotated[T, Unit("kg")]
 MomentOfInertia = Annotated[T, Unit("kg m^2")]
 Newtons = Annotated[T, Unit("N")]
+NewtonSeconds = Annotated[T, Unit("N s")]
 NewtonMetres = Annotated[T, Unit("N m")]
 Stiffness = Annotated[T, Unit("N/m")]
 RotaryStiffness = Annotated[T, Unit("N m/rad")]

@@ -24,6 +24,7 @@ from runner.metrics.caveats import Watch, setting_of
 from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
 from runner.plugins.discovery import has_users_parts
 from runner.sensing import ForceTorqueSensor
+from runner.sensing.streams import ENVIRONMENT
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
 from runner.simulation.loop import ClosedLoop, simulate
@@ -74,6 +75,8 @@ def simulate_repetition(config: RunConfig, repetition: int = 0, ticks: int | Non
 def simulate_assembled(closed: ClosedLoop, config: RunConfig, repetition: int) -> tuple[Trace, list[str]]:
     """Simulate one repetition; return its trace, and the warnings of the controllers and of the wrist sensor."""
     made = make_sensors(closed, config, repetition)
+    if closed.interaction is not None:
+        closed.interaction.begin(np.random.default_rng([config.settings.seed, repetition, ENVIRONMENT]))
     trace, wrist = simulate(closed, *made), made[1]
     users = [loop.wrench_feedback for loop in closed.loops if loop.wrench_feedback is not None]
     told = [message for controller in users for message in controller.messages()]

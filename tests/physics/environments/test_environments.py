@@ -27,6 +27,9 @@ def push(**changes):
         "link": None,
         "duration": None,
         "frequency": 0.0,
+        "impulse": [0.0, 0.0, 0.0],
+        "noise": 0.0,
+        "bandwidth": None,
     }
     return make(PushConfig(kind="push", **(values | changes)))
 
@@ -49,6 +52,30 @@ def test_a_sine_starts_from_zero_with_its_frequency():
     times = 0.5 + np.linspace(0.0, 1.0, 50)
     forces = [sine.wrench(time, TIP, REST)[2] for time in times]
     np.testing.assert_allclose(forces, -2.0 * np.sin(2.0 * np.pi * 2.0 * (times - 0.5)), atol=1e-12)
+
+
+def forces(environment, ticks, seed=0):
+    """Return the force on the tip in each tick of 10 ms."""
+    environment.begin(0.01, np.random.default_rng(seed))
+    return np.array([environment.wrench(0.01 * k, TIP, REST)[:3] for k in range(ticks)])
+
+
+def test_an_impulse_acts_in_one_tick():
+    found = forces(push(impulse=[0.0, 0.3, 0.0], start_time=0.495), 100)
+    assert found[:, 1].sum() * 0.01 == pytest.approx(0.3)
+    assert np.flatnonzero(found[:, 1]).tolist() == [50]
+
+
+def test_a_random_force_has_its_deviation_and_keeps_each_value_for_its_time():
+    white = {"force": [0.0, 0.0, 0.0], "start_time": 0.0, "noise": 2.0}
+    found = forces(push(**white), 20_000)
+    np.testing.assert_allclose(found.std(axis=0), 2.0, rtol=5.0 / np.sqrt(2 * 20_000))
+    np.testing.assert_allclose(found.mean(axis=0), 0.0, atol=5.0 * 2.0 / np.sqrt(20_000))
+    assert np.abs(np.corrcoef(found[:-1, 0], found[1:, 0])[0, 1]) < 5.0 / np.sqrt(20_000)
+    slow = forces(push(**white, bandwidth=10.0), 400)  # a value for 50 ms
+    assert (slow[:, 0].reshape(-1, 5) == slow[::5, :1]).all()
+    np.testing.assert_array_equal(slow[::5], found[:80])
+    np.testing.assert_array_equal(forces(push(**white), 30, seed=7), forces(push(**white), 50, seed=7)[:30])
 
 
 def test_a_push_on_a_link_leaves_the_tip_alone():

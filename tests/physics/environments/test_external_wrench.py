@@ -8,6 +8,7 @@ import pinocchio as pin
 import pytest
 from support.engines import ASKED
 
+import runner
 from runner.base.errors import ConfigError
 from runner.environments import ENVIRONMENTS, Environment
 from runner.environments.external_wrench import Interaction
@@ -15,6 +16,29 @@ from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
 NOTHING = np.zeros(6)
+
+
+PUSHED = ("robot=macro", "plant=rk4", "gravity=0", "trajectory=goal", "controller=held_torques", "controller.torques=0",
+          "duration=0.05", "environment=push", "environment.force=[0,0,0]")  # fmt: skip
+
+
+def test_an_impulse_on_the_tip_is_the_change_of_the_joints_momentum(tmp_path):
+    J = np.array([0.02, -0.01, 0.03])
+    run = runner.run(*PUSHED, f"environment.impulse={J.tolist()}", "environment.start_time=0.02", outputs=tmp_path)
+    after = int(np.searchsorted(run.t, 0.03 - 1e-9))
+    assert not run.joints("dq")[: after - 1].any()
+    q, dq = run.joints("q")[after], run.joints("dq")[after]
+    np.testing.assert_allclose(run.model.mass_matrix(q) @ dq, run.model.tip_jacobian(q)[:3].T @ J, rtol=2e-3)
+
+
+def test_a_random_push_follows_from_seed_and_repetition(tmp_path):
+    def pushed(folder, *more):
+        shaking = ("environment.noise=3", "environment.bandwidth=50", "environment.start_time=0", "repetitions=2")
+        return runner.run(*PUSHED, *shaking, *more, outputs=tmp_path / folder).values("peak_joint_speed")
+
+    first, again, other = pushed("a"), pushed("b"), pushed("a", "seed=1")
+    np.testing.assert_array_equal(first, again)
+    assert len({*first, *other}) == 4
 
 
 class Free(Environment):
