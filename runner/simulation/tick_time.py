@@ -6,6 +6,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 
 from runner.config.run import RunConfig
+from runner.plugins.discovery import added_parts
 from runner.simulation.assembly import assemble
 from runner.simulation.batch import BatchSimulator, simulate_together
 from runner.simulation.run import simulate_assembled
@@ -50,12 +51,16 @@ def seconds_together(
 ) -> float | None:
     """Return the time for a tick of a run in a batch, in s; None if the run cannot be simulated in a batch.
 
+    It is also None with metrics of a plug-in, so that a measurement does not call them.
+
     Args:
         config: The checked config.
         ticks: Approximate number of ticks to simulate, twice if they are fast.
         within: See `seconds_per_tick`.
         clock: See `seconds_per_tick`.
     """
+    if added_parts("metric"):
+        return None
     batcher = BatchSimulator()
     repetitions = range(min(config.settings.repetitions, max(1, ticks // config.timing.ticks)))
     runs = batcher.repetitions(config, repetitions)

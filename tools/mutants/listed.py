@@ -150,8 +150,12 @@ MUTANTS = [
     *_of(
         "controllers/macro_mini/stage_loops.py",
         "physics/controllers/test_stage_loops.py",
-        ("later stages' offset added", "way = reference[0] - numbers.later", "way = reference[0] + numbers.later"),
-        ("the carrier adds it", "bases[0][0] - numbers.later", "bases[0][0] + numbers.later"),
+        (
+            "later stages' offset added",
+            "way = reference[0] - parameters.later",
+            "way = reference[0] + parameters.later",
+        ),
+        ("the carrier adds it", "bases[0][0] - parameters.later", "bases[0][0] + parameters.later"),
         ("the last rider's offset for that of all", "target[0] -= R", "target[0] = reference[0] - R"),
         ("the base's turn the other way round", "cross(moves[3:], way)", "cross(way, moves[3:])"),
         (
@@ -179,9 +183,9 @@ MUTANTS = [
         ("a load that helps where it hinders", "ddq) - self.load", "ddq) + self.load"),
     ),
     *_of(
-        "plants/rk4.py",
-        "physics/plants/test_rk4.py",
-        ("a midpoint's own velocity", "q + half * v2, v3", "q + half * v, v3"),
+        "plants/flexible_joints.py",
+        "physics/plants/test_flexible_joints.py",
+        ("the first slope at the second midpoint", "k3 = slope(x + 0.5 * h * k2)", "k3 = slope(x + 0.5 * h * k1)"),
     ),
     *_of(
         "calibration/gravity.py",

@@ -96,7 +96,7 @@ def test_lines_are_one():
         ("3 % 2", 5, "cannot compute with int and int"),
         ("x // n", 6, "cannot compute with float and int"),
         ("n << 2", 6, "cannot compute with int and int"),
-        ("x @ n", 5, "cannot compute with float and int"),
+        ("x @ n", 5, "has no value: unsupported operand type(s) for @"),
         ("word * 3", 8, "cannot compute with str and int"),
         ("items * 3", 9, "cannot compute with list and int"),
         ("flag + 1", 8, "cannot compute with bool and int"),
