@@ -112,7 +112,7 @@ def test_an_arm_without_mass_runs_as_it_is_written_and_refuses_torques(tmp_path)
     (tmp_path / "lamp.urdf").write_text(re.sub("<inertial>.*?</inertial>", "", text))
     with strangers.short_examination():
         write_folder(examine(tmp_path / "lamp.urdf"), tmp_path / "mine")
-    run = runner.run("robot=lamp", "duration=0.2", config_dirs=tmp_path / "mine")
+    run = runner.run("robot=lamp", "duration=0.2", config_dirs=tmp_path / "mine", outputs=tmp_path / "outputs")
     assert (run.status, run.config["plant"]["kind"]) == ("ok", "kinematic")
     assert run.metrics["max_tracking_error"].median < 1e-6
     torques = compose(["robot=lamp", "controller=computed_torque", "plant=mujoco"], [tmp_path / "mine"])
