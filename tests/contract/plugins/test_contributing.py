@@ -421,3 +421,21 @@ def test_an_environment_of_ones_own_acts_on_the_tip(own_part, cli):
     trace = runner.open_run(ending.folder).trace()
     drag = 5.0 - 20.0 * np.gradient(trace["tip_z"], trace["t"], edge_order=2)
     np.testing.assert_allclose(trace["external_force_z"], drag, atol=0.2)
+
+
+def test_an_environment_of_ones_own_draws_for_each_repetition(own_part, cli):
+    source = WATER.replace(
+        "    def reset(self, tip):\n        pass\n",
+        "    def begin(self, tick, generator):\n"
+        "        self.lift = np.array([0.0, 0.0, tick * generator.uniform(50.0, 500.0)])\n\n"
+        "    def reset(self, tip):\n        pass\n",
+    )
+    assert source != WATER
+    folder = own_part(
+        "environment", "waves", source.replace('"water"', '"waves"'), "kind: waves\ndrag: 0.0\nlift: 0.0\n"
+    )
+    ending = cli("--config-dir", folder, "robot=macro", "environment=waves", "duration=0.05", "repetitions=2")
+    assert ending.code == 0, ending.err
+    first, second = runner.open_run(ending.folder).values("peak_force")
+    assert first != second
+    assert min(first, second) >= 0.5
