@@ -85,6 +85,10 @@ class Judge:
         return with_symbols(sample(arm.model, arm.joints, self._samples, np.random.default_rng(0)), part.symbols)
 
     @cached_property
+    def _right(self) -> dict[str, str]:
+        return right_elements(self._part)
+
+    @cached_property
     def _arm(self) -> AuditedArm:
         return audited_arm(self._part.robot, self._part.tip, self._part.joints, self._part.source.folder)
 
@@ -140,7 +144,7 @@ class Judge:
         if form.code:
             values: Elements = truth_of(self._part.source, form.code)(self.symbols)
             return values
-        known = {**right_elements(self._part), **form.elements}
+        known = {**self._right, **form.elements}
         found = evaluate_used(form.elements, known, self.symbols)
         steps = names_in(form.elements) - set(self.symbols)  # on the way to the others
         return {name: values for name, values in found.items() if name not in steps}

@@ -131,6 +131,7 @@ def test_a_key_moves_the_keys_that_take_its_value(analysed):
     assert abs(alone.derivatives["rms_tracking_error"][bandwidth]) > 1e-9
 
 
+@pytest.mark.costs(3)
 def test_every_number_that_acts_is_told(analysed):
     found = analysed(*TIED)
     check_completeness(found, TIED)

@@ -10,7 +10,7 @@ from runner.audit.sources import sources
 from runner.audit.verdict import SAMPLES, VERDICTS
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def everything():
     return audit_all(samples=100)
 
@@ -19,7 +19,6 @@ def verdicts(audited):
     return {each.entry.id: each.verdict for source in audited.values() for each in source}
 
 
-@pytest.mark.costs(2)
 def test_every_source_is_audited(everything):
     assert tuple(everything) == sources()
 
