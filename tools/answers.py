@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.reporting.answers import Asked, judge
-from runner.reporting.sweep.question import find_question
-from runner.reporting.sweep.subject import Subject
+from runner.reporting.comparison.sweeps import compare_levels
 from runner.statistics import compare_paired
 from runner.store.axes import Axis
 from runner.sweeps.measurements import Measurements
@@ -77,8 +76,7 @@ def _said(metrics: dict[str, FloatArray]) -> tuple[bool, bool]:
         values={name: values.reshape(2 * _LEVELS, _SEEDS) for name, values in metrics.items()},
         provenance={},
     )
-    question = find_question(Subject(measured, tuple(metrics)))
-    said = {answer.metric for answer in (question.answers if question else ()) if answer.sign}
+    said = {answer.metric for answer in compare_levels(measured, "controller", None, list(metrics)) if answer.sign}
     return PRIMARY in said, OTHER in said
 
 

@@ -108,7 +108,21 @@ const reading = new IntersectionObserver((entries) => {
     if (here && !narrowScreen.matches) keepInSight(here);
   }
 }, { rootMargin: "-10% 0px -80% 0px" });
-document.querySelectorAll("main > section").forEach((section) => reading.observe(section));
+document.querySelectorAll("main section").forEach((section) => reading.observe(section));
+
+// A link to a folded chapter unfolds it; paper shows all.
+const rest = document.querySelector("details.rest");
+if (rest) {
+  const unfold = () => {
+    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    if (!target || !rest.contains(target) || rest.open) return;
+    rest.open = true;
+    target.scrollIntoView();
+  };
+  window.addEventListener("hashchange", unfold);
+  window.addEventListener("beforeprint", () => { rest.open = true; });
+  unfold();
+}
 
 /* ---- pictures ---- */
 

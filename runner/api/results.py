@@ -16,7 +16,7 @@ from runner.store.kinds import Kind, find_folder
 from runner.sweeps.tuning import study
 
 if TYPE_CHECKING:
-    import pandas as pd
+    from runner.api.comparison import Comparison
 
 Comparable = Run | Sweep | str | Path
 Thing = Run | Sweep | Tuning | str | Path
@@ -75,11 +75,12 @@ def open_tuning(folder: str | Path) -> Tuning:
 @public
 def compare(
     first: Comparable, second: Comparable, *others: Comparable, metrics: str | Sequence[str] = ()
-) -> "pd.DataFrame":
+) -> "Comparison":
     """Compare runs or sweeps with the first of them, and return the statistics that `runner compare` prints.
 
     Repetitions with equal seeds are compared in pairs. Sweeps are compared in the cells that both have. The columns are
-    first and second (A for the first argument, B for the second and so on), then those of `Sweep.compare`.
+    first and second (A for the first argument, B for the second and so on), then those of `Sweep.compare`; `summary`
+    has the answers in words.
 
         >>> common = ("robot=macro", "noise=thesis", "duration=0.1", "repetitions=6")
         >>> runs = [runner.run(*common, controller__damping_ratio=ratio) for ratio in (1.0, 0.7)]
@@ -95,7 +96,8 @@ def compare(
     Raises:
         RunnerError: if runs and sweeps are mixed, if two share no seed, cell or metric, or if one is damaged.
     """
-    from runner.reporting.comparison.sweeps import answer_frame, compare_sweeps, measure_compared
+    from runner.api.comparison import comparison
+    from runner.reporting.comparison.sweeps import compare_sweeps, measure_compared
 
     things = [thing if isinstance(thing, Run | Sweep) else store.open_stored(find_folder(thing, ("run", "sweep")))
               for thing in (first, second, *others)]  # fmt: skip
@@ -107,7 +109,8 @@ def compare(
     if damage := [text for side in sides for text in side.damage]:
         raise RunnerError("; ".join(damage))
     names = [metrics] if isinstance(metrics, str) else metrics
-    return answer_frame([answer for side in rest for answer in compare_sweeps(one, side, names).answers])
+    groups = [compare_sweeps(one, side, names).answers for side in rest]
+    return comparison([answer for group in groups for answer in group], groups)
 
 
 @dataclass(frozen=True, repr=False)

@@ -20,6 +20,8 @@ from runner.sweeps.status import Status, find_status
 if TYPE_CHECKING:
     import pandas as pd
 
+    from runner.api.comparison import Comparison
+
 _CELLS_SHOWN, _METRICS_SHOWN = 20, 3
 _LEVELS = ("cells", "repetitions")
 
@@ -136,27 +138,29 @@ class Sweep(store.Sweep):
     @public
     def compare(
         self, *, by: str, within: str | Sequence[str] | None = None, metrics: str | Sequence[str] | None = None
-    ) -> "pd.DataFrame":
+    ) -> "Comparison":
         """Compare each value of an axis with its first value, in pairs of runs that differ in nothing else.
 
         The columns are the axes in `within`, "all" if compared over all their values; first and second, the two values;
         metric and unit; difference, second minus first (Hodges-Lehmann); low and high, the ends of its interval; n, the
         number of pairs; effect, from -1 (smaller in every pair) to 1; p, corrected (Holm); and word, the conclusion.
-        The interval excludes zero exactly if p is below 0.05. Other swept axes are pooled: each draw counts once.
+        The interval excludes zero exactly if p is below 0.05. Other swept axes are pooled: each draw counts once. The
+        attribute `summary` has the answers in words.
 
         Args:
             by: The axis, such as "controller".
             within: Axes; the comparison is repeated for each combination of their values. None compares over all other
-                axes, and then within all of them except the seed.
+                axes, and then within the one that changes the first metric most.
             metrics: Names of metrics; None for all.
 
         Raises:
             RunnerError: if there is no such axis or metric, or no two runs share their seeds.
         """
-        from runner.reporting.comparison.sweeps import answer_frame, compare_levels
+        from runner.api.comparison import comparison
+        from runner.reporting.comparison.sweeps import compare_levels
 
         inside = [within] if isinstance(within, str) else within
-        return answer_frame(compare_levels(self._measurements, by, inside, self._names(metrics) if metrics else ()))
+        return comparison(compare_levels(self._measurements, by, inside, self._names(metrics) if metrics else ()))
 
     def __repr__(self) -> str:
         told = _progress_text(find_status(self))

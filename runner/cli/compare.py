@@ -42,13 +42,14 @@ def add_arguments(parser: Parser) -> None:
         help="runs, or sweeps; or latest; or a run and a recording, a CSV file or a ROS bag",
     )
     parser.add_shared(
-        metrics="compare only these metrics",
+        metrics="compare only these metrics; default: five, and with --all or --json every metric",
         json="print the rows of runner.compare as JSON",
         by="of one sweep: compare the levels of each of these axes",
-        within="within each level of these; default: over all others and within each",
+        within="within each level of these; default: over all others, and within the strongest of them",
         where="of sweeps: only the cells with this value; repeat for more",
         output="of a recording: folder of the report; default: a folder in reports/ of the outputs folder",
     )
+    parser.add_argument("--all", action="store_true", help="print every metric and the method")
     parser.add_argument("--columns", type=Path, metavar="FILE", help="of a recording: which signal each column holds")
     parser.add_argument(
         "--fill-gaps", type=_seconds, metavar="TIME", help="of a recording: fill gaps of up to this, such as 20ms"
@@ -69,12 +70,13 @@ def _compare(options: Namespace) -> None:
     """Print a comparison of levels, runs or sweeps."""
     from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, measure_compared
     from runner.reporting.comparison.text import level_lines, run_lines, sweep_lines
+    from runner.reporting.sweep.subject import main_metrics
     from runner.store.axes import find_axis
     from runner.store.run import Run
     from runner.store.sweep import Sweep
     from runner.sweeps.measurements import check_metrics, limit_sweep
 
-    metrics, things = options.metrics or (), list(map(open_stored, options.folders))
+    everything, things = options.all or options.json, list(map(open_stored, options.folders))
     runs = [thing for thing in things if isinstance(thing, Run)]
     sweeps = [thing for thing in things if isinstance(thing, Sweep)]
     if options.within and not options.by:
@@ -91,20 +93,21 @@ def _compare(options: Namespace) -> None:
     for side in sides:
         for damage in side.damage:
             print(f"runner: {damage}", file=sys.stderr)
+    metrics = options.metrics or (() if everything else main_metrics(sides))
     if options.by:
         for option in ("by", "within"):
             for name in getattr(options, option) or ():
                 find_axis(first.axes, name, f"--{option}")
         by_axis = {axis: compare_levels(first, axis, options.within or None, metrics) for axis in options.by}
         answers = [answer for some in by_axis.values() for answer in some]
-        texts = ["\n".join(level_lines(first, axis, some)) for axis, some in by_axis.items()]
+        texts = ["\n".join(level_lines(first, axis, some, everything)) for axis, some in by_axis.items()]
     elif sweeps or options.json:
         found = [compare_sweeps(first, other, metrics) for other in others]
         answers = [answer for one in found for answer in one.answers]
-        texts = ["\n".join(sweep_lines(one)) for one in found]
+        texts = ["\n".join(sweep_lines(one, everything)) for one in found]
     else:
         check_metrics(metrics, [name for side in sides for name in side.values])
-        texts = ["\n".join(run_lines((runs[0], run), (first, other), metrics))
+        texts = ["\n".join(run_lines((runs[0], run), (first, other), metrics, everything))
                  for run, other in zip(runs[1:], others, strict=True)]  # fmt: skip
     print(_json_text(answer_rows(answers)) if options.json else "\n\n".join(texts))
 

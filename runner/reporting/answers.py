@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.base.quantities import ROUNDING, number, plain_number, quantity, with_ends
-from runner.reporting.comparison.pairs import Pairs, compare
+from runner.base.quantities import ROUNDING, choose_unit, number, plain_number, quantity, with_ends
+from runner.reporting.comparison.pairs import Pairs, compare, label_text
 from runner.reporting.metric_titles import capital, title
 from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
 
@@ -42,6 +42,8 @@ HEADER = ("difference", "interval", "n", "effect", "p")
 """Columns between the names of what is compared and the word."""
 
 _SMALLEST = 1e-3  # p-value that is told
+_SHARES = (0.05, SHARE)  # differences, relative to the larger median, for which pairs are counted
+_MOST_TURNS, _MOST_SENTENCES = 4, 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,51 +154,119 @@ class Answer(Asked):
             self.word,
         ]
 
-    def sentence(self, beside: str = "") -> str:
-        """Return in some sentences how the second compares with the first in this metric, and how many pairs would do.
+    def sentence(self, turns: str = "") -> str:
+        """Return in one sentence how the second compares with the first, and without an answer what pairs can show.
 
         Args:
-            beside: A sentence between the two, with a space before it.
+            turns: A sentence to put between both, with a space before it.
         """
-        first, second = self.names
-        head, told = f"{capital(title(self.metric))}:", self._evidence()
+        sizes = [quantity(one, self.unit, 2) if np.isfinite(one) else "never" for one in self.comparison.medians]
+        first, second = (f"{name} ({size})" for name, size in zip(self.names, sizes, strict=True))
+        head = f"{capital(title(self.metric))}:"
         if self.sign:
-            unknown = "" if self.comparison.error is not None else "; the plant's own error in it is not known"
-            return f"{head} {second} is {self.word} than {first} by {self.amount} ({told}{unknown}).{beside}"
-        said = f"{second} and {first}: {self.word}; {told}"
+            share = f"{self.share} " if self.share else ""
+            return f"{head} {share}{self.word} with {second} than with {first}, {self._evidence()}.{turns}"
         if self.word == "no difference shown":
-            said = f"no difference between {first} and {second} is shown ({told})"
-        return f"{head} {said}.{beside}{self._would_do()}"
+            return f"{head} no difference between {first} and {second} is shown, {self._evidence()}.{turns}{self.power}"
+        return f"{head} {first} and {second}, {self.word}.{turns}{self.power}"
 
     @property
     def amount(self) -> str:
         """The size of the difference in words."""
-        difference = abs(self.comparison.difference)
-        return quantity(difference, self.unit) if np.isfinite(difference) else "more than any number"
+        return self._alike([abs(self.comparison.difference)])[0].replace("never", "more than any number")
+
+    @property
+    def share(self) -> str:
+        """The size of the difference in per cent of the first's median; empty for fractions and without medians."""
+        return self._per_cent(abs(self.comparison.difference), self.comparison.medians[0])
+
+    @property
+    def power(self) -> str:
+        """The smallest difference that these pairs can show, and how many would show less; empty with an answer.
+
+        It follows from the scatter of the pairs' differences, and so from the correlation within pairs.
+        """
+        found = self.comparison
+        if self.sign or not self.p_value or self.p_value < ALPHA:
+            return "" if self.p_value is not None else f" At least {fewest_pairs(self.level)} pairs are needed."
+        if self.interval is None:
+            return f" At least {fewest_pairs(self.level)} pairs are needed."
+        best, larger = found.smallest_shown(self.level), max(map(abs, found.medians))
+        if not best or not np.isfinite(larger):
+            return ""
+        text = f" {found.n} pairs can show {self._with_share(best, larger)} at best"
+        least = max(self.least, found.error or 0.0)
+        wanted = next((share * larger for share in _SHARES if least <= share * larger < best), least)
+        count = found.pairs_needed(wanted, self.level) if wanted < best else None
+        return f"{text}{f'; {number(float(count), 2)} would show {self._with_share(wanted, larger)}' if count else ''}."
+
+    def _with_share(self, size: float, median: float) -> str:
+        share = self._per_cent(size, median)
+        return f"{share} ({quantity(size, self.unit, 2)})" if share else quantity(size, self.unit, 2)
+
+    def _per_cent(self, size: float, median: float) -> str:
+        known = np.isfinite(size) and np.isfinite(median) and abs(median) > ROUNDING and "fraction" not in self.metric
+        return f"{number(100.0 * size / abs(median), 2)} %" if known else ""
 
     def _evidence(self) -> str:
+        """Return the difference with its interval, p and number of pairs in words."""
         found = self.comparison
-        medians = " and ".join(quantity(one, self.unit) if np.isfinite(one) else "never" for one in found.medians)
-        difference, interval, *_ = self.cells
-        ends = [] if self.interval is None else [f"difference {difference}, {interval}"]
-        p_value = [] if self.p_value is None else [f"p = {_chance(self.p_value)}"]
-        lost = [f"no value in {a} and {b} of {found.n} draws" for a, b in [found.lost] if a or b]
-        return ", ".join([f"medians {medians}", *ends, *p_value, *lost, f"{found.n} pairs"])
+        ends: tuple[float, ...] = self.interval or ()
+        if self.sign < 0:
+            ends = tuple(-end for end in reversed(ends))
+        size, *shown = self._alike([abs(found.difference) if self.sign else found.difference, *ends])
+        told = [" to ".join([shown[0].partition(" ")[0], shown[1]])] if shown else []
+        told += [f"p = {_chance(self.p_value)}"] if self.sign and self.p_value is not None else []
+        told += [f"no value in {a} and {b} of {found.n} draws" for a, b in [found.lost] if a or b]
+        told += ["plant's own error not known"] if self.sign and found.error is None else []
+        return f"{'by' if self.sign else 'difference'} {size} ({', '.join([*told, f'{found.n} pairs'])})"
 
-    def _would_do(self) -> str:
-        """Return how many pairs would do, where the pairs tell."""
+    @property
+    def short_cells(self) -> list[str]:
+        """The cells of a short table: both medians and the difference in one unit, and whether it is sure."""
         found = self.comparison
-        if self.p_value is not None and self.p_value < ALPHA:
-            return ""
-        if self.p_value is None or self.interval is None:
-            return f" At least {fewest_pairs(self.level)} pairs are needed."
-        least = max(self.least, found.error or 0.0)
-        count = found.pairs_needed(least, self.level)
-        if count is None or found.correlation is None:
-            return ""
-        enough = f"about {number(float(count), 2)} would" if count > found.n else "these"
-        size = quantity(least, self.unit, 2)
-        return f" The pairs correlate by {found.correlation:.2f}: {enough} show a difference of {size}."
+        first, second, difference = self._alike([*found.medians, found.difference])
+        share = f" ({'-' if found.difference < 0 else '+'}{self.share})" if self.share and found.difference else ""
+        return [first, second, f"{difference}{share}", "yes" if self.sign else self.word]
+
+    def _alike(self, values: Sequence[float]) -> list[str]:
+        """Return values with two digits in one unit, that of the largest; "never" beyond every number."""
+        factor, unit = choose_unit(max((abs(one) for one in values if np.isfinite(one)), default=None), self.unit)
+        texts = [number(factor * one, 2) if np.isfinite(one) else "never" for one in values]
+        return [text if text == "never" else f"{text} {unit}".strip() for text in texts]
+
+
+def turns(one: Answer, answers: Sequence[Answer]) -> str:
+    """Return where the answer differs at single levels of the other axes from that over all; empty if nowhere.
+
+    Args:
+        one: The answer over all levels.
+        answers: All answers of the same question.
+    """
+    same = [each for each in answers if each.at and (each.metric, each.names) == (one.metric, one.names)]
+    other = [each for each in same if each.sign not in (0, one.sign)]
+    if not other:
+        return ""
+    shown = [each for each in same if each.sign][:_MOST_TURNS]
+    told = ", ".join(f"{each.word} by {each.amount} at {label_text(each.at)}" for each in shown)
+    rest = len(same) - len(shown)
+    levels = "level" if rest == 1 else "levels"
+    return f" {one.names[1]} is {told}{f'; {rest} other {levels} in the table' if rest else ''}."
+
+
+def sentences(answers: Sequence[Answer]) -> list[str]:
+    """Return the answers of the first screen over all levels, in words, each with where it turns over.
+
+    Without answers over all levels those at each level are returned, the first metric's first.
+    """
+    first = sorted((one for one in answers if one.rank < 2), key=lambda one: one.rank)
+    overall = [one for one in first if not one.at]
+    if overall:
+        chosen = [(one.sentence(turns(one, answers)), one) for one in overall]
+    else:
+        chosen = [(f"At {label_text(one.at)}: {one.sentence()}", one) for one in first]
+    left = len(chosen) - _MOST_SENTENCES
+    return [text for text, _ in chosen[:_MOST_SENTENCES]] + ([f"{left} more are in the tables."] if left > 0 else [])
 
 
 def ask(pairs: Sequence[Pairs], metrics: Sequence[str]) -> list[Asked]:
@@ -230,6 +300,25 @@ def judge(asked: Sequence[Asked], first: Sequence[str]) -> list[Answer]:
             judged = {"p_value": corrected.get(place), "level": level, "family": len(family), "rank": rank}
             answers[place] = Answer(one.metric, one.unit, one.comparison, one.pairs, **judged)
     return [answers[place] for place in range(len(asked))]
+
+
+def short_table(answers: Sequence[Answer]) -> tuple[list[str], list[list[str]]]:
+    """Return header and rows of a short table: every metric over all levels, and the first screen's at each level."""
+    answers = [one for one in answers if not one.at] + [one for one in answers if one.at and one.rank < 2]
+    names = list(dict.fromkeys(one.names for one in answers))
+    at, several = any(one.at for one in answers), len(names) > 1
+    first, second = ("first", "second") if several else names[0]
+    header = ["metric", *["at"] * at, *["compared"] * several, first, second, "difference", "sure?"]
+    rows = [
+        [
+            title(one.metric),
+            *[label_text(one.at) if one.at else "all"] * at,
+            *[", ".join(one.names)] * several,
+            *one.short_cells,
+        ]
+        for one in answers
+    ]
+    return header, rows
 
 
 def _chance(p_value: float) -> str:

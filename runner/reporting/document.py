@@ -336,11 +336,12 @@ class Document:
     Attributes:
         title: Title.
         subtitle: One line below it.
-        abstract: The report in a few sentences; inline mathematics as in Text.
+        abstract: The report in a few sentences, each line a paragraph; inline mathematics as in Text.
         sections: The chapters.
         date: Date of the newest run behind it, ISO format, so that a report remade is the same; empty where none is.
         cover: The picture of the first screen.
         key_numbers: Numbers of the first screen: what each is, its value with unit, and what is to be said of it.
+        shown: Number of chapters that HTML shows; it folds the others behind "All details". None shows all.
         figures_float: Whether figures move on paper to where they leave no blank, which text between them makes up for.
         notes: Lines below the count of verdicts there: what their words mean, caveats; inline mathematics as in Text.
     """
@@ -354,3 +355,4 @@ class Document:
     notes: Sequence[str] = ()
     key_numbers: Sequence[tuple[str, str, str]] = ()
     figures_float: bool = True
+    shown: int | None = None

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from runner.base.quantities import quantity
 from runner.reporting.metric_titles import title
 from runner.store import Run
 
@@ -43,21 +42,6 @@ def key_metrics(run: Run, most: int) -> Sequence[KeyMetric]:
         most: How many.
     """
     return [_in_words(name, run) for name in key_names(run)[:most]]
-
-
-def shared_range(runs: Sequence[Run]) -> tuple[str, str] | None:
-    """Return the title of the first metric of the task that some runs share, and the range of its medians.
-
-    None where their tasks are told by different metrics, or no run has a value of it.
-    """
-    names = {name for run in runs for name in key_names(run)[:1]}
-    if len(names) != 1:
-        return None
-    (name,) = names
-    values = [found[name].median for run in runs if name in (found := run.metrics)]
-    ends = [value for value in values if value is not None]
-    unit = next(run.metrics[name].unit for run in runs if name in run.metrics)
-    return (title(name), f"{quantity(min(ends), unit)} to {quantity(max(ends), unit)}") if ends else None
 
 
 def key_names(run: Run) -> Sequence[str]:

@@ -13,7 +13,7 @@ from runner.reporting.metric_titles import metric_label
 
 Json = dict[str, Any]
 
-SHOWN = 5
+SHOWN = 6
 """Metrics that stand in the table; all of them stand in the details of a run."""
 ON_PAPER_METRICS = 3
 """Metrics of the table on paper, whose heads must not run into each other."""

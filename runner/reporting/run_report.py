@@ -1,4 +1,4 @@
-"""Report on one or more stored runs: config, changed keys, results and provenance."""
+"""Report on a stored run: config, changed keys, results and provenance."""
 
 import json
 import re
@@ -11,11 +11,11 @@ from runner.config.compose.compose import compose
 from runner.metrics.caveats import changes_since
 from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import cover, desired_motion, playback, torque_and_error
-from runner.reporting.key_metrics import key_metrics, shared_range
+from runner.reporting.key_metrics import key_metrics
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.plant_step import describe_plant, percent
-from runner.reporting.spec_blocks import spec_abstract, spec_blocks, spec_of_several
+from runner.reporting.spec_blocks import spec_abstract, spec_blocks
 from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 from runner.store.baselines import check_run, find_shipped
@@ -23,54 +23,21 @@ from runner.store.baselines import check_run, find_shipped
 _KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
 _LEVELS = {"0.01": "1 %", "0.99": "99 %"}  # quantiles that a table has room for
-_HEADLINE = ("settling_time", "steady_state_error", "max_tracking_error", "peak_torque", "saturation_fraction")
 
 
-def run_document(runs: Sequence[Run]) -> Document:
-    """Return the report on some stored runs."""
-    date = max(str(run.provenance["date"]) for run in runs)
-    if len(runs) == 1:
-        return _of_one(runs[0], date)
-    failed = sum(run.status == "failed" for run in runs)
-    ends = f"{failed} of them failed" if failed else "all of them finished"
-    return Document(
-        title=f"{len(runs)} runs compared",
-        subtitle=", ".join(dict.fromkeys(str(run.config["robot"]["name"]) for run in runs)),
-        abstract=f"{len(runs)} runs, {ends}.",
-        sections=[
-            Section("Overview", (_overview(runs), *spec_of_several(runs))),
-            *(
-                Section(f"Run {index}: {_name(run)}", [*_blocks(run), *_config(run), provenance([run])])
-                for index, run in enumerate(runs, start=1)
-            ),
-        ],
-        date=date,
-        key_numbers=_numbers_of_several(runs),
-        figures_float=False,
-    )
-
-
-def _numbers_of_several(runs: Sequence[Run]) -> list[tuple[str, str, str]]:
-    """Return how many runs there are and failed, and the range of medians where one metric tells of all tasks."""
-    failed = [f"run {number}" for number, run in enumerate(runs, start=1) if run.status == "failed"]
-    numbers = [("runs", str(len(runs)), ""), ("failed", str(len(failed)), ", ".join(failed))]
-    found = shared_range(runs)
-    return numbers if found is None else [*numbers, (*found, "medians of the runs")]
-
-
-def _of_one(run: Run, date: str) -> Document:
-    """Return the report on a single run: its name, the moving arm and four numbers first."""
+def run_document(run: Run) -> Document:
+    """Return the report on a stored run: its name, the moving arm and four numbers first."""
     shown = run.trace()[[f"q{joint + 1}" for joint in range(len(run.provenance["joints"]))]]
     return Document(
-        title=_name(run),
+        title=run_name(run),
         subtitle=_subtitle(run),
         abstract=literal(_abstract(run)),
         sections=[
-            Section("The run", _blocks(run)),
-            Section("Config", _config(run)),
+            Section("The run", run_blocks(run)),
+            Section("Config", config_blocks(run)),
             Section("Provenance", (provenance([run]),)),
         ],
-        date=date,
+        date=str(run.provenance["date"]),
         cover=_cover(run) if shown.notna().all(axis=1).sum() > 1 else None,
         notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]
         if run.caveats
@@ -80,7 +47,7 @@ def _of_one(run: Run, date: str) -> Document:
     )
 
 
-def _name(run: Run) -> str:
+def run_name(run: Run) -> str:
     """Return robot, law, task and plant in words, such as "Macro, operational space, quintic, PyBullet"."""
     config = run.config
     kinds = (config["controller"]["kind"], config["trajectory"]["kind"], config["plant"]["kind"])
@@ -135,24 +102,8 @@ def _subtitle(run: Run) -> str:
     return ", ".join([limits, *texts])
 
 
-def _overview(runs: Sequence[Run]) -> Table:
-    names = [name for name in _HEADLINE if any(name in run.metrics for run in runs)]
-    varying = _varying(runs)
-    rows = []
-    for index, run in enumerate(runs, start=1):
-        config = flatten(run.config)
-        values = [
-            above_rounding(run.metrics[name].median, run.metrics[name].unit) if name in run.metrics else "–"
-            for name in names
-        ]
-        keys = (literal(str(config.get(key, "–"))) for key in varying)
-        rows.append([str(index), *keys, run.status, str(len(run.caveats)), *values])
-    header = ["run", *varying, "status", "caveats", *(literal(title(name)) for name in names)]
-    first = len(varying) + 2
-    return Table("Runs, with what distinguishes them; medians.", header, rows, tuple(range(first, len(header))))
-
-
-def _blocks(run: Run) -> list[Block]:
+def run_blocks(run: Run) -> list[Block]:
+    """Return failure, caveats, curves, motion and metrics of a run."""
     config = run.config
     blocks: list[Block] = []
     if (failure := run.failure_record) is not None:
@@ -217,7 +168,7 @@ def _of_step(worth: Mapping[str, Any], metric: str) -> list[str]:
     return ["not comparable" if share is None else percent(share)]
 
 
-def _config(run: Run) -> list[Block]:
+def config_blocks(run: Run) -> list[Block]:
     """Return the keys that were changed, and then all of them; of a config that no group here makes all alone."""
     changed = changed_keys(run)
     rows = [literals([key, _yaml(value)]) for key, value in flatten(run.config).items() if key != "outputs"]
@@ -272,18 +223,6 @@ def _seeds(seeds: set[int]) -> str:
         else:
             told.append([seed])
     return ", ".join(str(own[0]) if len(own) == 1 else f"{own[0]} to {own[-1]}" for own in told)
-
-
-def _varying(runs: Sequence[Run]) -> list[str]:
-    flat = [flatten(run.config) for run in runs]
-    keys = dict.fromkeys(
-        key for config in flat for key in config if key != "outputs" and not key.startswith(("caveats.", "spec."))
-    )
-    return [
-        key
-        for key in keys
-        if key == "robot.name" or (not key.startswith("robot.") and len({str(config.get(key)) for config in flat}) > 1)
-    ]
 
 
 def _yaml(value: Any) -> str:

@@ -57,11 +57,11 @@ def spec_abstract(spec: "Spec") -> str:
     )
 
 
-def spec_of_several(runs: Sequence[Run]) -> list[Block]:
+def spec_of_several(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
     """Return how often each of several runs keeps each bound of its spec, where any has one."""
     rows = [
-        literals([str(number), *row])
-        for number, run in enumerate(runs, start=1)
+        literals([name, *row])
+        for name, run in zip(names, runs, strict=True)
         if run.spec is not None
         for row in spec_rows(run.spec)
     ]

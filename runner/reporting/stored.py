@@ -10,6 +10,7 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.reporting import render
 from runner.reporting.comparison.report import comparison_document
+from runner.reporting.comparison.runs import runs_document
 from runner.reporting.comparison.sweeps import letter
 from runner.reporting.document import Document
 from runner.reporting.run_report import run_document
@@ -66,7 +67,8 @@ def compose_report(
         document, name = tuning_document(first, place), names[0]
     elif runs:
         progress.begin("reading runs")
-        document, name = run_document(runs), "".join(run.hash for run in runs)
+        document = run_document(runs[0]) if len(runs) == 1 else runs_document(runs)
+        name = "".join(run.hash for run in runs)
     elif len(sweeps) == 1:
         address = os.path.relpath(sweeps[0].outputs / "runs", place) + "/"
         document, name = sweep_document(sweeps[0], metrics, address), " ".join([sweeps[0].folder.name, *metrics])

@@ -147,31 +147,36 @@ class Comparison:
         """
         return self._ranks.interval(level) if self.n >= SMALLEST_SAMPLE else None
 
-    @property
-    def correlation(self) -> float | None:
-        """Correlation of a and b over the pairs with two numbers; None where one of them does not vary."""
-        one, other = self._numbers
-        return float(np.corrcoef(one, other)[0, 1]) if len(one) > 2 and one.std() > 0.0 < other.std() else None
-
     def pairs_needed(self, difference: float, level: float) -> int | None:
-        """Return how many pairs show a difference with a probability of 80 %; None if these pairs do not tell.
-
-        With s_a and s_b the standard deviations of both and r their correlation, the variance of a difference is
-        s_a^2 + s_b^2 - 2 r s_a s_b. It is taken to be normal.
+        """Return how many pairs show a difference with a probability of 80 %; None if these pairs cannot estimate it.
 
         Args:
             difference: The difference.
             level: Level of the test.
         """
-        one, other = self._numbers
-        if len(one) < 3 or not difference > 0.0:
+        scale = self._scale(level)
+        if scale is None or not difference > 0.0:
             return None
-        covariance = np.cov(one, other)
-        variance = max(0.0, float(covariance[0, 0] + covariance[1, 1] - 2.0 * covariance[0, 1]))
-        normal = NormalDist()
-        quantiles = normal.inv_cdf(1.0 - level / 2.0) + normal.inv_cdf(_POWER)
-        count = quantiles**2 * variance / difference**2 / _EFFICIENCY
+        count = (scale / difference) ** 2
         return max(fewest_pairs(level), math.ceil(count)) if math.isfinite(count) else None
+
+    def smallest_shown(self, level: float) -> float | None:
+        """Return the difference that as many pairs as these show with a probability of 80 %, see `pairs_needed`."""
+        scale = self._scale(level)
+        return None if scale is None or self.n < fewest_pairs(level) else scale / math.sqrt(self.n)
+
+    def _scale(self, level: float) -> float | None:
+        """Return the difference that one pair would show, if the differences are normal; None with too few pairs.
+
+        With s_a and s_b the standard deviations of both and r their correlation, the variance of a difference is
+        s_a^2 + s_b^2 - 2 r s_a s_b.
+        """
+        one, other = self._numbers
+        if len(one) < 3:
+            return None
+        variance = float(np.var(other - one, ddof=1))
+        normal = NormalDist()
+        return (normal.inv_cdf(1.0 - level / 2.0) + normal.inv_cdf(_POWER)) * math.sqrt(variance / _EFFICIENCY)
 
     @property
     def _numbers(self) -> tuple[FloatArray, FloatArray]:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.base.quantities import label_with_unit, quantity
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, ask, judge
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, ask, judge, sentences
+from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.pairs import Label, Pairs, label_text
 from runner.reporting.comparison.sweeps import (
     NOISE_ALONE,
@@ -72,7 +73,7 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
 
 def _abstract(found: Sequence[SweepComparison]) -> list[str]:
     told = [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
-    told += [answer.sentence() for one in found for answer in one.headlines]
+    told += [text for one in found for text in sentences(one.answers)]
     return [*told, *([NOISE_ALONE] if any(one.noise_alone for one in found) else [])]
 
 
@@ -187,29 +188,12 @@ def _cells(pairs: Pairs) -> Table:
 
 
 def _differences(pairs: Pairs, metric: str) -> Panel:
+    """Return the differences of each cell; numbers stand below the columns where the names are too long."""
+    numbered = _numbered(pairs)
     labels = [label_text(label) for label in pairs.labels]
     answers = judge(ask(list(pairs.each()), [metric]), [metric])
-    x = np.array([labels.index(label_text(answer.at)) for answer in answers], dtype=float)
-    ends = np.array([_ends(answer) for answer in answers], dtype=float).reshape(-1, 3)
-    low, median, high = np.where(np.isfinite(ends), ends, np.nan).T
-    gap = np.full(len(x), np.nan)
-    edge = np.array([-0.5, len(labels) - 0.5])
-    hints = [f"{label_text(answer.at)}: {answer.word}" for answer in answers]
-    series = [
-        Series("", edge, np.zeros(2), "dotted", color=1),
-        Series("", np.repeat(x, 3), np.column_stack([low, high, gap]).ravel(), color=0),
-        Series("", x, median, "points", color=0, hints=hints),
-    ]
-    numbered = _numbered(pairs)
-    names = [str(number) if numbered else _name(label) for number, label in enumerate(pairs.labels, 1)]
-    across = "cell" if numbered or not pairs.keys else ", ".join(pairs.keys)
-    label = label_with_unit(f"{pairs.second} - {pairs.first}", pairs.a.units[metric])
-    return Panel(capital(title(metric)), across, label, series, x_names=names)
-
-
-def _ends(answer: Answer) -> tuple[float, float, float]:
-    low, high = answer.interval or (np.nan, np.nan)
-    return (low, answer.comparison.difference, high)
+    columns = [(str(labels.index(label_text(one.at)) + 1) if numbered else _name(one.at), one) for one in answers]
+    return difference_panel(columns, "cell" if numbered or not pairs.keys else ", ".join(pairs.keys))
 
 
 def _against(pairs: Pairs, metric: str) -> Panel:

@@ -3,7 +3,7 @@
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -12,21 +12,20 @@ from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
 from runner.reporting.answers import Answer, Asked, ask, judge
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
-from runner.reporting.comparison.pairs import Label, Pairs, keep_common_seeds, label_text, level_pairs, match
-from runner.reporting.metric_titles import first_screen, is_part, whole_metrics
+from runner.reporting.comparison.pairs import SEED, Label, Pairs, keep_common_seeds, label_text, level_pairs, match
+from runner.reporting.metric_titles import first_screen, is_part
+from runner.reporting.sweep.subject import main_metrics
+from runner.statistics import SMALLEST_SAMPLE
+from runner.store.axes import Axis
 from runner.store.run import Run
 from runner.store.sweep import Sweep
 from runner.sweeps.measurements import Measurements, check_metrics, measure_run, measure_stored, stored_part
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 MOST_MOVEMENTS = 12
 """Cells with the largest differences that are named."""
 
 NOISE_ALONE = (
-    "Repetitions differ in their noise draws alone (mismatch.spread is 0): the intervals tell what other draws would "
-    "do, not what another arm or another error of the model would."
+    "Repetitions draw only noise (mismatch.spread is 0): the intervals do not cover another arm or another model error."
 )
 
 POOLED = (
@@ -55,11 +54,6 @@ class SweepComparison:
     answers: Sequence[Answer]
     cells: Sequence[Asked]
     candidates: int
-
-    @property
-    def headlines(self) -> list[Answer]:
-        """The answers of the first screen, that in the primary metric first."""
-        return sorted((answer for answer in self.answers if answer.rank < 2), key=lambda answer: answer.rank)
 
     @property
     def noise_alone(self) -> bool:
@@ -139,22 +133,43 @@ def compare_levels(
         measurements: The sweep.
         axis: The axis, such as "controller".
         within: Axes within each combination of whose levels the comparison is made; None for over all others, and then
-            within all of them but the seed. Cells of the remaining axes are pooled; see `level_pairs`.
+            within the levels of that other axis whose values change the first metric most. Cells of the remaining axes
+            are pooled; see `level_pairs`.
         metrics: Names of metrics; empty for all.
 
     Raises:
         RunnerError: If the sweep has no such axis or metric, or no two cells share their seeds.
     """
     check_metrics(metrics, measurements.values)
-    pairs = level_pairs(measurements, axis, within)
-    if within is None and any(pair.at for pair in pairs):
-        pairs = [*level_pairs(measurements, axis, ()), *pairs]
+    pairs = level_pairs(measurements, axis, within or ())
+    if within is None and (other := _strongest(measurements, axis, metrics)):
+        pairs += level_pairs(measurements, axis, [other])
     if not pairs:
         raise RunnerError(
             f"{axis}: no two cells differ in it alone and share their seed, so none are compared in pairs; sweep it "
             "with one seed, or over the same seeds for each value"
         )
     return answer(pairs, list(dict.fromkeys(metrics or measurements.values)), metrics)
+
+
+def compare_runs(a: Measurements, b: Measurements, metrics: Sequence[str] = ()) -> tuple[list[Answer], str]:
+    """Return the paired comparison of two runs on the same seeds, or none and the reason.
+
+    Args:
+        a: The first, which the second is compared with.
+        b: The second.
+        metrics: Names of metrics; empty for the main ones.
+    """
+    pairs = match(a, b)
+    count = min(a.repetitions, b.repetitions)
+    names = [name for name in metrics or main_metrics([a, b]) if name in a.values and name in b.values]
+    if not pairs.share_seeds.all():
+        return [], f"not compared in pairs: seed {a.seeds[0]} and seed {b.seeds[0]} share no noise"
+    if count < SMALLEST_SAMPLE:
+        return [], f"not compared in pairs: {count} repetitions in common, and {SMALLEST_SAMPLE} are needed"
+    if not names:
+        return [], "not compared in pairs: no metric is in both"
+    return answer([pairs], names, metrics), ""
 
 
 def answer(pairs: Sequence[Pairs], names: Sequence[str], wanted: Sequence[str] = ()) -> list[Answer]:
@@ -167,7 +182,22 @@ def answer(pairs: Sequence[Pairs], names: Sequence[str], wanted: Sequence[str] =
     """
     asked = ask(pairs, names)
     known = {one.metric: None for one in asked}
-    return judge(asked, first_screen([name for name in wanted if name in known] or whole_metrics(known)))
+    first = [name for name in wanted if name in known] or main_metrics([pairs[0].a, pairs[0].b], known)
+    return judge(asked, first_screen(first))
+
+
+def _strongest(measurements: Measurements, axis: str, metrics: Sequence[str]) -> str:
+    """Return the other axis over whose levels the mean of the first metric's medians varies most; "" without one."""
+    others = [other for other in measurements.axes if other.name not in (axis, SEED)]
+    name, *_ = [*metrics, *main_metrics([measurements])]
+    medians = measurements.medians(name)
+    finite = np.isfinite(medians)
+
+    def variance(other: Axis) -> float:
+        means = [medians[finite & (other.level == level)] for level in np.unique(other.level)]
+        return float(np.var([some.mean() for some in means if some.size])) if finite.any() else 0.0
+
+    return max(others, key=variance).name if others else ""
 
 
 def answer_rows(answers: Sequence[Answer]) -> list[dict[str, Any]]:
@@ -183,13 +213,6 @@ def answer_rows(answers: Sequence[Answer]) -> list[dict[str, Any]]:
             "p": one.p_value, "word": one.word,
         })  # fmt: skip
     return rows
-
-
-def answer_frame(answers: Sequence[Answer]) -> "pd.DataFrame":
-    """Return the rows of `answer_rows` as a table."""
-    import pandas as pd
-
-    return pd.DataFrame(answer_rows(answers)).astype({"low": float, "high": float, "p": float})
 
 
 def counts_by_sign(one: Asked) -> tuple[int, int]:

@@ -9,31 +9,35 @@ import numpy as np
 from runner.base.dotted_keys import dotted, leaves
 from runner.base.quantities import plain_number
 from runner.base.sanitize import align_columns, one_line
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, sentences, short_table
 from runner.reporting.comparison.differences import Value, find_differences
 from runner.reporting.comparison.pairs import label_text, match
 from runner.reporting.comparison.sweeps import (
     NOISE_ALONE,
     POOLED,
     SweepComparison,
-    answer,
+    compare_runs,
     counts_by_sign,
     format_count,
     noise_alone,
     size_told,
 )
-from runner.statistics import SMALLEST_SAMPLE
+from runner.reporting.sweep.subject import main_metrics
 from runner.store.run import Run
 from runner.store.seal import simulated_part
 from runner.sweeps.measurements import Measurements
 
+ALL = "--all prints every metric and the method, --json all numbers."
+"""What follows a short comparison."""
+
+_MOST_ROWS = 15  # of a short table
 # Possible causes of a difference besides the config; date, machine and command do not affect the physics.
 _PROVENANCE = ("commit", "versions", "plant_step")
 
 
-def level_lines(side: Measurements, axis: str, answers: Sequence[Answer]) -> Iterator[str]:
-    """Yield the comparison of the levels of an axis."""
-    yield one_line(f"{side.folder}  {len(side.hashes)} cells, by {axis}; repetitions in each: {side.repetitions}")
+def level_lines(side: Measurements, axis: str, answers: Sequence[Answer], everything: bool) -> Iterator[str]:
+    """Yield the comparison of the levels of an axis: answers first; with `everything` all metrics and the method."""
+    yield one_line(f"{side.folder}  {size_told(side)}; by {axis}")
     if side.missing:
         left = format_count(side.missing, "cell is", "cells are")
         yield one_line(f"{left} not stored; continue with: {side.command}")
@@ -45,9 +49,13 @@ def level_lines(side: Measurements, axis: str, answers: Sequence[Answer]) -> Ite
         yield align_columns([[one.key, "; ".join(f"{at}: {text}" for at, text in one.values)] for one in along])
     else:
         yield f"the levels of {axis} differ in {axis} alone"
-    yield _caveat_table([row[1:] for row in _caveats(side)])
     yield ""
-    yield from (one_line(one.sentence()) for one in answers if one.rank < 2 and not one.at)
+    yield from map(one_line, sentences(answers))
+    yield from _doubt_lines([side])
+    yield ""
+    if not everything:
+        yield from _short_lines(answers)
+        return
     rows = [["at", axis, "metric", "unit", *HEADER, "the second is"]]
     for one in answers:
         at = label_text(one.at) if one.at else "all"
@@ -55,26 +63,30 @@ def level_lines(side: Measurements, axis: str, answers: Sequence[Answer]) -> Ite
     yield align_columns(rows, indent="")
     yield ""
     yield EXPLAINED
-    if side.repetitions > 1 and noise_alone(config for config, _ in side.configs):
-        yield NOISE_ALONE
 
 
-def sweep_lines(found: SweepComparison) -> Iterator[str]:
-    """Yield the comparison of two sweeps."""
+def sweep_lines(found: SweepComparison, everything: bool) -> Iterator[str]:
+    """Yield the comparison of two sweeps; with `everything` all metrics, the method and the largest differences."""
     pairs, differences = found.pairs, found.differences
     a, b = pairs.first, pairs.second
     for side in (pairs.a, pairs.b):
         yield one_line(f"{side.name}  {side.folder}  {size_told(side)}")
     yield ""
     yield one_line(differences.in_words(a, b))
-    if values := [*differences.options, *differences.values]:
+    values = [*differences.options, *differences.values]
+    if len(values) > 1:
         yield align_columns([["key", a, b, "at"], *map(_value, values)])
     made_by = [["made by", a, b, ""], *map(_value, differences.provenance)]
-    yield f"provenance differs:\n{align_columns(made_by)}" if differences.provenance else "same provenance"
+    if differences.provenance:
+        yield f"provenance differs:\n{align_columns(made_by)}"
     yield from map(one_line, found.cells_told())
-    yield _caveat_table([*_caveats(pairs.a), *_caveats(pairs.b)])
     yield ""
-    yield from (one.sentence() for one in found.answers if one.rank < 2)
+    yield from map(one_line, sentences(found.answers))
+    yield from _doubt_lines([pairs.a, pairs.b])
+    yield ""
+    if not everything:
+        yield from _short_lines(found.answers)
+        return
     yield f"every metric {'in the one cell' if len(pairs) == 1 else f'over all {len(pairs)} cells'}, on the same seeds"
     header = ["metric", "unit", a, b, f"{b} - {a}"]
     rows = [[*header, *HEADER[1:], f"{b} is", "cells below, above 0"]]
@@ -87,12 +99,12 @@ def sweep_lines(found: SweepComparison) -> Iterator[str]:
         yield align_columns([["cell", *header], *rows])
     yield ""
     yield f"{POOLED} {EXPLAINED}"
-    if found.noise_alone:
-        yield NOISE_ALONE
 
 
-def run_lines(runs: tuple[Run, Run], sides: tuple[Measurements, Measurements], metrics: Sequence[str]) -> Iterator[str]:
-    """Yield the comparison of two runs."""
+def run_lines(
+    runs: tuple[Run, Run], sides: tuple[Measurements, Measurements], metrics: Sequence[str], everything: bool
+) -> Iterator[str]:
+    """Yield the comparison of two runs; with `everything` all metrics, the method and same configs."""
     a, b = (side.name for side in sides)
     for side, run in zip(sides, runs, strict=True):
         yield one_line(f"{side.name}  {run.folder}  {run.failure or run.status}")
@@ -103,12 +115,46 @@ def run_lines(runs: tuple[Run, Run], sides: tuple[Measurements, Measurements], m
         yield "  the text of robot.urdf differs"
     made_by = [{key: run.provenance[key] for key in _PROVENANCE if key in run.provenance} for run in runs]
     yield _changed_keys("provenance", made_by, [a, b])
-    yield _caveat_table([[side.name, str(one["rule"]), str(one["text"])] for side in sides for one in side.caveats[0]])
     yield ""
+    names = metrics or ([name for side in sides for name in side.values] if everything else main_metrics(sides))
+    answers, why = compare_runs(*sides, metrics if metrics or not everything else names)
+    yield from map(one_line, sentences(answers) if answers else [why])
+    yield from _doubt_lines(sides)
+    yield ""
+    if answers and not everything:
+        yield from _short_lines(answers)
+        return
     header = ["metric", "unit", a, b, f"{b} - {a}", f"{b} / {a}"]
-    yield align_columns([header, *_metric_rows(sides, metrics)], indent="")
+    yield align_columns([header, *_metric_rows(sides, names)], indent="")
+    if answers:
+        yield ""
+        header = ["metric", "unit", f"{b} - {a}", *HEADER[1:], f"{b} is"]
+        yield align_columns([header, *([one.metric, one.unit, *one.plain_cells] for one in answers)])
+        yield EXPLAINED
+    elif not everything:
+        yield ALL
+
+
+def _short_lines(answers: Sequence[Answer]) -> Iterator[str]:
+    """Yield the short table, and how to print more."""
+    header, rows = short_table(answers)
+    yield align_columns([header, *rows[:_MOST_ROWS]], indent="")
+    if len(rows) > _MOST_ROWS:
+        yield f"{len(rows) - _MOST_ROWS} more rows"
     yield ""
-    yield from _paired_lines(sides, metrics)
+    yield ALL
+
+
+def _doubt_lines(sides: Sequence[Measurements]) -> Iterator[str]:
+    """Yield what may mislead: the caveats, and repetitions that draw noise only."""
+    several = len(sides) > 1
+    for side in sides:
+        name = f"{side.name}, " if several else ""
+        for rule, count, _, text in side.caveats_by_rule():
+            yield one_line(f"May mislead: {name}{rule} in {count} of {len(side.hashes)} cells: {text}.")
+    repeated = min(side.repetitions for side in sides) > 1
+    if repeated and noise_alone(config for side in sides for config, _ in side.configs):
+        yield NOISE_ALONE
 
 
 def _changed_keys(what: str, both: Sequence[Mapping[str, Any]], names: Sequence[str]) -> str:
@@ -122,44 +168,13 @@ def _shown(value: Any) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
-def _metric_rows(sides: Sequence[Measurements], metrics: Sequence[str]) -> Iterator[list[str]]:
+def _metric_rows(sides: tuple[Measurements, Measurements], names: Sequence[str]) -> Iterator[list[str]]:
     """Yield the medians of each metric in two runs, their difference and their ratio."""
-    for name in dict.fromkeys(metrics or [name for side in sides for name in side.values]):
+    for name in dict.fromkeys(names):
         unit = next(side.units[name] for side in sides if name in side.units)
         a, b = (float(side.medians(name)[0]) if name in side.values else np.nan for side in sides)
         shown = (a, b, b - a, b / a if a and np.isfinite(a) else np.nan)
         yield [name, unit, *(plain_number(value if np.isfinite(value) else None) for value in shown)]
-
-
-def _paired_lines(sides: tuple[Measurements, Measurements], metrics: Sequence[str]) -> Iterator[str]:
-    """Yield the paired comparison of two runs on the same seeds, or the reason why there is none."""
-    a, b = sides
-    pairs = match(a, b)
-    count = min(a.repetitions, b.repetitions)
-    both = [name for name in metrics or a.values if name in a.values and name in b.values]
-    if not pairs.share_seeds.all():
-        yield f"not compared in pairs: seed {a.seeds[0]} and seed {b.seeds[0]} share no noise"
-    elif count < SMALLEST_SAMPLE:
-        yield f"not compared in pairs: {count} repetitions in common, and {SMALLEST_SAMPLE} are needed"
-    elif not both:
-        yield "not compared in pairs: no metric is in both"
-    else:
-        answers = answer([pairs], both, metrics)
-        yield from (one.sentence() for one in answers if one.rank < 2)
-        header = ["metric", "unit", f"{b.name} - {a.name}", *HEADER[1:], f"{b.name} is"]
-        yield align_columns([header, *([one.metric, one.unit, *one.plain_cells] for one in answers)])
-        yield EXPLAINED
-        if noise_alone(config for side in sides for config, _ in side.configs):
-            yield NOISE_ALONE
-
-
-def _caveats(side: Measurements) -> list[list[str]]:
-    return [[side.name, rule, f"{count} of {len(side.hashes)} cells", text]
-            for rule, count, _, text in side.caveats_by_rule()]  # fmt: skip
-
-
-def _caveat_table(rows: Sequence[Sequence[str]]) -> str:
-    return f"caveats:\n{align_columns(rows)}" if rows else "no caveats"
 
 
 def _value(value: Value) -> list[str]:

@@ -1,6 +1,7 @@
 """Axes of a sweep and fixed values, failed runs with reasons, and caveats of the cells."""
 
 import math
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -103,6 +104,39 @@ def failures_section(subject: Subject) -> Section:
     more = f" {left} more stand in the list of runs and in the table of the sweep." if left else ""
     blocks.append(Table(f"Failed runs.{more}", ["run", "cell", "failure"], [literals(row) for row in rows]))
     return Section("Failed runs", blocks)
+
+
+def failing_cells(subject: Subject) -> str:
+    """Return the shortest condition that holds for all failed cells, of one axis or two; empty without one."""
+    failed = np.array([status != "ok" for status in subject.measurements.statuses])
+    axes = subject.axes
+    parts = [
+        {axis.name: np.unique(axis.level[failed]) for axis in some}
+        for some in (*combinations(axes, 1), *combinations(axes, 2))
+    ]
+    by_name = {axis.name: axis for axis in axes}
+    best = ""
+    for part in parts:
+        if any(len(levels) == len(by_name[name].values) for name, levels in part.items()):
+            continue
+        inside = np.all([np.isin(by_name[name].level, levels) for name, levels in part.items()], axis=0)
+        told = " and ".join(f"{name} {_levels(by_name[name], levels)}" for name, levels in part.items())
+        if np.array_equal(inside, failed):
+            return f"Every run with {told} failed, and no other."
+        best = best or f"All failed runs have {told}."
+    return best
+
+
+def _levels(axis: Axis, levels: NDArray[np.intp]) -> str:
+    """Return some levels of an axis in words: numbers at one end as a bound."""
+    texts = [axis.text(level) for level in levels.tolist()]
+    if axis.numbers is not None and len(texts) > 1:
+        chosen, others = axis.numbers[levels], np.delete(axis.numbers, levels)
+        if chosen.min() > others.max():
+            return f"{axis.text(int(levels[chosen.argmin()]))} or more"
+        if chosen.max() < others.min():
+            return f"{axis.text(int(levels[chosen.argmax()]))} or less"
+    return " or ".join([", ".join(texts[:-1]), texts[-1]]) if len(texts) > 1 else texts[0]
 
 
 def _by_level(axis: Axis, failed: NDArray[np.bool_]) -> list[list[str]]:

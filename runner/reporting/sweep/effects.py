@@ -19,6 +19,7 @@ _MOST_LEVELS = 200  # of an axis that are drawn, spread evenly
 _MOST_LINES = 6
 _APART = 0.1  # of curves at one text, so that their bars are seen
 _MOST_INTERVALS = 60
+_MOST_OF_IT = 0.5  # share of the spread from which on the draws are named
 
 
 def section(subject: Subject) -> Section:
@@ -35,13 +36,12 @@ def section(subject: Subject) -> Section:
 
 
 def describe_shared_variation(subject: Subject) -> list[str]:
-    """Return in a sentence which share of the variation of the first metric the draws of the repetitions make."""
+    """Return in a sentence which share of the spread of the first metric the draws make, if it is more than half."""
     metric = subject.metrics[0]
     found = subject.effects[metric].shared
-    if found is None:
+    if found is None or found < _MOST_OF_IT:
         return []
-    drawn = f"{_percent(found)} of the variation of the {title(metric)} lies between the repetitions"
-    return [f"{drawn}: all cells share what is drawn for one."]
+    return [f"What each repetition draws makes {_percent(found)} of the spread of the {title(metric)}."]
 
 
 def _table(analyses: dict[str, EffectAnalysis]) -> Table:

@@ -1,92 +1,90 @@
 """Paired comparisons of the values of an axis: the main question of a sweep, and the tables of all axes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from runner.base.errors import RunnerError
 from runner.base.quantities import quantity
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, ask, judge
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, ask, judge, sentences, short_table
 from runner.reporting.charts.thinning import spaced_indices
-from runner.reporting.comparison.pairs import SEED, Pairs, label_text, level_pairs
-from runner.reporting.document import Block, Section, Table, Text
+from runner.reporting.comparison.difference_figure import difference_panel
+from runner.reporting.comparison.pairs import SEED, level_pairs
+from runner.reporting.comparison.sweeps import compare_levels
+from runner.reporting.document import Block, Curves, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, first_screen, title
 from runner.reporting.sweep.subject import Subject
 from runner.statistics import SMALLEST_SAMPLE
 from runner.store.axes import Axis
 
-_MOST_TOLD = 3  # pairs of values of an axis, and keys that go with it, that sentences tell
+_MOST_KEYS = 3  # that vary with an axis and are named
+_MOST_COLUMNS = 12
 _MOST_PAIRS = 24
 
 
-@dataclass(frozen=True)
-class Question:
-    """How the values of one axis compare in the metrics of the first screen.
+def find_answers(subject: Subject) -> list[Answer]:
+    """Return the answers to what a sweep asks; none where no two cells differ in one axis and share their seed.
 
-    Attributes:
-        axis: The axis that is asked about.
-        within: The other axis at each of whose values it is asked again; empty if nothing else was swept.
-        overall: Each pair of values, over all else.
-        at: Each pair of values at one value of the other axis.
-        answers: The answers for all of these pairs.
+    Compared are the values of the first axis whose values are choices, such as controllers, else of the first one.
     """
-
-    axis: str
-    within: str
-    overall: Sequence[Pairs]
-    at: Sequence[Pairs]
-    answers: Sequence[Answer]
-
-    def about(self, pairs: Pairs) -> list[Answer]:
-        """Return the answers for one pair of values."""
-        return [answer for answer in self.answers if answer.pairs is pairs]
+    axis = asked_axis(subject)
+    if axis is None or not subject.metrics or too_few(subject):
+        return []
+    try:
+        return compare_levels(subject.measurements, axis.name, None, subject.metrics)
+    except RunnerError:
+        return []
 
 
-def find_question(subject: Subject) -> Question | None:
-    """Return what a sweep asks and the answers; None where no two cells differ in one axis and share their seeds.
-
-    Asked about is the first axis whose values are choices, such as controllers, else the first one. Its values are
-    compared with its first one: over all else, a value for each draw; and at each value of the axis, of the others,
-    over whose values the medians of the first metric spread most.
-    """
+def asked_axis(subject: Subject) -> Axis | None:
+    """Return the axis that a sweep asks about."""
     axes = [axis for axis in subject.axes if axis.name != SEED]
-    if not subject.metrics or not axes:
-        return None
-    axis, *others = sorted(axes, key=lambda each: each.numbers is not None)
-    measurements, metrics = subject.measurements, first_screen(subject.metrics)
-    overall = level_pairs(measurements, axis.name, ())
-    within = max(others, key=lambda each: _spread(subject, each)).name if others else ""
-    at = level_pairs(measurements, axis.name, [within]) if within else []
-    found = judge(ask([*overall, *at], metrics), metrics)
-    return Question(axis.name, within, overall, at, found) if found else None
+    return min(axes, key=lambda axis: axis.numbers is not None, default=None)
 
 
-def sentences(question: Question, subject: Subject) -> list[str]:
-    """Return the answers in words, with where values of the other axis tell more and what else may be the cause."""
-    told = []
-    for pairs in question.overall[:_MOST_TOLD]:
-        told += [answer.sentence(_at(question, answer)) for answer in question.about(pairs)]
-    left = len(question.overall) - _MOST_TOLD
-    if left > 0:
-        told.append(f"{left} more values of {question.axis} are in the tables of pairs.")
-    along = [found.key for found in subject.measurements.differences if question.axis in found.axes]
-    if along and any(answer.sign for answer in question.answers):
-        more = f" and {len(along) - _MOST_TOLD} more" if len(along) > _MOST_TOLD else ""
-        named = f"{', '.join(along[:_MOST_TOLD])}{more}"
-        told.append(f"With {question.axis} go {named}, which may be the cause: see Also differs.")
-    return told
+def answer_blocks(answers: Sequence[Answer]) -> list[Block]:
+    """Return the figure of paired differences and the short table."""
+    header, rows = short_table(answers)
+    numeric = tuple(range(len(header) - 4, len(header) - 1))
+    caption = "Medians and difference of each metric, and whether the difference is shown."
+    return [_figure(answers), Table(literal(caption), literals(header), [literals(row) for row in rows], numeric)]
+
+
+def _figure(answers: Sequence[Answer]) -> Curves:
+    """Return the paired differences in the metrics of the first screen, at each level or of each compared value."""
+    overall = [one for one in answers if not one.at]
+    several = len({one.names for one in overall}) > 1
+    panels = []
+    for metric in first_screen(list(dict.fromkeys(one.metric for one in answers))):
+        shown = [one for one in (overall if several else answers) if one.metric == metric]
+        names = [one.names[1] if several else ", ".join(one.at.values()) or "all" for one in shown]
+        kept = spaced_indices(len(shown), _MOST_COLUMNS)
+        across = "" if several else ", ".join(next((one.at for one in shown if one.at), {}))
+        panels.append(difference_panel([(names[place], shown[place]) for place in kept], across))
+    first, second = answers[0].names
+    what = f"each minus {first}" if several else f"{second} minus {first}"
+    told = f"Differences, {what}: a dot for each pair, a bar for the interval; zero is no difference."
+    return Curves(literal(told), panels)
+
+
+def causes(subject: Subject, answers: Sequence[Answer]) -> list[str]:
+    """Return which other keys may cause a difference, since they vary with the axis that is asked about."""
+    axis = asked_axis(subject)
+    along = [found.key for found in subject.measurements.differences if axis is not None and axis.name in found.axes]
+    if axis is None or not along or not any(answer.sign for answer in answers):
+        return []
+    more = f" and {len(along) - _MOST_KEYS} more" if len(along) > _MOST_KEYS else ""
+    return [f"{', '.join(along[:_MOST_KEYS])}{more} vary with {axis.name} and may be the cause: see Also differs."]
 
 
 def in_short(subject: Subject) -> str:
     """Return the first answer, as a command that made a sweep ends with it; else the range of medians, and why."""
-    few = too_few(subject)
-    question = None if few else find_question(subject)
-    if question is not None and len(question.overall) == 1:
-        first, *_ = question.about(question.overall[0])
-        return first.sentence(_at(question, first))
+    answers = find_answers(subject)
+    if len({one.names for one in answers}) == 1:
+        return sentences(answers)[0]
     found = range_told(subject)
-    return f"{found[0]}: medians from {found[1]}. {few}".rstrip() if found else ""
+    return f"{found[0]}: medians from {found[1]}. {too_few(subject)}".rstrip() if found else ""
 
 
 def range_told(subject: Subject) -> tuple[str, str] | None:
@@ -108,27 +106,6 @@ def too_few(subject: Subject) -> str:
         f"With {draws} pair{'s' if draws > 1 else ''} no difference can be shown: {SMALLEST_SAMPLE} are the fewest, as "
         f"by repetitions={SMALLEST_SAMPLE}."
     )
-
-
-def _at(question: Question, overall: Answer) -> str:
-    """Return at which values of the other axis the same two values of the axis differ; empty if at none."""
-    same = [pairs for pairs in question.at if (pairs.first, pairs.second) == overall.names]
-    found = [answer for answer in question.answers
-             if answer.pairs in same and answer.metric == overall.metric and answer.sign]  # fmt: skip
-    if not found:
-        return ""
-    told = ", ".join(f"{answer.word} by {answer.amount} at {label_text(answer.at)}" for answer in found)
-    rest = len(same) - len(found)
-    others = f"; at {rest} other value{'s' if rest > 1 else ''} no difference is shown" if rest else ""
-    return f" {overall.names[1]} is {told}{others}."
-
-
-def _spread(subject: Subject, axis: Axis) -> float:
-    """Return the variance of the first metric between the values of an axis, over the medians of their cells."""
-    medians = subject.medians[subject.metrics[0]]
-    finite = np.isfinite(medians)
-    means = [medians[finite & (axis.level == level)] for level in np.unique(axis.level)]
-    return float(np.var([some.mean() for some in means if some.size])) if finite.any() else 0.0
 
 
 def pairs_section(subject: Subject) -> Section | None:

@@ -7,11 +7,28 @@ from dataclasses import replace
 import numpy as np
 
 from runner.base.dotted_keys import split_override
+from runner.base.sanitize import one_line
+from runner.reporting.answers import Answer, sentences
+from runner.reporting.comparison.sweeps import NOISE_ALONE, noise_alone
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.markup import literal
 from runner.reporting.sweep import distributions, effects, maps, spec, tradeoff
-from runner.reporting.sweep.cells import axes_section, caveats_section, failures_section, has_caveats
-from runner.reporting.sweep.question import find_question, pairs_section, range_told, sentences, too_few
+from runner.reporting.sweep.cells import (
+    axes_section,
+    caveats_section,
+    failing_cells,
+    failures_section,
+    has_caveats,
+)
+from runner.reporting.sweep.question import (
+    answer_blocks,
+    asked_axis,
+    causes,
+    find_answers,
+    pairs_section,
+    range_told,
+    too_few,
+)
 from runner.reporting.sweep.subject import Subject, choose
 from runner.store import Sweep
 from runner.sweeps.measurements import measure_sweep
@@ -20,6 +37,7 @@ MOST_RUNS = 5000
 """Runs that the list of a report holds; of more, those at both ends of the order."""
 
 _MOST_VALUES = 100  # of what made the runs
+_MOST_CHOICES = 4  # that the title names
 _NAMED = 3  # cells that failed, on the first screen
 
 
@@ -37,13 +55,21 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     """
     subject = choose(measure_sweep(sweep), metrics)
     measurements = subject.measurements
-    doubts = [caveats_section(subject)] if has_caveats(subject) else []
-    sections = [*doubts, axes_section(subject, sweep.command)]
+    answers = find_answers(subject)
+    several = bool(subject.metrics and subject.axes)
+    sections = [Section("Differences in pairs", answer_blocks(answers))] if answers else []
+    if measurements.failed:
+        sections.append(failures_section(subject))
     if sweep.spec:
         sections.append(spec.section(subject, sweep))
-    ranked = subject.ranked
-    if subject.metrics and subject.axes:
+    if several and not answers:
         sections.append(effects.section(subject))
+    shown = len(sections) or None
+    sections += [caveats_section(subject)] if has_caveats(subject) else []
+    sections.append(axes_section(subject, sweep.command))
+    ranked = subject.ranked
+    if several:
+        sections += [effects.section(subject)] if answers else []
         compared = pairs_section(subject)
         sections += [compared] if compared is not None else []
     if subject.metrics and maps.is_readable(subject):
@@ -55,18 +81,17 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         sections.append(distributions.section(subject))
         low, high = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
         sections.append(distributions.extremes_section(subject, low, high))
-    if measurements.failed:
-        sections.append(failures_section(subject))
     sections.append(_all_runs(subject, sweep, runs_address))
     sections.append(Section("Provenance", (Provenance(_made_by(subject, sweep)),)))
     return Document(
-        title="Sweep over " + (" × ".join(axis.name for axis in subject.axes) or "nothing"),
+        title=_title(subject),
         subtitle=", ".join(measurements.fixed),
-        abstract=literal(_abstract(subject, sweep)),
+        abstract=literal("\n".join(map(one_line, _abstract(subject, sweep, answers)))),
         sections=sections,
         date=max(measurements.provenance["made on"]),
         key_numbers=_key_numbers(subject),
         figures_float=False,
+        shown=shown,
     )
 
 
@@ -82,24 +107,34 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
     return numbers if found is None else [*numbers, (found[0], found[1], "medians of the cells")]
 
 
-def _abstract(subject: Subject, sweep: Sweep) -> str:
+def _title(subject: Subject) -> str:
+    """Return the question of a sweep."""
+    axis = asked_axis(subject)
+    if axis is None:
+        return "Sweep of one cell" if not subject.axes else "Sweep over seeds"
+    others = [other.name for other in subject.axes if other is not axis]
+    within = f", over {', '.join(others)}" if others else ""
+    names = [axis.text(level) for level in range(len(axis.values))]
+    choices = f"{', '.join(names[:-1])} or {names[-1]}" if 1 < len(names) <= _MOST_CHOICES else f"{len(names)} values"
+    return f"Which {axis.name}: {choices}{within}?" if axis.numbers is None else f"What {axis.name} changes{within}"
+
+
+def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer]) -> list[str]:
+    """Return the answers, then what may mislead and how large the sweep is: a paragraph each."""
     measurements = subject.measurements
     cells, failed = len(measurements.hashes), measurements.failed
-    sizes = " × ".join(f"{axis.name} ({len(axis.values)})" for axis in subject.axes)
-    ends = f"{failed} of them failed" if failed else "all of them finished"
-    over = f" over {sizes}" if sizes else ""
-    texts = [f"{cells} cells{over}, {ends}; repetitions in each: {measurements.repetitions}."]
-    doubted = sum(bool(found) for found in measurements.caveats)
-    if doubted:
-        texts.append(f"{doubted} of {cells} cells have caveats.")
+    texts = [f"{failed} of {cells} cells failed. {failing_cells(subject)}".rstrip()] if failed else []
     if sweep.spec:
         texts.append(spec.summary(subject, sweep))
+    few = too_few(subject) if subject.ranked and subject.axes else ""
+    texts += [few] if few else [*sentences(answers), *causes(subject, answers)]
     if subject.ranked and subject.axes:
-        few = too_few(subject)
-        question = None if few else find_question(subject)
-        texts += [few] if few else [] if question is None else sentences(question, subject)
         texts += effects.describe_shared_variation(subject)
-    return " ".join(texts)
+    rules = [f"{rule} ({count} of {cells} cells)" for rule, count, *_ in measurements.caveats_by_rule()]
+    texts += [f"May mislead: {', '.join(rules)}; see Caveats."] if rules else []
+    if measurements.repetitions > 1 and noise_alone(config for config, _ in measurements.configs):
+        texts.append(NOISE_ALONE)
+    return texts
 
 
 def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:

@@ -1,6 +1,6 @@
 """Subject of a sweep report: cells, compared metrics and their order."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -20,7 +20,7 @@ from runner.sweeps.table import median_ends
 if TYPE_CHECKING:
     from runner.statistics import EffectAnalysis
 
-MOST_METRICS = 4
+MOST_METRICS = 5
 """Metrics that a report compares when nobody has named any."""
 
 MOST_GROUPS = 64
@@ -136,15 +136,23 @@ def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:
     Raises:
         RunnerError: If a metric asked for is none of the sweep's.
     """
-    if wanted:
-        return Subject(measurements, tuple(measurements.named(wanted)))
-    whole = whole_metrics(measurements.values)
-    varying = [name for name in whole if _varies(measurements.medians(name))]
+    return Subject(measurements, tuple(measurements.named(wanted) if wanted else main_metrics([measurements])))
+
+
+def main_metrics(sides: Sequence[Measurements], known: Collection[str] = ()) -> list[str]:
+    """Return some errors and a cost: metrics of all sweeps that differ between their cells.
+
+    Args:
+        sides: The sweeps.
+        known: Metrics that they are chosen from; empty for all.
+    """
+    whole = whole_metrics([name for name in known or sides[0].values if all(name in side.values for side in sides)])
+    varying = [name for name in whole if _varies(np.concatenate([side.medians(name) for side in sides]))]
     chosen = (varying or whole)[:MOST_METRICS]
     cost = next((name for name in COSTS if name in varying), None)
     if cost is not None and cost not in chosen:
         chosen[-1] = cost  # what the others are traded off against
-    return Subject(measurements, tuple(chosen))
+    return chosen
 
 
 def spans_decades(values: FloatArray) -> bool:

@@ -29,7 +29,7 @@ def test_runs_are_compared_with_the_first_one(runs, cli):
     assert list(found.columns) == COLUMNS
     assert found[["first", "second"]].to_numpy().tolist() == [["A", "B"]] * 2 + [["A", "C"]] * 2
     assert found["n"].tolist() == [6] * 4
-    printed = cli("compare", *(run.folder for run in runs), "--metrics", "peak_torque,energy").out
+    printed = cli("compare", *(run.folder for run in runs), "--metrics", "peak_torque,energy", "--all").out
     for _, row in found.iterrows():
         assert any(
             line.split()[0] == row["metric"] and f"{row['difference']:.5g}" in line and row["word"] in line
@@ -43,6 +43,7 @@ def test_sweeps_are_compared_in_the_cells_that_both_have(sweeps, runs):
     found = runner.compare(*sweeps, metrics="peak_torque")
     assert list(found.columns) == COLUMNS
     assert found["n"].tolist() == [6]  # two cells share the six draws
+    assert found.summary.startswith("Largest torque: ")
     whole = runner.compare(*sweeps)
     assert len(whole) > 10
     assert "peak_torque" in set(whole["metric"])

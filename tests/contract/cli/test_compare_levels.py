@@ -22,7 +22,7 @@ def rows(out, metric):
 
 
 def test_levels_are_compared_within_each_level_of_the_other_axis(cli, folder):
-    ending = cli("compare", folder, "--by", "controller", "--metrics", "rms_torque")
+    ending = cli("compare", folder, "--by", "controller", "--metrics", "rms_torque", "--all")
     assert (ending.code, ending.err) == (0, "")
     first, *others = rows(ending.out, "rms_torque")
     assert [first[0], *(row[0] for row in others)] == ["all", "gravity=9.7", "gravity=9.81"]
@@ -33,7 +33,7 @@ def test_levels_are_compared_within_each_level_of_the_other_axis(cli, folder):
 
 
 def test_axes_that_are_not_named_are_pooled(cli, folder):
-    axis = ("--by", "gravity", "--within", "controller", "--metrics", "rms_torque")
+    axis = ("--by", "gravity", "--within", "controller", "--metrics", "rms_torque", "--all")
     assert [row[0] for row in rows(cli("compare", folder, *axis).out, "rms_torque")] == [
         "controller=computed_torque",
         "controller=operational_space",
@@ -46,6 +46,19 @@ def test_what_goes_with_an_axis_is_told_before_any_number(cli):
     head = out.partition("Rms torque: ")[0]
     assert "the levels of controller.period differ in more than controller.period" in head
     assert "plant.step" in head
+
+
+def test_the_answer_comes_first_and_every_metric_when_asked(cli, folder):
+    short, whole = (cli("compare", folder, "--by", "controller", *more).out for more in ((), ("--all",)))
+    first = short.split("\n\n")[1].splitlines()[0]
+    assert first.startswith("Largest tracking error: ")
+    assert "computed_torque (" in first
+    table = short[short.index("\nmetric ") :].splitlines()
+    assert table[1].split("  ")[0] == "metric"
+    assert len(table) <= 14
+    assert "--all prints every metric" in short
+    assert "peak_torque_q1" in whole
+    assert "peak_torque_q1" not in short
 
 
 @pytest.mark.parametrize(
@@ -76,14 +89,14 @@ def test_by_is_for_one_sweep(cli, folder):
 
 
 def test_where_limits_the_cells(cli, folder):
-    both = ("--by", "controller", "--metrics", "rms_torque")
+    both = ("--by", "controller", "--metrics", "rms_torque", "--all")
     ending = cli("compare", folder, *both, "--where", "gravity=9.81")
-    assert "2 cells, by controller" in ending.out
+    assert "2 cells; repetitions in each: 6; by controller" in ending.out
     assert len(rows(ending.out, "rms_torque")) == 1
     assert "--where gravity: no value. Allowed: KEY=VALUE." in cli("compare", folder, *both, "--where", "gravity").err
 
 
 def test_each_of_several_axes_is_compared(cli, folder):
     out = cli("compare", folder, "--by", "controller,gravity", "--metrics", "rms_torque").out
-    heads = [line for line in out.splitlines() if ", by " in line]
-    assert [head.partition(", by ")[2].partition(";")[0] for head in heads] == ["controller", "gravity"]
+    heads = [line for line in out.splitlines() if "; by " in line]
+    assert [head.partition("; by ")[2] for head in heads] == ["controller", "gravity"]

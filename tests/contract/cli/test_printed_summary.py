@@ -75,6 +75,6 @@ def test_of_very_many_cells_nothing_is_compared(cli, monkeypatch):
 
 def test_the_choice_is_that_of_the_report(runs):
     run = runs["quintic"]
-    shown = list(run_document([run]).key_numbers)
+    shown = list(run_document(run).key_numbers)
     assert len(shown) == 4
     assert shown == list(key_metrics(run, 5))[:4]

@@ -358,7 +358,7 @@ def test_a_robot_of_ones_own_takes_what_the_groups_offer(crane):
     assert run.config["torque_limits"]["max"] == [300.0, 400.0, 200.0]
     assert run.config["noise"]["position"] == 1e-4
     assert run.metrics["max_tracking_error"].median < 0.01
-    document = run_document([run])
+    document = run_document(run)
     assert faulty(document) == []
     assert document.title.startswith("Crane, ")
 
@@ -377,7 +377,7 @@ def test_parts_of_ones_own_run_together(workshop):
     assert run.metrics["path_length"].median > 0.1
     assert run.metrics["steady_state_error"].median is None  # it goes round and round
     assert run.metrics["max_tracking_error"].median < 0.3
-    assert faulty(run_document([run])) == []
+    assert faulty(run_document(run)) == []
 
 
 @pytest.mark.parametrize(

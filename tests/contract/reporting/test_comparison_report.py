@@ -40,13 +40,14 @@ def _document():
 def test_the_first_screen_says_what_differs_how_many_cells_match_and_by_how_much(document):
     assert document.title == "2 sweeps compared"
     assert document.abstract.startswith("A and B differ in noise.position alone: 0.001 against 0.0001.")
-    assert "noise draws alone" in document.abstract
+    assert "draw only noise" in document.abstract
     cells, differ, first = document.key_numbers
     assert cells[:2] == ("cells in both", "4")
     assert differ[1:] == ("1 value", "noise.position")
     assert first[:2] == ("rms tracking error, B - A", "0.250 m")
     assert "8 pairs: larger" in first[2]
-    assert "B is larger than A by 0.25 m" in document.abstract
+    assert "% larger with B (" in document.abstract
+    assert "by 0.25 m (" in document.abstract
 
 
 def test_a_confounded_comparison_is_marked_before_any_number(document):
@@ -75,11 +76,13 @@ def test_every_metric_stands_in_a_table_and_parts_of_it_folded(document):
 def test_each_cell_stands_in_the_figure_with_its_interval(document):
     (figure,) = parts(document.sections, Curves)
     (panel,) = figure.panels
-    zero, interval, points = panel.series
+    zero, dots, interval, points = panel.series
+    assert dots.y == pytest.approx([0.25] * 32)
+    assert np.abs(dots.x - np.repeat(np.arange(4.0), 8)).max() == pytest.approx(0.3)
     assert points.y == pytest.approx([0.25] * 4)
     assert np.nanmax(zero.y) == 0.0
     assert interval.y[2::3] == pytest.approx([np.nan] * 4, nan_ok=True)
-    assert panel.y_label == "B - A (m)"
+    assert panel.y_label == "difference (m)"
     assert list(panel.x_names) == ["1", "2", "3", "4"]
     cells = next(block for block in parts(document.sections, Table) if block.caption == "The cells of the figure.")
     assert list(cells.rows[3]) == ["4", "xarm7", "9.81"]

@@ -56,7 +56,7 @@ def test_of_runge_kutta_there_is_nothing_to_tell(outputs):
 
 def test_the_report_of_a_run_has_a_column_for_it(compared, outputs):
     def head(stored):
-        document = run_document([stored])
+        document = run_document(stored)
         (table,) = [
             block
             for section in document.sections

@@ -8,6 +8,7 @@ from support.engines import ASKED
 
 from runner.base.quantities import quantity
 from runner.reporting import outline
+from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Curves, Notice, Playback, Provenance, Table, Text
 from runner.reporting.formulas import faulty
 from runner.reporting.metric_titles import title
@@ -32,7 +33,7 @@ def blocks_of(document, kind):
 
 
 def test_a_finished_run_is_told_whole(finished):
-    document = run_document([finished])
+    document = run_document(finished)
     assert document.title.startswith("Macro, operational space, quintic, ")
     assert document.abstract == "2 repetitions, all of them finished; smallest to largest in brackets."
     assert document.key_numbers[0][0] == "largest tracking error"
@@ -64,7 +65,7 @@ def test_a_finished_run_is_told_whole(finished):
 
 def test_a_shaper_and_a_notch_stand_below_the_title(tmp_path):
     shaped = ("input_shaper=zvd", "input_shaper.frequency=3", "notch=torques", "duration=0.05", f"outputs={tmp_path}")
-    document = run_document([run("robot=macro", "trajectory=quintic", *shaped)])
+    document = run_document(run("robot=macro", "trajectory=quintic", *shaped))
     assert document.subtitle == "no torque limits, noise none, input shaper ZVD, a notch in the torques"
 
 
@@ -81,7 +82,7 @@ def test_steps_of_a_plant_stand_together_and_seeds_in_a_row_are_a_range(finished
 
 
 def test_a_failed_run_says_when_and_where(diverged):
-    document = run_document([diverged])
+    document = run_document(diverged)
     assert document.abstract.startswith(f"The run {diverged.failure}.")
     (notice,) = [block for block in blocks_of(document, Notice) if block.kind == "failure"]
     time, joint = diverged.failure_record["time"], diverged.failure_record["joint"]
@@ -90,27 +91,34 @@ def test_a_failed_run_says_when_and_where(diverged):
     assert f"In repetition 0 at t = {time:.3g} s, joint {joint}: diverged" in notice.text
 
 
-def test_a_sweep_is_led_by_what_distinguishes_its_runs(finished, diverged, tmp_path):
+def test_runs_stand_side_by_side(finished, diverged, tmp_path):
     other = run(*RUNS["quintic"], "seed=1", f"outputs={tmp_path}")
-    document = run_document([finished, other, diverged])
-    assert document.abstract == "3 runs, 1 of them failed."
-    count, failed, found = document.key_numbers
-    assert (count[1], failed[1:]) == ("3", ("1", "run 3"))
-    error = [one.metrics["max_tracking_error"].median for one in (finished, other)]
-    ends = " to ".join(quantity(end, "m") for end in (min(error), max(error)))
-    assert found == ("largest tracking error", ends, "medians of the runs")
-    overview = blocks_of(document, Table)[0]
-    assert [row[0] for row in overview.rows] == ["1", "2", "3"]
-    column = {name: index for index, name in enumerate(overview.header)}
-    assert [row[column["seed"]] for row in overview.rows] == ["0", "1", "0"]
-    assert [row[column["status"]] for row in overview.rows] == ["ok", "ok", "failed"]
-    assert overview.rows[2][column["largest torque"]] == "–"
-    assert "gravity" not in column  # the same in all of them
-    assert all(len(row) == len(overview.header) for row in overview.rows)
+    document = runs_document([finished, other, diverged])
+    assert document.abstract.startswith(f"C {diverged.failure}.")
+    assert "A and B: not compared in pairs: seed 0 and seed 1 share no noise." in document.abstract
+    metrics, differing = blocks_of(document, Table)[:2]
+    assert metrics.header == ["metric", "A", "B", "C"]
+    rows = {name: values for name, *values in metrics.rows}
+    errors = [quantity(one.metrics["max_tracking_error"].median, "m") for one in (finished, other)]
+    assert rows["largest tracking error"] == [*errors, "–"]
+    assert ["controller.period", "0.01", "0.01", "0.06"] in [list(row) for row in differing.rows]
+    curves = blocks_of(document, Curves)[0]
+    assert [panel.title for panel in curves.panels] == ["Tip error", "Torque of q1", "Torque of q2", "Torque of q3"]
+    assert all([series.name for series in panel.series] == ["A", "B", "C"] for panel in curves.panels)
+    assert document.shown == 1
+
+
+def test_two_runs_show_their_difference_and_the_answer(tmp_path):
+    runs = [run("robot=macro", "noise=thesis", "duration=0.1", "repetitions=6", f"controller.damping_ratio={ratio}",
+                f"outputs={tmp_path}") for ratio in (1.0, 0.5)]  # fmt: skip
+    document = runs_document(runs)
+    assert "A and B differ in controller.damping_ratio alone: 1 against 0.5." in document.abstract
+    assert "(6 pairs" in document.abstract or ", 6 pairs)" in document.abstract
+    assert blocks_of(document, Table)[0].header == ["metric", "A", "B", "B - A"]
 
 
 def test_every_kind_of_report_is_written_as_html_and_pdf(finished, diverged, tmp_path):
-    document = run_document([finished, diverged])
+    document = runs_document([finished, diverged])
     assert faulty(document) == []
     html, pdf = write_report(document, tmp_path)
     assert "This run failed" in html.read_text()

@@ -39,8 +39,10 @@ def blocks_of(document, kind):
 
 
 def test_the_report_has_all_its_parts(document):
-    assert document.title == "Sweep over controller.natural_frequency × controller.period"
+    assert document.title == "What controller.natural_frequency changes, over controller.period"
     assert [section.title for section in document.sections] == [
+        "Differences in pairs",
+        "Failed runs",
         "Caveats",
         "Axes",
         "Effects of the axes",
@@ -49,10 +51,10 @@ def test_the_report_has_all_its_parts(document):
         "Trade-off",
         "Distributions",
         "Lowest and highest median",
-        "Failed runs",
         "All runs",
         "Provenance",
     ]
+    assert document.shown == 2  # the answer and the failures; all else is folded
     assert faulty(document) == []
 
 
@@ -115,16 +117,16 @@ def test_the_metric_asked_for_ranks_the_cells(sweep12):
 
 def test_a_sweep_of_one_run_is_reported(part, tmp_path):
     document = sweep_document(part(0))
-    assert document.title == "Sweep over nothing"
+    assert document.title == "Sweep of one cell"
     assert write_report(document, tmp_path / "report")
 
 
 def test_a_sweep_of_failed_runs_is_reported(part, tmp_path):
     document = sweep_document(part(-1, -2))
     assert [section.title for section in document.sections] == [
+        "Failed runs",
         "Caveats",
         "Axes",
-        "Failed runs",
         "All runs",
         "Provenance",
     ]

@@ -5,6 +5,7 @@ import pytest
 from support.engines import ASKED
 
 from runner.reporting import outline
+from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Notice, RunList, Table
 from runner.reporting.formulas import faulty
 from runner.reporting.run_list import SHOWN
@@ -42,14 +43,15 @@ def test_cells_with_caveats_are_counted_at_the_end_and_by_status_and_table(swept
 
 def test_the_report_counts_them_and_shows_the_worst(swept, tmp_path):
     document = sweep_document(open_sweep(tmp_path / folder_of(swept)))
-    assert document.sections[0].title == "Caveats"
-    (table,) = (block for block in document.sections[0].blocks if isinstance(block, Table))
+    effects, caveats, *_ = document.sections
+    assert (effects.title, caveats.title) == ("Effects of the axes", "Caveats")
+    (table,) = (block for block in caveats.blocks if isinstance(block, Table))
     assert {row[0]: row[1] for row in table.rows} == {
         "exact_velocity": "2 of 4",
         "saturation": "2 of 4",
         "did_not_follow": "2 of 4",
     }
-    assert "3 of 4 cells have caveats." in document.abstract
+    assert "exact_velocity (2 of 4 cells)" in document.abstract
     (listing,) = (block for block in outline.blocks(document) if isinstance(block, RunList))
     place = list(listing.metrics).index(("caveats", "1"))
     assert place < SHOWN
@@ -71,18 +73,16 @@ def test_a_sweep_has_one_set_of_thresholds(cli):
 
 def test_a_run_report_begins_with_them(make_run):
     run = make_run("robot=macro", ASKED, "duration=0.1", "noise.position=1e-3")
-    first, second, *_ = run_document([run]).sections[0].blocks
+    first, second, *_ = run_document(run).sections[0].blocks
     assert (first.kind, first.title) == ("warning", "Caveat: did_not_follow")
     assert second.title == "Caveat: exact_velocity"
     assert first.text.startswith("The arm did not follow: at the end the tip is still ")
-    both = run_document([run, make_run("robot=macro", ASKED)])
-    (table,) = (block for block in both.sections[0].blocks if isinstance(block, Table))
-    column = list(table.header).index("caveats")
-    assert [row[column] for row in table.rows] == ["2", "0"]
+    both = runs_document([run, make_run("robot=macro", ASKED)])
+    assert "May mislead: A: did_not_follow, exact_velocity." in both.abstract
 
 
 def test_a_report_says_where_thresholds_are_others(make_run):
     run = make_run("robot=macro", ASKED, "duration=0.1", "caveats.did_not_follow.share=5")
-    (notice,) = (block for block in outline.blocks(run_document([open_run(run.folder)])) if isinstance(block, Notice))
+    (notice,) = (block for block in outline.blocks(run_document(open_run(run.folder))) if isinstance(block, Notice))
     assert notice.title == "Caveats by other rules than today's"
     assert "caveats.did_not_follow.share 5, now 0.25" in notice.text

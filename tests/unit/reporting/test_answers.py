@@ -48,7 +48,7 @@ def test_what_the_plants_step_leaves_is_no_answer_and_is_told():
     assert one(0.5 * APART, error=0.6).word == "below what the plant's step leaves (0.6 m)"
     assert one(0.5 * APART, error=0.4).word == "larger"
     assert one(0.5 * APART, error=np.inf).word == "below what the plant's step leaves (a run fails on a finer step)"
-    assert "error in it is not known" in one(0.5 * APART).sentence()
+    assert "plant's own error not known" in one(0.5 * APART).sentence()
     assert "not known" not in one(0.5 * APART, error=0.4).sentence()
 
 
@@ -72,14 +72,24 @@ def test_too_few_pairs_for_so_many_comparisons_say_how_many_would_do():
     assert {answer.word for answer in enough} == {"larger"}
 
 
-def test_pairs_that_show_nothing_say_how_many_would_do_from_their_correlation():
+def test_pairs_that_show_nothing_say_what_they_can_show_and_how_many_would_do():
     rng = np.random.default_rng(1)
     a = rng.normal(10.0, 1.0, 20)
     (answer,) = judge([Asked("rms_tracking_error", "m", compare_paired(a, a + rng.normal(0.0, 1.0, 20)))], [])
-    text = answer.sentence()
-    found = answer.comparison
-    assert f"correlate by {found.correlation:.2f}: about {found.pairs_needed(answer.least, ALPHA)} would" in text
-    assert text.startswith("Rms tracking error: no difference between A and B is shown")
+    text, found = answer.sentence(), answer.comparison
+    assert text.startswith("Rms tracking error: no difference between A (")
+    best = found.smallest_shown(ALPHA)
+    share = 100.0 * best / max(found.medians)
+    assert f"20 pairs can show {share:.2g} % ({best:.2g} m) at best" in text
+    count = found.pairs_needed(0.05 * max(found.medians), ALPHA)
+    assert f"; {count} would show 5 % (" in text
+
+
+def test_an_answer_tells_both_values_the_share_and_the_interval():
+    text = one(-0.5 * APART).sentence()
+    assert text.startswith("Rms tracking error: 50 % smaller with B (0.5 m) than with A (1 m), by 0.5 m (")
+    assert "p = 0.0078, plant's own error not known, 8 pairs)" in text
+    assert one(-0.5 * APART).short_cells == ["1 m", "0.5 m", "-0.5 m (-50 %)", "yes"]
 
 
 def test_a_metric_without_a_value_in_some_draws_says_in_how_many():

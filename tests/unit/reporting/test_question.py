@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 from support.sample_sweep import measurements
 
-from runner.reporting.sweep.question import find_question, in_short, sentences, too_few
+from runner.reporting.answers import sentences
+from runner.reporting.sweep.question import asked_axis, causes, find_answers, in_short, too_few
 from runner.reporting.sweep.subject import choose
 from runner.sweeps.differing import Difference
 
@@ -28,24 +29,23 @@ def sweep(repetitions=8, axes=AXES, **metrics):
 def test_asked_is_about_choices_overall_and_at_each_value_of_the_axis_that_spreads_most():
     axes = {**AXES, "torque_limits.max": [20.0, 40.0]}
     given = {"max_tracking_error": lambda noise, law, limit: 1.0 + limit + 0.1 * noise + drawn(8, law) / 100.0}
-    question = find_question(choose(measurements(axes, given)))
-    assert (question.axis, question.within) == ("controller", "torque_limits.max")
-    assert [pairs.at for pairs in question.overall] == [{}]
-    assert [pairs.at for pairs in question.at] == [{"torque_limits.max": "20"}, {"torque_limits.max": "40"}]
-    assert {answer.comparison.n for answer in question.about(question.overall[0])} == {8}
+    subject = choose(measurements(axes, given))
+    assert asked_axis(subject).name == "controller"
+    answers = [one for one in find_answers(subject) if one.metric == "max_tracking_error"]
+    assert [one.at for one in answers] == [{}, {"torque_limits.max": "20"}, {"torque_limits.max": "40"}]
+    assert {one.comparison.n for one in answers} == {8}
 
 
 def test_no_winner_is_named_where_pairs_show_none_and_what_turns_over_is_told():
-    subject = sweep()
-    error, torque = sentences(find_question(subject), subject)
-    assert "no difference between computed_torque and operational_space is shown" in error
+    error, torque = sentences(find_answers(sweep()))
+    assert "no difference between computed_torque (" in error
     assert "smaller" not in error
     assert "operational_space is smaller by" in torque
     assert "at noise.position=0.0001, larger by" in torque
 
 
 def test_the_end_of_a_sweep_tells_the_first_answer():
-    assert in_short(sweep()).startswith("Largest tracking error: no difference between computed_torque and")
+    assert in_short(sweep()).startswith("Largest tracking error: no difference between computed_torque (")
 
 
 def test_a_shown_difference_names_what_goes_with_the_axis():
@@ -53,8 +53,8 @@ def test_a_shown_difference_names_what_goes_with_the_axis():
     keys = ["a", "b", "c", "d"]
     found = [Difference(key, ("controller",), [("computed_torque", "1"), ("operational_space", "2")]) for key in keys]
     subject = replace(plain, measurements=replace(plain.measurements, differences=found))
-    told = sentences(find_question(subject), subject)[-1]
-    assert told == "With controller go a, b, c and 1 more, which may be the cause: see Also differs."
+    (told,) = causes(subject, find_answers(subject))
+    assert told == "a, b, c and 1 more vary with controller and may be the cause: see Also differs."
 
 
 def test_too_few_repetitions_say_what_they_cannot_show_and_name_no_cell():
@@ -66,18 +66,16 @@ def test_too_few_repetitions_say_what_they_cannot_show_and_name_no_cell():
     assert too_few(sweep(repetitions=6)) == ""
 
 
-def test_of_several_values_the_first_three_are_told():
-    laws = ["a", "b", "c", "d", "e", "f"]
+def test_of_several_values_the_first_six_are_told():
+    laws = ["a", "b", "c", "d", "e", "f", "g", "h", "i"]
     given = {"max_tracking_error": lambda law: 1.0 + law + drawn(20, law) / 100.0}
     subject = choose(measurements({"controller": laws}, given))
-    told = sentences(find_question(subject), subject)
-    assert [text.split(" ")[3] for text in told[:3]] == ["b", "c", "d"]
-    assert told[3] == "2 more values of controller are in the tables of pairs."
+    told = sentences(find_answers(subject))
+    assert [text.split(" larger with ")[1][0] for text in told[:6]] == ["b", "c", "d", "e", "f", "g"]
+    assert told[6] == "2 more are in the tables."
     assert in_short(subject).startswith("largest tracking error: medians from ")
 
 
 def test_without_two_cells_that_share_their_seeds_nothing_is_asked():
-    assert (
-        find_question(choose(measurements({"seed": [0.0, 1.0]}, {"max_tracking_error": lambda seed: drawn(8, seed)})))
-        is None
-    )
+    seeds = choose(measurements({"seed": [0.0, 1.0]}, {"max_tracking_error": lambda seed: drawn(8, seed)}))
+    assert find_answers(seeds) == []

@@ -86,7 +86,7 @@ def test_what_seeds_share_is_no_scatter_between_cells():
     assert first.p_value == 0.001
     assert "permutes within a repetition only" in text
     (told,) = effects.describe_shared_variation(subject)
-    assert told.startswith("96 % of the variation of the rms lies between the repetitions")
+    assert told == "What each repetition draws makes 96 % of the spread of the rms."
     own = replace(subject.measurements, seeds=range(12))
     alone = choose(own)
     assert alone.effects["rms"].effects[0].p_value > 0.05

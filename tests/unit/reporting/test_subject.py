@@ -22,9 +22,16 @@ def test_metrics_that_differ_are_compared_and_parts_of_them_are_not():
 
 
 def test_what_a_motion_costs_is_compared():
-    names = ["max_tracking_error", "settling_time", "steady_state_error", "cross_track_error", "energy"]
+    names = [
+        "max_tracking_error",
+        "settling_time",
+        "steady_state_error",
+        "cross_track_error",
+        "saturation_fraction",
+        "energy",
+    ]
     metrics = {name: noisy(lambda n: 1.0 + n) for name in names}
-    assert choose(measurements(AXES, metrics)).metrics == (*names[:3], "energy")
+    assert choose(measurements(AXES, metrics)).metrics == (*names[:4], "energy")
 
 
 def test_where_nothing_differs_something_is_shown():

@@ -1,0 +1,35 @@
+"""Result of a paired comparison: a pandas table with the answers in words."""
+
+from collections.abc import Callable, Sequence
+
+import pandas as pd
+
+from runner.reporting.answers import Answer, sentences
+from runner.reporting.comparison.sweeps import answer_rows
+
+
+class Comparison(pd.DataFrame):
+    """Table of a comparison, one row for each metric and pair; parts of it are plain pandas tables.
+
+    Attributes:
+        summary: The answers in a few sentences: which is smaller, by how much, and how sure that is.
+    """
+
+    _metadata = ["summary"]  # noqa: RUF012 - pandas reads it so
+    summary: str
+
+    @property
+    def _constructor(self) -> Callable[..., pd.DataFrame]:
+        return pd.DataFrame
+
+
+def comparison(answers: Sequence[Answer], groups: Sequence[Sequence[Answer]] = ()) -> Comparison:
+    """Return answers as a table.
+
+    Args:
+        answers: The rows.
+        groups: The answers to each question, if there are several.
+    """
+    table = Comparison(pd.DataFrame(answer_rows(answers)).astype({"low": float, "high": float, "p": float}))
+    table.summary = "\n".join(text for group in groups or [answers] for text in sentences(group))
+    return table

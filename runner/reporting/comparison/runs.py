@@ -1,0 +1,100 @@
+"""Report on several stored runs: metrics as rows, runs as columns, and their curves in the same axes."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from runner.base.quantities import above_rounding, quantity
+from runner.base.sanitize import one_line
+from runner.reporting.answers import sentences
+from runner.reporting.comparison.differences import ConfigDifferences, find_differences
+from runner.reporting.comparison.pairs import match
+from runner.reporting.comparison.sweeps import compare_runs, letter
+from runner.reporting.document import Block, Curves, Document, Notice, Panel, Section, Series, Table
+from runner.reporting.figures import origin
+from runner.reporting.markup import literal, literals
+from runner.reporting.metric_titles import title, whole_metrics
+from runner.reporting.run_report import config_blocks, provenance, run_blocks, run_name
+from runner.reporting.spec_blocks import spec_of_several
+from runner.store import Run
+from runner.sweeps.measurements import measure_run
+
+_MOST_JOINTS = 5  # panels of torques
+_MOST_CURVES = 8  # runs in one panel
+
+
+def runs_document(runs: Sequence[Run]) -> Document:
+    """Return the report on two or more stored runs, the first of which the others are compared with."""
+    names = [letter(place) for place in range(len(runs))]
+    sides = [measure_run(run, name) for run, name in zip(runs, names, strict=True)]
+    differences = [find_differences(match(sides[0], side)) for side in sides[1:]]
+    told = [one.in_words(names[0], name) for one, name in zip(differences, names[1:], strict=True)]
+    for side in sides[1:]:
+        answers, why = compare_runs(sides[0], side)
+        told += sentences(answers) or [f"{sides[0].name} and {side.name}: {why}."]
+    failed = [f"{name} {run.failure}." for name, run in zip(names, runs, strict=True) if run.status == "failed"]
+    caveats = [f"{name}: {', '.join(str(one['rule']) for one in run.caveats)}"
+               for name, run in zip(names, runs, strict=True) if run.caveats]  # fmt: skip
+    told += [f"May mislead: {'; '.join(caveats)}."] if caveats else []
+    details = [
+        Section(f"{name}: {run_name(run)}", [*run_blocks(run), *config_blocks(run), provenance([run])])
+        for name, run in zip(names, runs, strict=True)
+    ]
+    return Document(
+        title=f"{len(runs)} runs compared",
+        subtitle=literal("; ".join(f"{name}: {run_name(run)}" for name, run in zip(names, runs, strict=True))),
+        abstract=literal("\n".join(map(one_line, [*failed, *told]))),
+        sections=[Section("Side by side", _side_by_side(runs, names, differences)), *details],
+        date=max(str(run.provenance["date"]) for run in runs),
+        figures_float=False,
+        shown=1,
+    )
+
+
+def _side_by_side(runs: Sequence[Run], names: Sequence[str], differences: Sequence[ConfigDifferences]) -> list[Block]:
+    """Return the metrics as a table, the curves, and the keys that differ."""
+    values = [[*one.options, *one.values] for one in differences]
+    firsts = {value.key: value.a for some in values for value in some}
+    others = [{value.key: value.b for value in some} for some in values]
+    rows = [[key, first, *(other.get(key, first) for other in others)] for key, first in firsts.items()]
+    blocks: list[Block] = [_metrics(runs, names), *_curves(runs, names)]
+    if rows:
+        blocks.append(Table("Config values that differ.", ["key", *names], [literals(row) for row in rows]))
+    return [*blocks, *spec_of_several(runs, names)]
+
+
+def _metrics(runs: Sequence[Run], names: Sequence[str]) -> Table:
+    """Return the medians of all whole metrics, one row each; of two runs with the difference."""
+    units = {name: metric.unit for run in runs for name, metric in run.metrics.items()}
+    rows = []
+    for name in whole_metrics(units):
+        values = [run.metrics[name].median if name in run.metrics else None for run in runs]
+        cells = ["–" if value is None else above_rounding(value, units[name]) for value in values]
+        if len(runs) == 2:
+            first, second = (np.nan if value is None else value for value in values)
+            cells.append("–" if np.isnan(second - first) else quantity(second - first, units[name]))
+        rows.append([literal(title(name)), *cells])
+    header = ["metric", *names, *([f"{names[1]} - {names[0]}"] if len(runs) == 2 else [])]
+    return Table("Medians of the metrics.", header, rows, tuple(range(1, len(header))))
+
+
+def _curves(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
+    """Return the tip error and the torque of each joint, all runs in the same axes, repetition 0."""
+    shown = list(zip(runs, names, strict=True))[:_MOST_CURVES]
+    error = [Series(name, run.t, np.linalg.norm(run.vector("error"), axis=1), color=place)
+             for place, (run, name) in enumerate(shown)]  # fmt: skip
+    panels = [Panel("Tip error", "time (s)", "error (m)", error)]
+    joints = min(len(run.provenance["joints"]) for run, _ in shown)
+    units = {run.units[f"tau{joint + 1}"] for run, _ in shown for joint in range(joints)}
+    for joint in range(min(joints, _MOST_JOINTS)) if len(units) == 1 else ():
+        (unit,) = units
+        what = "Force" if unit == "N" else "Torque"
+        torques = [Series(name, run.t, run.joints("tau")[:, joint], color=place)
+                   for place, (run, name) in enumerate(shown)]  # fmt: skip
+        label = str(shown[0][0].provenance["joints"][joint])
+        panels.append(Panel(f"{what} of {label}", "time (s)", f"{what.lower()} ({unit})", torques))
+    caption = "Distance of the tip from its desired position, and torques; repetition 0."
+    blocks: list[Block] = [Curves(caption, panels, origin=origin(runs[0]))]
+    if len(runs) > len(shown):
+        blocks.append(Notice("warning", f"{len(runs) - len(shown)} runs are not drawn", "The first ones are drawn."))
+    return blocks
