@@ -68,6 +68,13 @@ class Asked:
         return self.pairs.at if self.pairs else {}
 
     @property
+    def full_names(self) -> tuple[str, str]:
+        """The names; numbers with their axis, such as "controller.period=0.01"."""
+        axis = self.pairs.axis if self.pairs else ""
+        first, second = (f"{axis}={name}" if axis else name for name in self.names)
+        return first, second
+
+    @property
     def names(self) -> tuple[str, str]:
         """Names of what is compared: levels of an axis, or sweeps."""
         return (self.pairs.first, self.pairs.second) if self.pairs else ("A", "B")
@@ -161,7 +168,7 @@ class Answer(Asked):
             turns: A sentence to put between both, with a space before it.
         """
         sizes = [quantity(one, self.unit, 2) if np.isfinite(one) else "never" for one in self.comparison.medians]
-        first, second = (f"{name} ({size})" for name, size in zip(self.names, sizes, strict=True))
+        first, second = (f"{name} ({size})" for name, size in zip(self.full_names, sizes, strict=True))
         head = f"{capital(title(self.metric))}:"
         if self.sign:
             share = f"{self.share} " if self.share else ""
@@ -251,7 +258,7 @@ def turns(one: Answer, answers: Sequence[Answer]) -> str:
     told = ", ".join(f"{each.word} by {each.amount} at {label_text(each.at)}" for each in shown)
     rest = len(same) - len(shown)
     levels = "level" if rest == 1 else "levels"
-    return f" {one.names[1]} is {told}{f'; {rest} other {levels} in the table' if rest else ''}."
+    return f" {one.full_names[1]} is {told}{f'; {rest} other {levels} in the table' if rest else ''}."
 
 
 def sentences(answers: Sequence[Answer]) -> list[str]:
@@ -261,12 +268,16 @@ def sentences(answers: Sequence[Answer]) -> list[str]:
     """
     first = sorted((one for one in answers if one.rank < 2), key=lambda one: one.rank)
     overall = [one for one in first if not one.at]
+    few = [one for one in first if one.interval is None]
+    if len(few) == len(first) > 2:
+        n, family, needed = max((one.comparison.n, one.family, fewest_pairs(one.level)) for one in first)
+        return [f"{n} pairs are too few for {family} comparisons: at least {needed} pairs are needed."]
     if overall:
-        chosen = [(one.sentence(turns(one, answers)), one) for one in overall]
+        texts = [one.sentence(turns(one, answers)) for one in overall]
     else:
-        chosen = [(f"At {label_text(one.at)}: {one.sentence()}", one) for one in first]
-    left = len(chosen) - _MOST_SENTENCES
-    return [text for text, _ in chosen[:_MOST_SENTENCES]] + ([f"{left} more are in the tables."] if left > 0 else [])
+        texts = [f"At {label_text(one.at)}: {one.sentence()}" for one in first]
+    left = len(texts) - _MOST_SENTENCES
+    return texts[:_MOST_SENTENCES] + ([f"{left} more are in the tables."] if left > 0 else [])
 
 
 def ask(pairs: Sequence[Pairs], metrics: Sequence[str]) -> list[Asked]:

@@ -18,14 +18,15 @@ def _gain_share(setting: Setting) -> float | None:
 def _tell_gains(value: float, setting: Setting) -> str:
     coupling = 1.0 if setting.velocity_loop is None else setting.velocity_loop.coupling
     text = (
-        "by its linear map the velocity loop is unstable at this period, at home or along the desired joints, unless a "
-        f"torque is at its limit: h lambda_max(M^-1 K_v) / 2 is {value:.3g}, and stable below 1; take "
-        f"controller.natural_frequency or controller.period {value:.3g} times smaller or more"
+        "the velocity loop is unstable: controller.natural_frequency or controller.period is at least "
+        f"{value:.3g} times too large (h lambda_max(M^-1 K_v) / 2 is {value:.3g} at home or along the desired joints, "
+        "and stable below 1, if no torque is at its limit)"
     )
     if coupling < _LIGHT:
         return text
     return (
-        f"{text}, or robot.armature: joints move others that are heavier, and lambda_max(M^-1 diag M) is {coupling:.3g}"
+        f"{text}; a larger robot.armature helps, too, as joints move others that are heavier: "
+        f"lambda_max(M^-1 diag M) is {coupling:.3g}"
     )
 
 

@@ -38,6 +38,7 @@ class Pairs:
         of_b: Their partners in the second sweep, shape (n,).
         first: Name of the first sweep or level.
         second: Name of the second sweep or level.
+        axis: Name of the axis if its levels, the names above, are numbers.
         at: Values that all pairs share: the levels that two levels are compared within, or the label of one cell.
         keys: Keys by which the cells of two sweeps are matched.
         labels: Value of each key in each pair, such as {"robot": "macro"}.
@@ -56,6 +57,7 @@ class Pairs:
     labels: Sequence[Label] = ()
     other_seeds: int = 0
     alone: tuple[Sequence[Label], Sequence[Label]] = ((), ())
+    axis: str = ""
 
     def __len__(self) -> int:
         """Return the number of pairs."""
@@ -172,7 +174,8 @@ def level_pairs(measurements: Measurements, axis: str, within: Sequence[str] | N
         (first, of_first), *rest = ((level, some) for (level,), some in group_cells([chosen], cells))
         for level, some in rest:
             a, b = _partners(of_first, some, place[of_first], place[some])
-            pairs = Pairs(measurements, measurements, a, b, chosen.text(first), chosen.text(level), names)
+            of_axis = "" if chosen.numbers is None else chosen.name
+            pairs = Pairs(measurements, measurements, a, b, chosen.text(first), chosen.text(level), names, axis=of_axis)
             kept = pairs.share_seeds
             if kept.any():
                 found.append(replace(pairs, of_a=a[kept], of_b=b[kept]))

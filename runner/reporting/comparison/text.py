@@ -147,11 +147,14 @@ def _short_lines(answers: Sequence[Answer]) -> Iterator[str]:
 
 def _doubt_lines(sides: Sequence[Measurements]) -> Iterator[str]:
     """Yield what may mislead: the caveats, and repetitions that draw noise only."""
-    several = len(sides) > 1
+    found: dict[tuple[str, str], list[str]] = {}
     for side in sides:
-        name = f"{side.name}, " if several else ""
         for rule, count, _, text in side.caveats_by_rule():
-            yield one_line(f"May mislead: {name}{rule} in {count} of {len(side.hashes)} cells: {text}.")
+            name = side.name if len(sides) > 1 else ""
+            cells = "" if len(side.hashes) == 1 else f"{count} of {len(side.hashes)} cells"
+            found.setdefault((rule, text), []).append(f"{name} {cells}".strip())
+    for (rule, text), places in found.items():
+        yield one_line(f"May mislead: {rule} ({', '.join(places)}): {text}.")
     repeated = min(side.repetitions for side in sides) > 1
     if repeated and noise_alone(config for side in sides for config, _ in side.configs):
         yield NOISE_ALONE

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from runner.reporting.charts.thinning import spaced_indices
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal, literals
+from runner.reporting.metric_titles import capital
 from runner.reporting.sweep.subject import Subject, key_label, shorten
 from runner.statistics import SMALLEST_SAMPLE
 from runner.store.axes import Axis
@@ -104,6 +105,17 @@ def failures_section(subject: Subject) -> Section:
     more = f" {left} more stand in the list of runs and in the table of the sweep." if left else ""
     blocks.append(Table(f"Failed runs.{more}", ["run", "cell", "failure"], [literals(row) for row in rows]))
     return Section("Failed runs", blocks)
+
+
+def causes_of_failure(subject: Subject) -> str:
+    """Return the caveats that all failed cells have and no other cell has, with the worst of them; or nothing."""
+    measurements = subject.measurements
+    failed = [status != "ok" for status in measurements.statuses]
+    rules = [{str(one["rule"]) for one in found} for found in measurements.caveats]
+    lost = [found for found, is_failed in zip(rules, failed, strict=True) if is_failed]
+    good = [found for found, is_failed in zip(rules, failed, strict=True) if not is_failed]
+    common = set.intersection(*lost) - set().union(*good) if lost else set()
+    return " ".join(f"{capital(text)}." for rule, *_, text in measurements.caveats_by_rule() if rule in common)
 
 
 def failing_cells(subject: Subject) -> str:

@@ -15,6 +15,7 @@ from runner.reporting.markup import literal
 from runner.reporting.sweep import distributions, effects, maps, spec, tradeoff
 from runner.reporting.sweep.cells import (
     axes_section,
+    causes_of_failure,
     caveats_section,
     failing_cells,
     failures_section,
@@ -57,9 +58,9 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     measurements = subject.measurements
     answers = find_answers(subject)
     several = bool(subject.metrics and subject.axes)
-    sections = [Section("Differences in pairs", answer_blocks(answers))] if answers else []
-    if measurements.failed:
-        sections.append(failures_section(subject))
+    sections = [failures_section(subject)] if measurements.failed else []
+    if answers:
+        sections.append(Section("Differences in pairs", answer_blocks(answers)))
     if sweep.spec:
         sections.append(spec.section(subject, sweep))
     if several and not answers:
@@ -123,7 +124,10 @@ def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer]) -> list
     """Return the answers, then what may mislead and how large the sweep is: a paragraph each."""
     measurements = subject.measurements
     cells, failed = len(measurements.hashes), measurements.failed
-    texts = [f"{failed} of {cells} cells failed. {failing_cells(subject)}".rstrip()] if failed else []
+    texts = []
+    if failed:
+        told = [f"{failed} of {cells} cells failed.", failing_cells(subject), causes_of_failure(subject)]
+        texts.append(" ".join(filter(None, told)))
     if sweep.spec:
         texts.append(spec.summary(subject, sweep))
     few = too_few(subject) if subject.ranked and subject.axes else ""

@@ -56,7 +56,7 @@ def test_caveats_of_either(cli, copy_run):
     caveat = {"rule": "saturation", "text": "joint q1 is at its torque limit", "value": 0.5}
     assert "May mislead" not in cli("compare", a, a).out
     change(b, lambda record: record.update(caveats=[caveat]))
-    expected = "\nMay mislead: B, saturation in 1 of 1 cells: joint q1 is at its torque limit.\n"
+    expected = "\nMay mislead: saturation (B): joint q1 is at its torque limit.\n"
     assert expected in cli("compare", a, b).out
 
 

@@ -41,8 +41,8 @@ def blocks_of(document, kind):
 def test_the_report_has_all_its_parts(document):
     assert document.title == "What controller.natural_frequency changes, over controller.period"
     assert [section.title for section in document.sections] == [
-        "Differences in pairs",
         "Failed runs",
+        "Differences in pairs",
         "Caveats",
         "Axes",
         "Effects of the axes",

@@ -79,3 +79,11 @@ def test_of_several_values_the_first_six_are_told():
 def test_without_two_cells_that_share_their_seeds_nothing_is_asked():
     seeds = choose(measurements({"seed": [0.0, 1.0]}, {"max_tracking_error": lambda seed: drawn(8, seed)}))
     assert find_answers(seeds) == []
+
+
+def test_too_few_pairs_for_all_values_are_said_once_and_numbers_are_named_with_their_axis():
+    given = {"max_tracking_error": lambda period: 1.0 + period + drawn(6, period) / 100.0}
+    few = choose(measurements({"controller.period": [0.0, 1.0, 2.0, 3.0]}, given))
+    assert sentences(find_answers(few)) == ["6 pairs are too few for 3 comparisons: at least 7 pairs are needed."]
+    two = choose(measurements({"controller.period": [0.0, 1.0]}, given))
+    assert "with controller.period=1 (" in sentences(find_answers(two))[0]

@@ -1,5 +1,6 @@
 """Sections of the report on a sweep, from sweeps that were never run."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -8,6 +9,7 @@ from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.reporting.document import Curves, Maps, Notice, Table, Text
 from runner.reporting.sweep import cells, distributions, effects, maps
+from runner.reporting.sweep.cells import causes_of_failure, failing_cells
 from runner.reporting.sweep.effects import cells_with_intervals
 from runner.reporting.sweep.subject import choose
 from runner.sweeps.differing import Difference
@@ -226,3 +228,37 @@ def test_a_map_has_the_interval_of_each_cell_and_none_of_few_repetitions():
     block, *_ = blocks(maps.section(two_axes(rms=noisy(lambda noise, limit: 1.0 + noise, repetitions=5))), Maps)
     assert np.isnan(block.panels[0].low).all()
     assert "span" not in block.caption
+
+
+AXES = {"controller.period": [0.005, 0.01, 0.02], "controller": ["a", "b"]}
+
+
+@pytest.mark.parametrize(
+    ("fails", "told"),
+    [
+        (lambda period, law: period > 0, "Every run with controller.period 0.01 or more failed, and no other."),
+        (lambda period, law: law == 1, "Every run with controller b failed, and no other."),
+        (
+            lambda period, law: period == 2 and law == 0,
+            "Every run with controller.period 0.02 and controller a failed, and no other.",
+        ),
+        (lambda period, law: (period, law) in {(0, 0), (1, 1)}, "All failed runs have controller.period 0.01 or less."),
+        (lambda period, law: True, ""),
+    ],
+)
+def test_the_shortest_condition_of_failures(fails, told):
+    sample = measurements(AXES, {"rms": lambda *levels: np.ones(6)})
+    places = list(itertools.product(range(3), range(2)))
+    statuses = ["failed" if fails(*place) else "ok" for place in places]
+    assert failing_cells(choose(replace(sample, statuses=statuses))) == told
+
+
+def test_the_cause_of_failures_is_a_caveat_that_only_failed_cells_have():
+    sample = measurements(AXES, {"rms": lambda *levels: np.ones(6)})
+    caveats = [[{"rule": "exact_velocity", "text": "velocities are exact", "value": 1.0}] for _ in range(6)]
+    unstable = {"rule": "unstable_gains", "text": "the loop is unstable", "value": 2.0}
+    failed = [place in (4, 5) for place in range(6)]
+    found = [[*some, unstable] if lost else some for some, lost in zip(caveats, failed, strict=True)]
+    subject = choose(replace(sample, statuses=["failed" if lost else "ok" for lost in failed], caveats=found))
+    assert causes_of_failure(subject) == "The loop is unstable."
+    assert causes_of_failure(choose(replace(sample, caveats=found))) == ""
