@@ -26,7 +26,7 @@ from runner.config.compose.files import groups
 
 GROUPS = {
     "Run experiments": ("run", "sweep", "status", "tune", "calibrate"),
-    "Look at results": ("report", "table", "figures", "sensitivity"),
+    "Look at results": ("results", "report", "table", "figures", "sensitivity"),
     "Compare and check": ("compare", "check", "verify"),
     "Reproduce papers": ("reproduce", "study", "audit", "benchmark"),
     "Robots and controllers": ("list", "doctor", "example"),

@@ -56,11 +56,11 @@ def render(document: Document) -> str:
             scene=playback.record,
             player=compress_text(player) if player else "",
             plotly=compress_text(library) if library else "",
-            script_sources=lambda own: _script_sources([*own, *([library] if library else [])], player),
+            script_sources=lambda own: script_policy([*own, *([library] if library else [])], player),
             palette={"light": palette.LIGHT, "dark": palette.DARK},
-            style=_asset("style.css"),
-            scripts=[_asset(f"{name}.js") for name in _SCRIPTS if has_plots or name not in _OF_PLOTS],
-            run_list_script=_asset("run_list.js") if has_run_list else "",
+            style=asset("style.css"),
+            scripts=[asset(f"{name}.js") for name in _SCRIPTS if has_plots or name not in _OF_PLOTS],
+            run_list_script=asset("run_list.js") if has_run_list else "",
         )
     )
 
@@ -102,7 +102,7 @@ def _math_font() -> str:
     return base64.b64encode((templates_dir() / "maths.woff2").read_bytes()).decode("ascii")
 
 
-def _script_sources(scripts: Sequence[str], player: str) -> Code:
+def script_policy(scripts: Sequence[str], player: str = "") -> Code:
     """Return what a policy calls some scripts, and those of a player's page, which unpacks its code itself."""
     known = [f"'sha256-{_sha256(script)}'" for script in (*scripts, *_SCRIPT.findall(player))]
     return Code(" ".join([*known, *(_OF_PLAYER if player else ())]))
@@ -112,5 +112,6 @@ def _sha256(text: str) -> str:
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")
 
 
-def _asset(name: str) -> Code:
+def asset(name: str) -> Code:
+    """Return a style or a script of the templates."""
     return Code((templates_dir() / name).read_text(encoding="utf-8"))

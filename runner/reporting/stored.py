@@ -62,17 +62,21 @@ def compose_report(
         raise RunnerError("these results have no common report. Allowed: only runs, only sweeps, or one folder.")
     if metrics and not sweeps:
         raise RunnerError(f"--metrics: {folders[0]} is not a sweep. Allowed: only for sweeps.")
-    names = [folder.resolve().name for folder in folders]
     if isinstance(first, Tuning):
-        document, name = tuning_document(first, place), names[0]
+        document = tuning_document(first, place)
     elif runs:
         progress.begin("reading runs")
         document = run_document(runs[0]) if len(runs) == 1 else runs_document(runs)
-        name = "".join(run.hash for run in runs)
     elif len(sweeps) == 1:
         address = os.path.relpath(sweeps[0].outputs / "runs", place) + "/"
-        document, name = sweep_document(sweeps[0], metrics, address), " ".join([sweeps[0].folder.name, *metrics])
+        document = sweep_document(sweeps[0], metrics, address)
     else:
         sides = [measure_stored(sweep, letter(place)) for place, sweep in enumerate(sweeps)]
-        document, name = comparison_document(sides, metrics), " ".join(["compared", *names, *metrics])
-    return document, output or reports / hashlib.sha256(name.encode()).hexdigest()[:24]
+        document = comparison_document(sides, metrics)
+    return document, output or reports / report_name(folders, metrics)
+
+
+def report_name(folders: Sequence[Path], metrics: Sequence[str] = ()) -> str:
+    """Return the name of the folder of a report on some results."""
+    names = [folder.resolve().name for folder in folders]
+    return hashlib.sha256(" ".join([*names, *metrics]).encode()).hexdigest()[:24]

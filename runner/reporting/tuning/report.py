@@ -86,6 +86,14 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
     return numbers
 
 
+def summary_of_tuning(tuning: Tuning) -> str:
+    """Return what a tuning chose, in a sentence; empty if no trial is good."""
+    subject = Subject(tuning)
+    if len(subject.best) != 1:
+        return f"{len(subject.best)} trials are on the Pareto front." if subject.best else ""
+    return f"Trial {subject.best[0]}: {subject.outcome(subject.best[0])}, with {subject.settings(subject.best[0])}."
+
+
 def _abstract(subject: Subject) -> str:
     names = ", ".join(key.name for key in subject.keys)
     text = f"{len(subject.trials)} trials over {names}; {len(subject.trials) - len(subject.good)} of them failed."

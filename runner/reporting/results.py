@@ -1,0 +1,201 @@
+"""Stored results as rows with their answers, and as one offline page to search, open and compare them."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from pathlib import Path
+
+from runner.base import progress
+from runner.base.errors import RunnerError
+from runner.base.sanitize import one_line
+from runner.reporting.figures import playback
+from runner.reporting.html import asset, data_uri, script_policy
+from runner.reporting.key_metrics import key_metrics
+from runner.reporting.stored import report_name
+from runner.reporting.sweep.question import in_short
+from runner.reporting.sweep.subject import choose
+from runner.reporting.templating import html_environment
+from runner.reporting.tuning.report import summary_of_tuning
+from runner.store import Calibration, Run, Sweep, open_stored
+from runner.store.atomic import write_atomically
+from runner.store.kinds import KINDS
+from runner.store.listing import Entry, list_entries, runs_of_sweeps
+from runner.store.seal import DamagedError
+from runner.sweeps.measurements import measure_sweep
+from runner.sweeps.status import find_status
+from runner.sweeps.tuning.study import open_tuning
+
+_MOST_CELLS = 1000  # of a sweep whose answer is computed
+_MOST_THUMBNAILS = 60
+_LONGEST = 100
+_UNITS = ("B", "kB", "MB", "GB", "TB")
+
+
+@dataclass(frozen=True)
+class Row:
+    """A stored result in words.
+
+    Attributes:
+        entry: The result.
+        what: Its overrides.
+        answer: Its answer in a sentence; empty if it has none.
+        runs: Number of runs times repetitions, such as "6 x 8".
+        caveats: Number of runs with caveats.
+        failed: Number of failed runs.
+        state: "good", "unfinished" or "damaged".
+    """
+
+    entry: Entry
+    what: str
+    answer: str = ""
+    runs: str = ""
+    caveats: int = 0
+    failed: int = 0
+    state: str = "good"
+
+    @property
+    def when(self) -> str:
+        """Date and time at which it was written."""
+        return datetime.fromtimestamp(self.entry.written).astimezone().strftime("%Y-%m-%d %H:%M")
+
+    @property
+    def size(self) -> str:
+        """Size in a fitting unit."""
+        size, unit = float(self.entry.size), 0
+        while size >= 1000.0 and unit < len(_UNITS) - 1:
+            size, unit = size / 1000.0, unit + 1
+        return f"{size:.3g} {_UNITS[unit]}"
+
+    @property
+    def cells(self) -> list[str]:
+        """The cells of HEADER."""
+        numbers = [self.runs, str(self.caveats), str(self.failed), self.size, self.state]
+        return [self.when, self.entry.kind, _short(self.what), _short(self.answer), *numbers]
+
+
+HEADER = ("when", "kind", "what", "answer", "runs", "caveats", "failed", "size", "state")
+"""Heads of the columns of `Row.cells`."""
+
+
+def rows_of(outputs: Path) -> list[Row]:
+    """Return the results of an outputs folder, the newest first, without reports and runs of sweeps.
+
+    Raises:
+        StoreError: if there is no such folder.
+    """
+    entries = [entry for entry in list_entries(outputs) if entry.kind != "report"]
+    owned = _owned(entries)
+    shown = [entry for entry in entries if not (entry.kind == "run" and entry.folder.name in owned)]
+    sizes = {entry.folder.name: entry.size for entry in entries if entry.kind == "run"}
+    progress.begin("reading results", len(shown), "results")
+    rows = []
+    for entry in shown:
+        rows.append(_row(entry, sizes))
+        progress.step()
+    return rows
+
+
+def _owned(entries: Sequence[Entry]) -> set[str]:
+    """Return the runs of all sweeps that can be read."""
+    owned: set[str] = set()
+    for entry in entries:
+        try:
+            owned |= runs_of_sweeps([entry])
+        except RunnerError:
+            continue
+    return owned
+
+
+def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
+    if not entry.finished:
+        return Row(entry, "", state="unfinished")
+    try:
+        found = open_stored(entry.folder)
+        if isinstance(found, Sweep):
+            with_runs = entry.size + sum(sizes.get(name, 0) for name in set(found.hashes))
+            return _sweep_row(replace(entry, size=with_runs), found)
+        if isinstance(found, Calibration):
+            return Row(entry, str(found.provenance["command"]), ", ".join(found.record["estimates"]), "1")
+        return _run_row(entry, found)
+    except DamagedError as error:
+        return Row(entry, "", one_line(str(error)), state="damaged")
+
+
+def _run_row(entry: Entry, run: Run) -> Row:
+    found = key_metrics(run, 1)
+    answer = run.failure or "; ".join(f"{one.title} {one.value}" for one in found)
+    failed = int(run.status == "failed")
+    return Row(entry, " ".join(run.overrides), answer, f"1 x {run.repetitions}", len(run.caveats), failed)
+
+
+def _sweep_row(entry: Entry, sweep: Sweep) -> Row:
+    status = find_status(sweep)
+    words = sweep.command.partition(" -m ")[2] or sweep.command
+    state = "unfinished" if status.left else "good"
+    with_caveats = sum(count > 0 for count in status.caveats)
+    many = len(sweep.hashes) > _MOST_CELLS or status.left
+    measured = None if many else measure_sweep(sweep)
+    times = f" x {measured.repetitions}" if measured else ""
+    if entry.kind == "tuning":
+        answer = summary_of_tuning(open_tuning(entry.folder))
+    else:
+        answer = in_short(choose(measured)) if measured else ""
+    return Row(entry, words, answer, f"{len(sweep.hashes)}{times}", with_caveats, status.failed, state)
+
+
+def write_page(rows: Sequence[Row], outputs: Path, path: Path) -> None:
+    """Write the page; its links to results and their reports are relative to it.
+
+    Raises:
+        StoreError: if it cannot be written.
+    """
+    progress.begin("writing the page")
+    listed = [
+        {
+            "cells": row.cells,
+            "what": row.what,
+            "answer": row.answer,
+            "folder": os.path.relpath(row.entry.folder, Path.cwd()),
+            "link": _link(row.entry, outputs, path),
+            "thumbnail": data_uri(_thumbnail(row)) if place < _MOST_THUMBNAILS and row.state == "good" else "",
+        }
+        for place, row in enumerate(rows)
+    ]
+    script = asset("results.js")
+    page = (
+        html_environment()
+        .get_template("results.html.j2")
+        .render(
+            rows=listed,
+            header=HEADER,
+            outputs=outputs.resolve().name,
+            script=script,
+            policy=script_policy([script]),
+            style=asset("style.css"),
+        )
+    )
+    write_atomically(path, page.encode("utf-8", "replace"))
+
+
+def _link(entry: Entry, outputs: Path, page: Path) -> str:
+    """Return the address of the report on a result, of its folder without one."""
+    report = outputs / KINDS["report"].folder / report_name([entry.folder]) / "report.html"
+    return os.path.relpath(report if report.is_file() else entry.folder, page.resolve().parent)
+
+
+def _thumbnail(row: Row) -> str:
+    """Return a still picture of the motion of a run, or of the first run of a sweep; an empty drawing without one."""
+    empty = '<svg xmlns="http://www.w3.org/2000/svg" width="1" height="1"/>'
+    try:
+        found = open_stored(row.entry.folder)
+        if isinstance(found, Calibration):
+            return empty
+        run = next(iter(found.runs())) if isinstance(found, Sweep) else found
+        return playback(run, "", frames=2).still
+    except (RunnerError, StopIteration, IndexError):
+        return empty
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
