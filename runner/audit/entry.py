@@ -26,27 +26,36 @@ Entries are in YAML files, one for each part of a source (`equations/*.yaml` in 
 If a model is not enough, `truth: xarm7.transform` names a Truth in `equations/truths/xarm7.py` of the folder.
 `symbols: xarm7.symbols` names a function of that module that draws the sample; `robot` is then omitted.
 
-Elements are expressions in the syntax of `runner/base/expressions/parser.py`; the report shows these texts. Their names
-can be vectors and matrices of the sample, as in `Lambda: transpose(inverse(J)) @ M @ inverse(J)`. They can also be
-elements of other entries of the file, which then stand for their right form. `letters` sets names as the source does:
+`elements` gives the right side of each equation by its left side, in the syntax of
+`runner/base/expressions/parser.py`; the report shows the same texts. Names can be vectors and matrices of the sample,
+as in `Lambda: transpose(inverse(J)) @ M @ inverse(J)`. They can also be left sides of other equations of the file,
+which then stand for their right form. A left side can be an expression, as in `tau - G: M @ ddq + V`; its names have
+their true values. `letters` sets names as the source does, and `indices` gives the numbers of a letter in brackets:
 
-    letters: {Lambda: Lambda(x), dq: dot(q)}    # in Typst mathematics
+    printed: {elements: {"Z[i]": "R[i] @ z"}}
+    indices: {i: [1, 2, 3]}
+    letters: {"R[i]": "attach(R, tl: 0, br: i)", dq: dot(q)}    # in Typst mathematics
 
-If an equation has no such form, `math` contains it in Typst, and `code: xarm7.left_inverse` names the function that
-evaluates it. The verdict is never stored: `verdict.py` computes it.
+`math` contains a definition in Typst. If no expression has the value of an equation, `math` shows it and
+`code: xarm7.left_inverse` names the function that evaluates it. The verdict is never stored: `verdict.py` computes it.
 """
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from runner.audit.evaluation import Numbered, Values
 from runner.audit.sources import Source, Where, source_of
+from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
+from runner.base.expressions.tree import Name, Node, at_places
 from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
 
@@ -57,17 +66,30 @@ def _as_text(value: object) -> str:
     return str(value)
 
 
+_LEFT = -1  # place of a left side, which is in no right side
+_NAME = re.compile(r"[\w']+")
+_PLACES = re.compile(r"\[(.*?)\]")
+
 Written = Annotated[str, BeforeValidator(_as_text)]
 """An expression, or a number, which needs no quotes."""
+
+
+def left_side(name: str) -> Node:
+    """Return the left side of an equation: mostly a name.
+
+    Raises:
+        ExpressionError: If it cannot be parsed.
+    """
+    return Name(name, _LEFT) if _NAME.fullmatch(name) else parse(name).root
 
 
 class Form(StrictModel):
     """One form of an equation: expressions, or mathematics with the function that evaluates it.
 
     Attributes:
-        elements: Expression of each element, by name.
-        math: The equation in Typst mathematics, where it is no arithmetic or where its layout matters.
-        code: Function of equations/truths that returns its elements at the samples.
+        elements: Right side of each equation, by its left side.
+        math: The equation in Typst mathematics, if it defines a name, or if no expression has its value.
+        code: Function of equations/truths that returns what `math` says at the samples.
     """
 
     elements: dict[str, Written] = Field(default_factory=dict)
@@ -76,8 +98,10 @@ class Form(StrictModel):
 
     @model_validator(mode="after")
     def _evaluated_one_way(self) -> Self:
-        if self.elements and self.code:
-            raise ValueError("has elements and code; one of them evaluates it")
+        if self.elements and (self.math or self.code):
+            raise ValueError(f"has elements and {'math' if self.math else 'code'}; what is shown is evaluated")
+        for name in self.elements:
+            left_side(name)
         if not (self.elements or self.math):
             raise ValueError("has neither elements nor math: nothing to show")
         return self
@@ -119,6 +143,7 @@ class Entry(StrictModel):
         finding: What is wrong and what it does, in words; Text of a report.
         rollout: Function of equations/rollouts that runs the wrong form beside the right one, or "".
         letters: Names as the source writes them in this equation.
+        indices: Numbers that a letter in square brackets stands for; the equation holds for each of them.
     """
 
     id: str
@@ -135,11 +160,20 @@ class Entry(StrictModel):
     finding: str = ""
     rollout: str = ""
     letters: dict[str, str] = Field(default_factory=dict)
+    indices: dict[str, list[int]] = Field(default_factory=dict)
 
     @property
     def right(self) -> Form:
         """The form that is meant to be right."""
         return self.corrected or self.repair or self.printed
+
+    def equations(self, form: Form) -> Iterator[tuple[str, Numbered]]:
+        """Yield the left and right sides of a form's equations, for each number that a letter stands for."""
+        for name, text in form.elements.items():
+            places = "".join(_PLACES.findall(f"{name} {text}"))
+            letters = [letter for letter in self.indices if letter in places]
+            for numbers in product(*(self.indices[letter] for letter in letters)):
+                yield name, Numbered(text, dict(zip(letters, numbers, strict=True)))
 
 
 class Content(StrictModel):
@@ -198,10 +232,30 @@ def entries(where: Where) -> Iterator[tuple[Part, Entry]]:
             yield part, entry
 
 
-def right_elements(part: Part) -> dict[str, str]:
-    """Return the elements of all entries of a file in their right form, by name."""
-    forms = [entry.right for entry in part.entries if entry.right.readable]
-    return {name: text for form in forms for name, text in form.elements.items()}
+def right_elements(part: Part) -> dict[str, Numbered]:
+    """Return the right sides of all equations of a file in their right form, by name."""
+    found = [each for entry in part.entries if entry.right.readable for each in entry.equations(entry.right)]
+    return {at_places(name, right.numbers): right for name, right in found}
+
+
+def form_values(part: Part, entry: Entry, form: Form, symbols: Mapping[str, FloatArray]) -> Values:
+    """Return the values of a form's equations by name, with those of its file's other equations in their right form.
+
+    Args:
+        part: The file.
+        entry: The equation.
+        form: One of its forms; a name that it defines counts before a symbol.
+        symbols: Values of each symbol at the samples.
+    """
+    own = {at_places(name, right.numbers): right for name, right in entry.equations(form)}
+    others = {name: values for name, values in symbols.items() if name not in own}
+    return Values(others, {**right_elements(part), **own})
+
+
+def values_at(where: Where, name: str, symbols: Mapping[str, FloatArray], *, corrected: bool = False) -> Values:
+    """Return the same for the equation of a source with this id, as printed or corrected."""
+    part, entry = next((part, entry) for part, entry in entries(where) if entry.id == name)
+    return form_values(part, entry, entry.right if corrected else entry.printed, symbols)
 
 
 @lru_cache(maxsize=64)

@@ -6,7 +6,7 @@ indices names the whole vector or matrix:
 
     model.position          P_x, P_y, P_z        the tip
     model.transform         T_11 to T_44         the tip's frame
-    model.jacobian          J_11 to J_6n         of the tip, linear rows first
+    model.jacobian          J_11 to J_6n         of the tip, linear rows first; J_1 to J_n are its columns
     model.linear_jacobian   J_11 to J_3n         its linear rows
     model.angular_jacobian  J_11 to J_3n         its angular rows
     model.mass_matrix       M_11 to M_nn
@@ -139,7 +139,8 @@ class Dynamics:
                 return whole_and_elements("T", self.pose(q))
             case "jacobian" | "linear_jacobian" | "angular_jacobian" as kind:
                 rows = {"linear_jacobian": slice(0, 3), "angular_jacobian": slice(3, 6)}.get(kind, slice(0, 6))
-                return whole_and_elements("J", self.jacobian(q)[:, rows])
+                J = self.jacobian(q)[:, rows]
+                return whole_and_elements("J", J) | {f"J_{i}": J[:, :, i - 1] for i in range(1, J.shape[2] + 1)}
             case "mass_matrix":
                 return whole_and_elements("M", self.mass_matrix(q))
             case "gravity":

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from runner.audit.entry import Written
-from runner.audit.evaluation import evaluate_all, with_symbols
+from runner.audit.evaluation import evaluate_all
 from runner.audit.model_truths import by_model, sample
 from runner.audit.truth import Elements, columns
 from runner.base.arrays import FloatArray
@@ -76,10 +76,10 @@ def compare(model: RobotModel, quantity: str, path: Path, samples: int) -> list[
             told = f"{path}: {quantity} has no element '{name}'{nearest(name, names)}"
             raise RunnerError(f"{told}; elements: {names[0]} to {names[-1]}")
     try:
-        found = evaluate_all(content.elements, with_symbols(symbols, content.symbols))
+        values = evaluate_all(content.elements, evaluate_all(content.symbols, symbols))
     except RunnerError as error:
         raise RunnerError(f"{path}, {error}") from error
-    return [_difference(name, values, truth, q) for name, values in found.items()]
+    return [_difference(name, values[name], truth, q) for name in content.elements]
 
 
 def _difference(name: str, values: FloatArray, truth: Elements, q: FloatArray) -> Difference:

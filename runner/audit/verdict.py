@@ -7,17 +7,21 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
-from runner.audit.entry import Entry, Form, Part, right_elements
-from runner.audit.evaluation import evaluate_used, names_in, with_symbols
+from runner.audit.entry import Entry, Form, Part, form_values, left_side, right_elements
+from runner.audit.evaluation import Numbered, Values, evaluate, evaluate_all
 from runner.audit.model_truths import AuditedArm, audited_arm, sample
 from runner.audit.sources import Source, truth_of
 from runner.audit.truth import Elements, Symbols, Truth
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
+from runner.base.expressions.parser import parse
+from runner.base.expressions.tree import Name, at_places
+from runner.base.expressions.tree import symbols as symbols_in
 from runner.base.expressions.typesetting import Letters
 
 SAMPLES = 1000
 Verdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
+_Sides = tuple[str, Mapping[str, int], list[FloatArray]]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
 
@@ -82,10 +86,10 @@ class Judge:
         if isinstance(part.symbols, str):
             return _draw(part.source, part.symbols, self._samples)
         arm = self._arm
-        return with_symbols(sample(arm.model, arm.joints, self._samples, np.random.default_rng(0)), part.symbols)
+        return evaluate_all(part.symbols, sample(arm.model, arm.joints, self._samples, np.random.default_rng(0)))
 
     @cached_property
-    def _right(self) -> dict[str, str]:
+    def _right(self) -> dict[str, Numbered]:
         return right_elements(self._part)
 
     @cached_property
@@ -105,7 +109,7 @@ class Judge:
             raise AuditError(f"{self._part.path}: {entry.id}: {what}") from error
 
     def _judge(self, entry: Entry) -> Judged:
-        unread = not entry.printed.readable
+        unread = not entry.printed.readable or bool(entry.repair and entry.printed.math and not entry.printed.code)
         if unread and entry.repair is None:
             return self._judged(entry, "unreadable", None)
         if not (unread or entry.truth):
@@ -134,20 +138,40 @@ class Judge:
         )
 
     def _measure(self, entry: Entry, form: Form) -> "_Both":
-        found, truth = self._evaluate(form), self.truth(entry)
+        sides, truth = self._sides(entry, form), self.truth(entry)
         for way, function in enumerate((truth.first, truth.second)):
             if (entry.truth, entry.tip, way) not in self._found:
                 self._found[entry.truth, entry.tip, way] = function(self.symbols)
-        return _Both(*(_compare(entry, found, self._found[entry.truth, entry.tip, way]) for way in (0, 1)))
+        return _Both(*(self._compare(entry, sides, self._found[entry.truth, entry.tip, way]) for way in (0, 1)))
 
-    def _evaluate(self, form: Form) -> Elements:
+    def _sides(self, entry: Entry, form: Form) -> list[_Sides]:
         if form.code:
-            values: Elements = truth_of(self._part.source, form.code)(self.symbols)
-            return values
-        known = {**self._right, **form.elements}
-        found = evaluate_used(form.elements, known, self.symbols)
-        steps = names_in(form.elements) - set(self.symbols)  # on the way to the others
-        return {name: values for name, values in found.items() if name not in steps}
+            found: Elements = truth_of(self._part.source, form.code)(self.symbols)
+            return [(name, {}, [values]) for name, values in found.items()]
+        values, sides = form_values(self._part, entry, form, self.symbols), []
+        for left, right in entry.equations(form):
+            sides.append((left, right.numbers, values.sides(at_places(left, right.numbers), right)))
+        # Those that others use are steps on the way.
+        return [each for each in sides if at_places(each[0], each[1]) not in values.used]
+
+    def _compare(self, entry: Entry, sides: list[_Sides], truth: Elements) -> Measured:
+        sizes: dict[str, FloatArray] = {}
+        for name, numbers, values in sides:
+            true, placed = self._left(name, numbers, truth), at_places(name, numbers)
+            size = np.max([error(each, true, entry.unit) for each in values], axis=0)
+            sizes[placed] = np.maximum(size, sizes.get(placed, 0.0))
+        worst = np.max(list(sizes.values()), axis=0)
+        largest = {name: float(size.max()) for name, size in sizes.items()}
+        return Measured(float(worst.max()), float(np.median(worst)), largest)
+
+    def _left(self, name: str, numbers: Mapping[str, int], truth: Elements) -> FloatArray:
+        """Return the true values of a left side."""
+        if (placed := at_places(name, numbers)) in truth:
+            return truth[placed]
+        node = left_side(name)
+        if isinstance(node, Name) or not any(at_places(each, numbers) in truth for each in symbols_in(node)):
+            raise AuditError(f"no truth for {placed}; there is {', '.join(truth)}")
+        return evaluate(parse(name), Values({**self.symbols, **truth}, self._right), numbers)
 
     def truth(self, entry: Entry) -> Truth:
         """Return what an entry claims to equal."""
@@ -174,25 +198,16 @@ def _draw(source: Source, name: str, samples: int) -> Symbols:
     return symbols
 
 
-def _compare(entry: Entry, found: Elements, truth: Elements) -> Measured:
-    missing = sorted(set(found) - set(truth))
-    if missing:
-        raise AuditError(f"no truth for {', '.join(missing)}; there is {', '.join(truth)}")
-    sizes = {name: error(values, truth[name], entry.unit) for name, values in found.items()}
-    worst = np.max(list(sizes.values()), axis=0)
-    largest = {name: float(size.max()) for name, size in sizes.items()}
-    return Measured(float(worst.max()), float(np.median(worst)), largest)
-
-
 def error(found: FloatArray, truth: FloatArray, unit: str) -> FloatArray:
     """Return how far an element is from the truth at each sample, shape (T,); infinite where it is no number.
 
     Args:
-        found: The element, shape (T,) or (T, ...): the largest difference of a matrix counts.
+        found: The element, shape (T,) or (T, ...): the largest difference of a matrix counts, and 0 is a matrix of 0.
         truth: What it should be.
         unit: Its unit; a difference in "rad" is taken the short way round.
     """
-    difference = found - truth
+    numbers = found.reshape(len(found), *(1,) * (truth.ndim - 1)) if found.ndim == 1 else found
+    difference = numbers - truth
     if unit == "rad":
         difference = (difference + np.pi) % (2 * np.pi) - np.pi
     size = np.abs(difference).reshape(len(difference), -1).max(axis=1)

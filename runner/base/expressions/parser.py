@@ -1,7 +1,8 @@
 """Parser of printed arithmetic into an expression tree.
 
-The evaluator's grammar reads the arithmetic. The tree is for drawing and comparison. `*` multiplies by a number, `@`
-multiplies matrices and vectors; in the tree both are a Product.
+The evaluator's grammar reads the arithmetic. The tree is for evaluation, drawing and comparison. `*` and `@` are the
+product of numbers, matrices and vectors. `[[A, b], [0, 1]]` is a matrix of blocks, row by row; `[a, b, c]` is a column.
+`Z[i-1]` is one of several quantities, `sum(i, 1, 3, m[i]*Z[i])` a sum, and `a = b = c` an equation of several sides.
 
 A power is written `^` or `**`, and a name can end in primes (`s2'`). The evaluation defines the meaning of a primed
 name. Every product needs its sign: the parser rejects `2 s1` and `c1(q2)`, because a lost sign and a lost bracket look
@@ -10,8 +11,7 @@ alike.
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -23,22 +23,28 @@ from runner.base.expressions.tree import Call, Name, Node, Number, Power, Produc
 FUNCTIONS = {
     **dict.fromkeys(("sin", "cos", "tan", "asin", "acos", "atan", "arcsin", "arccos", "arctan", "sqrt", "abs"), 1),
     "atan2": 2,
-    **{"transpose": 1, "inverse": 1, "cross": 2},
+    **{"transpose": 1, "inverse": 1, "cross": 2, "skew": 1, "log": 1, "sum": 4},
+    **{f"{kind}_{axis}": 1 for kind in ("R", "Rot", "Tra") for axis in "xyz"},
 }
-"""Functions that an expression can call, with their numbers of arguments."""
+"""Functions that an expression can call, with their numbers of arguments.
+
+`R_x(a)` turns by an angle about an axis, `skew(v)` is the matrix of the cross product, `log(R)` the rotation vector.
+`Rot_x(a)` and `Tra_x(l)` are turns and shifts, 4 by 4.
+"""
 
 _FACTORS = (ast.Mult, ast.Div, ast.MatMult)
 
 PRIME = "\N{MODIFIER LETTER PRIME}"
 """Prime character that Python accepts as a letter."""
-_TO_PYTHON = {"^": "**", "'": PRIME}
-_FAULT = re.compile(r"(?P<lost>…|\.{3})|(?<=[\w')])\s+(?P<apart>\w+)|(?P<sign>[^\w\s'.+\-*/@^(),]|(?<![\w'])')")
+_TO_PYTHON = {"^": "**", "'": PRIME, "=": "=="}
+_FAULT = re.compile(r"(?P<lost>…|\.{3})|(?<=[\w')\]])\s+(?P<apart>\w+)|(?P<sign>[^\w\s'.+\-*/@^=(),\[\]]|(?<![\w'])')")
 _TOLD = {
     "lost": "the text is lost here",
     "apart": "'{}' follows without a sign; a product needs its '*'",
-    "sign": "'{}' is no sign of arithmetic; signs: + - * / @ ^ ** ( ) ,",
+    "sign": "'{}' is no sign of arithmetic; signs: + - * / @ ^ ** = ( ) [ ] ,",
 }
 _NUMBER = re.compile(r"(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?(?![\w.])")
+_PLACE = re.compile(r"[A-Za-z]|\d|[A-Za-z][+-]\d")
 
 
 @dataclass(frozen=True)
@@ -48,14 +54,10 @@ class Expression:
     Attributes:
         text: The expression as written.
         root: Root of the expression tree.
-        python: The expression in the syntax of the evaluator.
-        places: Position in `text` of each UTF-8 byte of `python`, and the end of `text`.
     """
 
     text: str
     root: Node
-    python: str
-    places: Sequence[int]
 
 
 def parse(text: str) -> Expression:
@@ -71,15 +73,8 @@ def parse(text: str) -> Expression:
     letters = [" " if each.isspace() else _TO_PYTHON.get(each, each) for each in text[start:]]
     python = "".join(letters).rstrip()
     places = [start + index for index, each in enumerate(letters) for _ in each.encode()] + [len(text)]
-    with as_written(text, python, places):
-        return Expression(text, _Reader(python, places).sum(grammar.parse(python)), python, places)
-
-
-@contextmanager
-def as_written(text: str, python: str, places: Sequence[int]) -> Iterator[None]:
-    """Raise errors of the evaluator with their position in the expression as written; see Expression."""
     try:
-        yield
+        return Expression(text, _Reader(python, places).equation(grammar.parse(python)))
     except ExpressionError as error:
         place = places[len(python[: error.position - 1].encode())]
         raise ExpressionError(text, place, error.reason) from None
@@ -96,6 +91,12 @@ class _Reader:
     def __init__(self, python: str, places: Sequence[int]) -> None:
         self._python, self._bytes, self._places = python, python.encode(), places
         self._inside = {match.end() for match in re.finditer(rb"\( *", self._bytes)}
+
+    def equation(self, node: ast.expr) -> Node:
+        """Return an expression, or the sides of an equation."""
+        if not (isinstance(node, ast.Compare) and all(isinstance(each, ast.Eq) for each in node.ops)):
+            return self.sum(node)
+        return Call("=", tuple(map(self.sum, (node.left, *node.comparators))), self._places[node.col_offset])
 
     def sum(self, node: ast.expr) -> Node:
         """Return a whole expression, a bracket or an argument; a sign before the first factor applies to the term."""
@@ -135,13 +136,29 @@ class _Reader:
                 return self._call(node, function, index)
             case ast.Name() if node.id not in FUNCTIONS:
                 return Name(node.id.replace(PRIME, "'"), index)
+            case ast.Subscript(value=ast.Name(id=name)) if name not in FUNCTIONS:
+                places = [ast.unparse(each).replace(" ", "") for each in _items(node.slice)]
+                if not all(map(_PLACE.fullmatch, places)):
+                    self._refuse(node, "the places of a quantity are letters, digits, or as i+1 and i-1")
+                return Name(name.replace(PRIME, "'") + f"[{','.join(places)}]", index)
+            case ast.List(elts=[_, *_] as cells):
+                rows = [each.elts for each in cells if isinstance(each, ast.List)]
+                whole = len(rows) == len(cells)
+                return Call(
+                    "matrix", tuple(map(self._row, cells, rows if whole else [[each] for each in cells])), index
+                )
             case ast.Constant() if number := _NUMBER.match(self._python, grammar.index_of(node, self._python)):
                 if float(number[0]) == float("inf"):
                     self._refuse(node, f"the number {number[0]} is too large")
                 return Number(number[0], index)
         return self._refuse(
-            node, "is no arithmetic: numbers, names, + - * / @ ^ ( ) and functions with their arguments"
+            node, "is no arithmetic: numbers, names, + - * / @ ^ ( ) [ ] and functions with their arguments"
         )
+
+    def _row(self, node: ast.expr, cells: Sequence[ast.expr]) -> Node:
+        if not cells:
+            self._refuse(node, "a row of a matrix needs an element")
+        return Call("row", tuple(map(self.sum, cells)), self._places[node.col_offset])
 
     def _call(self, node: ast.Call, function: str, index: int) -> Node:
         if function not in FUNCTIONS:
@@ -149,7 +166,10 @@ class _Reader:
             self._refuse(node, f"{told}; functions: {', '.join(FUNCTIONS)}; a product needs its '*'")
         if len(node.args) != FUNCTIONS[function]:
             self._refuse(node, f"{function} takes {FUNCTIONS[function]} argument(s), not {len(node.args)}")
-        return Call(function, tuple(map(self.sum, node.args)), index)
+        arguments = tuple(map(self.sum, node.args))
+        if function == "sum" and not _is_sum(arguments):
+            self._refuse(node, "a sum is sum(i, 1, 3, ...): a letter, its first and its last number, and what is added")
+        return Call(function, arguments, index)
 
     def _behind(self, pattern: bytes, start: int) -> int:
         match = re.compile(pattern).match(self._bytes, start)
@@ -157,3 +177,13 @@ class _Reader:
 
     def _refuse(self, node: ast.expr, reason: str) -> NoReturn:
         raise ExpressionError(self._python, grammar.index_of(node, self._python), reason)
+
+
+def _items(node: ast.expr) -> list[ast.expr]:
+    return node.elts if isinstance(node, ast.Tuple) else [node]
+
+
+def _is_sum(arguments: Sequence[Node]) -> bool:
+    letter, *ends = arguments[:3]
+    whole = all(isinstance(end, Number) and end.text.isdecimal() for end in ends)
+    return whole and isinstance(letter, Name) and len(letter.name) == 1

@@ -1,7 +1,8 @@
 """Expression tree: numbers, names, calls, powers, products and sums, and its shortened form."""
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
+from functools import partial
 
 
 @dataclass(frozen=True)
@@ -14,7 +15,7 @@ class Number:
 
 @dataclass(frozen=True)
 class Name:
-    """Symbol, which has a value when the expression is evaluated."""
+    """Symbol, which has a value when the expression is evaluated; `Z[i-1]` is one of several."""
 
     name: str
     index: int
@@ -22,7 +23,7 @@ class Name:
 
 @dataclass(frozen=True)
 class Call:
-    """Call of an allowed function."""
+    """Call of an allowed function, or a "matrix" of calls of "row", or "=" with the sides of an equation."""
 
     function: str
     arguments: tuple["Node", ...]
@@ -72,6 +73,30 @@ def parts(node: Node) -> Sequence[Node]:
             return [term for _, term in node.terms]
 
 
+def start(node: Node) -> int:
+    """Return the position of the first character of an expression; a power's own is that of its sign."""
+    return start(node.base) if isinstance(node, Power) else node.index
+
+
+def at_places(name: str, numbers: Mapping[str, int]) -> str:
+    """Return the name that a name such as `Z[i-1]` stands for if its letters are numbers: Z_1 for i = 2.
+
+    A letter that has no number stays: P[i,n] is P_2n.
+    """
+    letters, _, places = name.partition("[")
+    found = "".join(_place(place, numbers) for place in places.rstrip("]").split(","))
+    return f"{letters}_{found}" if places else name
+
+
+def _place(place: str, numbers: Mapping[str, int]) -> str:
+    if place[:1] not in numbers:
+        return place
+    return str(numbers[place[0]] + int(place[1:] or 0))
+
+
+_FRAMES = ("matrix", "row", "=")
+
+
 def symbols(node: Node) -> Iterator[str]:
     """Yield the names, numbers and functions of an expression, each function before its arguments."""
     match node:
@@ -79,7 +104,7 @@ def symbols(node: Node) -> Iterator[str]:
             yield node.text
         case Name():
             yield node.name
-        case Call():
+        case Call() if node.function not in _FRAMES:
             yield node.function
     for part in parts(node):
         yield from symbols(part)
@@ -106,8 +131,11 @@ def shorten_expression(node: Node, marked: Set[Node]) -> Node:
             return Sum(tuple(_few(node.terms, marked)), node.index)
         case Product():
             return Product(tuple((over, _inner(factor, marked)) for over, factor in node.factors), node.index)
+        case Call(function="matrix" | "="):
+            return Call(node.function, tuple(shorten_expression(each, marked) for each in node.arguments), node.index)
         case Call():
-            return Call(node.function, tuple(_inner(each, marked) for each in node.arguments), node.index)
+            inner = partial(_inner, marked=marked, bracketed=node.function != "row")
+            return Call(node.function, tuple(map(inner, node.arguments)), node.index)
         case Power():
             return Power(_inner(node.base, marked), _inner(node.exponent, marked), node.index)
         case Number() | Name():
@@ -119,9 +147,9 @@ def holds(node: Node, marked: Set[Node]) -> bool:
     return node in marked or any(holds(part, marked) for part in parts(node))
 
 
-def _inner(node: Node, marked: Set[Node]) -> Node:
+def _inner(node: Node, marked: Set[Node], bracketed: bool = True) -> Node:
     if size(node) > _SHORT and not holds(node, marked):
-        return _dots(node, bracketed=isinstance(node, Sum))
+        return _dots(node, bracketed=bracketed and isinstance(node, Sum))
     return shorten_expression(node, marked)
 
 

@@ -1,10 +1,10 @@
 """Typst formulas of expressions: products without signs, short quotients as fractions."""
 
 import re
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Mapping, Set
 from types import MappingProxyType
 
-from runner.base.expressions.tree import Call, Name, Node, Number, Power, Product, Sum
+from runner.base.expressions.tree import Call, Name, Node, Number, Power, Product, Sum, parts
 
 _NAME = re.compile(r"([^\W\d_]+)(?:_?(\d\w*)|_(\w+))?('*)")
 _GREEK = {
@@ -28,6 +28,7 @@ _GREEK = {
 }
 _FUNCTIONS = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "atan2": 'op("atan2")', "abs": 'op("abs")'}
 
+_TURN = re.compile(r"(R|Rot|Tra)_([xyz])")
 _DIFFERENCE = re.compile(r"\d(_\d)+")
 _WORD = re.compile(r"[^\W\d]\w*'*")
 _LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -62,14 +63,6 @@ def _lowered(match: re.Match[str]) -> str:
     letters, subscript = symbol(match[0])
     lowered = subscript.translate(_LOWERED)
     return f"{letters}{lowered if subscript.isdigit() or not subscript else f'_{subscript}'}"
-
-
-def matrix(
-    rows: Sequence[Sequence[Node]], marked: Set[Node] = frozenset(), letters: Letters = MappingProxyType({})
-) -> str:
-    """Return the Typst code of a matrix of expressions."""
-    lines = [", ".join(f"display({typeset(cell, marked, letters)})" for cell in row) for row in rows]
-    return f'mat(delim: "[", {"; ".join(lines)})'
 
 
 def typeset(node: Node, marked: Set[Node] = frozenset(), letters: Letters = MappingProxyType({})) -> str:
@@ -109,14 +102,30 @@ class _Typesetter:
             case Name() if node.name in self._letters:
                 return self._letters[node.name]
             case Name():
-                letters, subscript = symbol(node.name)
-                return f'italic("{letters}")' + (f'_"{subscript}"' if subscript else "")
+                return self._name(*node.name.rstrip("]").partition("["))
             case Call(function="transpose", arguments=(Call(function="inverse", arguments=(inner,)),)):
                 return f"{self._base(inner)}^(-T)"
             case Call(function="transpose" | "inverse", arguments=(inner,)):
                 return f"{self._base(inner)}^({'T' if node.function == 'transpose' else '-1'})"
             case Call(function="cross", arguments=(first, second)):
                 return f"{self._factor(first)} times {self._factor(second)}"
+            case Call(function="skew", arguments=(inner,)):
+                return f"[{self.written(inner)}]_times"
+            case Call(function="log", arguments=(inner,)):
+                return f"log {_bracketed(self.written(inner))}^or"
+            case Call(function="sum", arguments=(letter, first, last, term)):
+                return (
+                    f"sum_({self.written(letter)} = {self.written(first)})^({self.written(last)}) {self._factor(term)}"
+                )
+            case Call(function="matrix"):
+                rows = (", ".join(f"display({self.written(cell)})" for cell in parts(row)) for row in node.arguments)
+                return f'mat(delim: "[", {"; ".join(rows)})'
+            case Call(function="="):
+                return " = ".join(map(self.written, node.arguments))
+            case Call(arguments=(inner,)) if turn := _TURN.fullmatch(node.function):
+                kind, axis = turn.groups()
+                inside = self.written(inner)
+                return f"R_{axis} {_bracketed(inside)}" if kind == "R" else f'"{kind}" \\({axis}\\, {inside}\\)'
             case Call():
                 arguments = "\\, ".join(self.written(argument) for argument in node.arguments)
                 if node.function == "sqrt":
@@ -130,6 +139,16 @@ class _Typesetter:
                 return self._product(node)
             case Sum():
                 return self._sum(node)
+
+    def _name(self, name: str, several: str, places: str) -> str:
+        """Return a symbol, with its places as a subscript if it is one of several."""
+        letters, subscript = symbol(name)
+        code = self._letters.get(name, f'italic("{letters}")')
+        below = f'"{subscript}"' if subscript and name not in self._letters else ""
+        if several:
+            apart = " \\, " if re.search(r"[+-]", places) else " "
+            below = f"({below} {apart.join(places.split(','))})".replace("( ", "(")
+        return f"{code}_{below}" if below else code
 
     def _base(self, node: Node) -> str:
         text = self.written(node)
@@ -152,13 +171,18 @@ class _Typesetter:
         text = ""
         for place, (minus, term) in enumerate(node.terms):
             sign = "- " if minus else "+ " if place else ""
-            factor = _bracketed(self._plain(term)) if isinstance(term, Sum) else self._plain(term)
+            grouped = isinstance(term, Sum) or (_is_call(term, "sum") and place + 1 < len(node.terms))
+            factor = _bracketed(self._plain(term)) if grouped else self._plain(term)
             text += (" " if place else "") + self._noted(term, sign + factor)
         return text
 
     def _factor(self, node: Node) -> str:
-        grouped = isinstance(node, Sum) or (isinstance(node, Call) and node.function == "cross")
+        grouped = isinstance(node, Sum) or _is_call(node, "cross", "sum")
         return self._noted(node, _bracketed(self._plain(node))) if grouped else self.written(node)
+
+
+def _is_call(node: Node, *functions: str) -> bool:
+    return isinstance(node, Call) and node.function in functions
 
 
 def _bracketed(text: str) -> str:

@@ -2,15 +2,16 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from dataclasses import replace
 from types import MappingProxyType
 
-from runner.audit.entry import Entry, Form
+from runner.audit.entry import Entry, Form, left_side
 from runner.audit.verdict import Judged
 from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
-from runner.base.expressions.tree import Name, Node, Sum, holds, shorten_expression, size
-from runner.base.expressions.typesetting import Letters, linear, matrix, typeset
+from runner.base.expressions.tree import Call, Name, Node, Sum, holds, parts, shorten_expression, size
+from runner.base.expressions.typesetting import Letters, linear, typeset
 from runner.reporting.audit.marks import LONG, cut, marked_formulas, pieces
 from runner.reporting.equation import EquationForm
 
@@ -19,14 +20,14 @@ _OTHER = 0.5  # share of symbols that differ from which on an expression is anot
 _FAULTS = 6  # differing parts up to which it is one with faults
 
 _Elements = Mapping[str, Node]
-_Matrix = Sequence[Sequence[Node]]
-_Shown = list[tuple[Node, Node | _Matrix]]
+_Shown = list[tuple[Node, Node]]
 _ELEMENT = re.compile(r"(?P<name>\w+?)_(?P<place>\d\d|[xyz])")
+_PLACED = re.compile(r"\w+_\d\d")
 _VECTOR = ("x", "y", "z")
 
 
 class Likeness:
-    """The right forms of the elements of a source, by name.
+    """The right forms of the elements of a source's matrices, by name.
 
     Args:
         judged: The equations of the source.
@@ -37,7 +38,8 @@ class Likeness:
         for each in judged:
             entry = each.entry
             if each.verdict not in ("unreadable", "definition"):
-                self._right |= {name: parse(text).root for name, text in entry.right.elements.items()}
+                texts = {name: text for name, text in entry.right.elements.items() if _PLACED.fullmatch(name)}
+                self._right |= {name: parse(text).root for name, text in texts.items()}
 
     def words(self, entry: Entry, elements: Mapping[str, Node]) -> str:
         """Return which other element a wrong one is, but for exchanged symbols, in a sentence; nothing if none.
@@ -49,7 +51,7 @@ class Likeness:
         if len(elements) != 1:
             return ""
         ((name, node),) = elements.items()
-        if size(node) < 2 or difference(node, self._right[name]).symbols_alone:
+        if size(node) < 2 or name not in self._right or difference(node, self._right[name]).symbols_alone:
             return ""
         found = [(other, difference(node, right)) for other, right in self._right.items() if size(right) == size(node)]
         alike = [(other, each) for other, each in found if each.symbols_alone and other != name]
@@ -89,6 +91,9 @@ def forms_of(entry: Entry, likeness: Likeness, letters: Letters = MappingProxyTy
             alone = len(forms) == 1
             told = f"{note} {like}".strip()
             made = _shown(label, form, elements, marks[place], told, letters, like=like, alone=alone)
+            if made.lines and entry.indices:
+                numbers = [f"{each} = {', '.join(map(str, found))}" for each, found in entry.indices.items()]
+                made = replace(made, lines=[*made.lines[:-1], [*made.lines[-1], *numbers]])
             mended = entry.repair is not None and beside is not None and form is not entry.corrected
             empty = not (made.lines or like)
             found.append(_unread(label, form, beside, note) if mended and empty else made)
@@ -125,19 +130,42 @@ def _marks(read: list[_Elements | None]) -> list[set[Node]]:
     """Return what each form does not share with the next one, the last with the one before."""
     marks: list[set[Node]] = [set() for _ in read]
     for place in range(len(read) - 1):
-        ours, theirs = read[place], read[place + 1]
-        if ours and theirs and len(ours) == len(theirs):
-            first, second = marks[place], marks[place + 1]
-            first.clear()
-            for one, other in zip(ours.values(), theirs.values(), strict=True):
-                found = difference(one, other)
-                if found.symbols_alone or _has_fault(one, other, found):
-                    first |= found.first
-                    second |= found.second
-                elif len(ours) > 1:
-                    first.add(one)
-                    second.add(other)
+        ours, theirs = read[place] or {}, read[place + 1] or {}
+        if len(ours) == len(theirs):
+            marks[place], marks[place + 1] = map(set, _differing(ours, theirs))
     return marks
+
+
+def _differing(ours: _Elements, theirs: _Elements) -> tuple[set[Node], set[Node]]:
+    """Return the parts of two forms in which they differ, names on the left included."""
+    first, second = set[Node](), set[Node]()
+    for one, other in zip(ours, theirs, strict=True):
+        if one != other:
+            first.add(left_side(one))
+            second.add(left_side(other))
+    left, right = list(_cells(ours.values())), list(_cells(theirs.values()))
+    for node, beside in zip(left, right, strict=False):
+        found = difference(node, beside)
+        if found.symbols_alone or _has_fault(node, beside, found):
+            first |= found.first
+            second |= found.second
+        elif len(left) == len(right) > 1:
+            first.add(node)
+            second.add(beside)
+    return first, second
+
+
+def _cells(nodes: Iterable[Node]) -> Iterator[Node]:
+    """Yield expressions, and each element of those that are matrices."""
+    for node in nodes:
+        if _is_matrix(node):
+            yield from (cell for row in parts(node) for cell in parts(row))
+        else:
+            yield node
+
+
+def _is_matrix(node: Node) -> bool:
+    return isinstance(node, Call) and node.function == "matrix"
 
 
 def _has_fault(one: Node, other: Node, found: Difference) -> bool:
@@ -180,8 +208,7 @@ def _shown(
     if like:
         return EquationForm(label, note=note, whole=whole)
     shown = _short(
-        [(left, _cut(part, marks)) for left, part in groups if any(holds(node, marks) for node in _nodes(part))]
-        or _begun(groups)
+        [(left, shorten_expression(part, marks)) for left, part in groups if holds(part, marks)] or _begun(groups)
     )
     return EquationForm(label, _lines(shown, marks, letters), note=note, whole=whole)
 
@@ -190,38 +217,23 @@ def _lines(groups: _Shown, marked: Set[Node], letters: Letters) -> list[list[str
     """Return the formulas of a form: each matrix on its own line, the expressions between matrices on one."""
     lines: list[list[str]] = [[]]
     for left, part in groups:
-        if isinstance(part, Sequence):
-            lines += [[f"{typeset(left, marked, letters)} = {matrix(part, marked, letters)}"], []]
-        else:
-            lines[-1].append(f"{typeset(left, marked, letters)} = {typeset(part, marked, letters)}")
+        lines[-1].append(f"{typeset(left, marked, letters)} = {typeset(part, marked, letters)}")
+        if any(map(_is_matrix, (part, *parts(part)))):
+            lines.append([])
     return [line for line in lines if line]
-
-
-def _nodes(part: Node | _Matrix) -> Iterator[Node]:
-    if isinstance(part, Sequence):
-        for row in part:
-            yield from row
-    else:
-        yield part
-
-
-def _cut(part: Node | _Matrix, marked: Set[Node]) -> Node | _Matrix:
-    if isinstance(part, Sequence):
-        return [[shorten_expression(node, marked) for node in row] for row in part]
-    return shorten_expression(part, marked)
 
 
 def _begun(groups: _Shown) -> _Shown:
     """Return the first terms of a form in which nothing is marked."""
     return [
-        (left, _cut(part, {term for _, term in part.terms} if isinstance(part, Sum) else set()))
+        (left, shorten_expression(part, {term for _, term in part.terms} if isinstance(part, Sum) else set()))
         for left, part in groups
     ]
 
 
 def _short(groups: _Shown) -> _Shown:
     """Return what is shown of a form, or nothing where it is still too long to be read."""
-    return groups if sum(size(node) for _, part in groups for node in _nodes(part)) <= 2 * _SYMBOLS else []
+    return groups if sum(size(part) for _, part in groups) <= 2 * _SYMBOLS else []
 
 
 def gather_elements(elements: Mapping[str, Node]) -> _Shown:
@@ -238,22 +250,26 @@ def gather_elements(elements: Mapping[str, Node]) -> _Shown:
     for family, members in families.items():
         rows = _rows(members)
         if rows is not None:
-            found.append((Name(family, 0), rows))
+            found.append((left_side(family), rows))
             continue
-        found += [(Name(f"{family}_{place}" if place else family, 0), node) for place, node in members.items()]
+        found += [(left_side(f"{family}_{place}" if place else family), node) for place, node in members.items()]
     return found
 
 
-def _rows(members: Mapping[str, Node]) -> _Matrix | None:
+def _rows(members: Mapping[str, Node]) -> Node | None:
     if tuple(members) == _VECTOR:
-        return [[node] for node in members.values()]
+        return _matrix([node] for node in members.values())
     if len(members) < 4 or not all(len(place) == 2 for place in members):
         return None
     rows, columns = (sorted({place[axis] for place in members}) for axis in (0, 1))
     whole = [f"{row}{column}" for row in rows for column in columns] == sorted(members)
     if not (whole and rows[0] == columns[0] and rows[0] in "01" and len(rows) > 1):
         return None
-    return [[members[f"{row}{column}"] for column in columns] for row in rows]
+    return _matrix([members[f"{row}{column}"] for column in columns] for row in rows)
+
+
+def _matrix(rows: Iterable[Iterable[Node]]) -> Node:
+    return Call("matrix", tuple(Call("row", tuple(row), 0) for row in rows), 0)
 
 
 def _exchanged(found: Difference) -> str:

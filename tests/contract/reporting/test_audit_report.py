@@ -103,7 +103,7 @@ def test_a_repaired_relation_is_mathematics_where_the_damaged_one_is(document):
     rows = {row.number: row for table in tables(document, Equations) for row in table.rows}
     printed, repaired = rows["S2 P"].forms
     assert printed.lines
-    assert repaired.lines == [['""^(S_2) P_(S_1) = - ""_(S_1)^(S_2) R dot ""^(S_1) P_(S_2)']]
+    assert repaired.lines == [['""^(S_2) P_(S_1) = - ""_(S_1)^(S_2) R ""^(S_1) P_(S_2)']]
 
 
 def test_a_shifted_column_is_named_and_not_printed_again(document):

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.audit.evaluation import evaluate, evaluate_used
+from runner.audit.evaluation import Numbered, Values, evaluate, evaluate_sides
 from runner.base.errors import RunnerError
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
@@ -79,11 +79,16 @@ def test_matrices_and_vectors_have_the_bits_of_numpy():
     [
         ("v @ J", "a vector of 3 @ a 3 by 3 matrix do not fit"),
         ("J + v", "a 3 by 3 matrix and a vector of 3 do not fit"),
-        ("J @ k", "a 3 by 3 matrix @ a number do not fit"),
+        ("v*v", "a vector of 3 @ a vector of 3 do not fit"),
+        ("k/J", "a number / a 3 by 3 matrix do not fit"),
+        ("[[J, k], [0, 1]]", "blocks of 1 and 3 rows or columns do not fit"),
+        ("[[J, v], [0]]", "the rows of the matrix have different lengths"),
+        ("skew(k)", "skew takes a vector of 3, not a number"),
+        ("log(v)", "log takes a rotation, not a vector of 3"),
         ("inverse(v)", "inverse takes a square matrix, not a vector of 3"),
         ("transpose(k)", "transpose takes a matrix, not a number"),
         ("cross(v, k)", "cross takes two vectors of 3, not a number"),
-        ("inverse(J - J)", "the matrix is singular at a sample"),
+        ("inverse(J - J)", "the matrix is singular at every sample"),
     ],
 )
 def test_shapes_that_do_not_fit_are_told(text, told):
@@ -91,13 +96,60 @@ def test_shapes_that_do_not_fit_are_told(text, told):
         evaluate(parse(text), SHAPED)
 
 
-def test_an_expression_uses_others_and_never_itself():
-    known = {"Lambda": "transpose(J) @ J", "mu": "Lambda @ v", "a": "b + k", "b": "a"}
-    np.testing.assert_array_equal(
-        evaluate_used({"F": "mu - v"}, known, SHAPED)["F"], evaluate(parse("transpose(J) @ J @ v - v"), SHAPED)
+def test_matrices_of_blocks_have_zeros_that_fill_and_ones_that_do_not():
+    zero, corner = np.zeros((4, 1, 3)), np.ones((4, 1, 1))
+    expected = np.concatenate([np.concatenate([J, V[:, :, None]], 2), np.concatenate([zero, corner], 2)], 1)
+    np.testing.assert_array_equal(evaluate(parse("[[J, v], [0, 1]]"), SHAPED), expected)
+    np.testing.assert_array_equal(evaluate(parse("[k, 2, v]"), SHAPED), np.column_stack([K, 2 + 0 * K, V]))
+    np.testing.assert_array_equal(evaluate(parse("[[v, 0, 2*v]]"), SHAPED), np.stack([V, 0 * V, 2 * V], axis=2))
+    assert evaluate(parse("[0, 0, 0]"), SHAPED).shape == (4, 3)
+
+
+def test_a_row_times_a_column_is_a_number():
+    np.testing.assert_allclose(
+        evaluate(parse("transpose(v) @ M @ v/2"), SHAPED), np.einsum("ti,tij,tj->t", V, M, V) / 2
     )
+
+
+def test_turns_and_vectors_agree():
+    np.testing.assert_array_equal(evaluate(parse("skew(v) @ J @ v - cross(v, J @ v)"), SHAPED).round(14), 0 * V)
+    back = evaluate(parse("log(R_x(0.3)) - [0.3, 0, 0] + log(R_y(k/9) @ R_y(-k/9))"), SHAPED)
+    np.testing.assert_allclose(back, 0 * V, atol=1e-15)
+    moved = evaluate(parse("Rot_z(k) @ Tra_x(2) @ [0, 0, 0, 1]"), SHAPED)
+    np.testing.assert_allclose(moved, np.column_stack([2 * np.cos(K), 2 * np.sin(K), 0 * K, 1 + 0 * K]), atol=1e-15)
+
+
+def test_letters_in_square_brackets_stand_for_numbers():
+    several = {f"x_{i}": i * X for i in range(4)} | {"x_2n": Y, "n": X}
+    text = "sum(i, 1, 3, x[i] - x[i-1]) + x[2, n] - x[k+1]"
+    np.testing.assert_allclose(evaluate(parse(text), several, {"k": 1}), 3 * X + Y - 2 * X)
+    with pytest.raises(ExpressionError, match=r"position 1: no name 'x_5'"):
+        evaluate(parse("x[k]"), several, {"k": 5})
+    with pytest.raises(ExpressionError, match="take more than 10000 operations"):
+        evaluate(parse("sum(i, 1, 999, sum(j, 1, 999, i))"), {"i": X})
+
+
+def test_an_equation_has_a_value_on_each_side():
+    first, second = evaluate_sides(parse("J @ v = 2*v"), SHAPED)
+    np.testing.assert_array_equal(first, evaluate(parse("J @ v"), SHAPED))
+    np.testing.assert_array_equal(second, 2 * V)
+
+
+def test_an_inverse_that_exists_at_some_samples_has_no_number_at_the_others():
+    matrices = J.copy()
+    matrices[1] = 0.0
+    found = evaluate(parse("2*inverse(J) @ v"), SHAPED | {"J": matrices})
+    assert np.isnan(found[1]).all()
+    assert np.isfinite(found[[0, 2, 3]]).all()
+
+
+def test_an_expression_uses_others_and_never_itself():
+    texts = {"Lambda": "transpose(J) @ J", "mu": "Lambda @ v", "F": "mu - v", "a": "b + k", "b": "a"}
+    values = Values(SHAPED, {name: Numbered(text) for name, text in texts.items()})
+    np.testing.assert_array_equal(values["F"], evaluate(parse("transpose(J) @ J @ v - v"), SHAPED))
+    assert values.used == {"Lambda", "mu", "F"}
     with pytest.raises(RunnerError, match="a uses b uses a: an element cannot use itself"):
-        evaluate_used({"x": "a"}, known, SHAPED)
+        values["a"]
 
 
 LEAVES = st.sampled_from(["x", "y", "2", "0.5", "7"])

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.expressions.parser import parse
-from runner.base.expressions.typesetting import linear, matrix, symbol, typeset
+from runner.base.expressions.typesetting import linear, symbol, typeset
 from runner.reporting import formulas
 
 
@@ -47,6 +47,12 @@ def test_matrices_are_set_as_a_source_prints_them():
         ("transpose(J)", "J(q)^(T)"),
         ("inverse(J @ M) @ dq", '(J(q) italic("M"))^(-1) dot(q)'),
         ("J @ cross(a, b + c)", 'J(q) \\(italic("a") times \\(italic("b") + italic("c")\\)\\)'),
+        ("[dq, 0]", 'mat(delim: "[", display(dot(q)); display(0))'),
+        ("J_v[i] - Z[i-1, n]", 'italic("J")_("v" i) - italic("Z")_(i-1 \\, n)'),
+        ("sum(i, 1, 3, k + J[i]) @ dq", '\\(sum_(italic("i") = 1)^(3) \\(italic("k") + J(q)_(i)\\)\\) dot(q)'),
+        ("Rot_x(a) @ R_z(b)", '"Rot" \\(x\\, italic("a")\\) R_z \\(italic("b")\\)'),
+        ("skew(dq) @ log(J)", "[dot(q)]_times log \\(J(q)\\)^or"),
+        ("J @ dq = 0", "J(q) dot(q) = 0"),
     ):
         assert typeset(parse(text).root, letters=letters) == expected
 
@@ -55,6 +61,7 @@ def test_matrices_are_set_as_a_source_prints_them():
     "text",
     ["-a^2/3 + sqrt(x^2 + y^2)/(1 - sin(q1)^2)", "atan2(y, x) - asin(x)*acos(x)*arctan(abs(x))", "theta1*s2'/J_g0_32",
      "x_y_z + Lambda", "transpose(inverse(J)) @ M - k*inverse(A + B) @ cross(r, F)",
+     "sum(i, 1, 3, m[i]*transpose(J_v[i]) @ g) + [[skew(r), log(R_x(a))], [Tra_z(l), 0]] = x[i+1, n]",
      "(1 + 2)*3*4/5/6", "a/(b + c + d + e + f + g + h + i + j + k + l + m + n + o)"],
 )  # fmt: skip
 def test_what_is_typeset_is_valid(text):
@@ -72,8 +79,8 @@ def test_brackets_within_brackets_are_two():
 
 
 def test_a_matrix_is_valid():
-    elements = [parse(text).root for text in ("-s1", "1/2*c12", "atan2(y, x)", "0")]
-    text = matrix([elements[:2], elements[2:]], {elements[1]})
+    node = parse("[[-s1, 1/2*c12], [atan2(y, x), 0]]").root
+    text = typeset(node, {node.arguments[0].arguments[1]})
     assert text.count("differs(") == 1
     assert formulas.mathml([text], displayed=False)[text] is not None
 

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.expressions.parser import parse
-from runner.base.expressions.tree import Name
+from runner.base.expressions.tree import Call, Name, parts
 from runner.reporting.audit.forms import gather_elements
 
 
@@ -13,7 +13,7 @@ def elements(*names):
 
 def shapes(*names):
     return [
-        (left.name, (len(right), len(right[0])) if isinstance(right, list) else None)
+        (left.name, (len(right.arguments), len(parts(right.arguments[0]))) if isinstance(right, Call) else None)
         for left, right in gather_elements(elements(*names))
     ]
 
@@ -43,4 +43,4 @@ def test_elements_stand_in_their_rows_whatever_their_order():
     ((_, matrix),) = gather_elements(
         {"T_21": Name("c", 0), "T_12": Name("b", 0), "T_22": Name("d", 0), "T_11": Name("a", 0)}
     )
-    assert [[node.name for node in row] for row in matrix] == [["a", "b"], ["c", "d"]]
+    assert [[node.name for node in parts(row)] for row in parts(matrix)] == [["a", "b"], ["c", "d"]]

@@ -6,14 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 
+from runner.audit.entry import values_at
 from runner.audit.rollout import Run
-from runner.audit.truth import derivative, product
+from runner.audit.truth import coordinates, derivative, product
 from runner.base.arrays import FloatArray
 from runner.studies.meca500.equations.truths import meca500
 from runner.studies.meca500.equations.truths.meca500_admittance import summed
 from runner.studies.meca500.equations.truths.meca500_gravity import weight
-from runner.studies.meca500.equations.truths.meca500_tool import turned, turned_back
-from runner.studies.meca500.equations.truths.meca500_wrench import by_shorter_lever
 
 _DURATION = 3.0  # s
 _STEP = 0.01  # s
@@ -98,10 +97,13 @@ def alignment() -> Run:
     tilt = np.linspace(0, 60, 61)
     side = np.radians(tilt)
     t = np.column_stack([np.sin(side) / np.sqrt(2), np.sin(side) / np.sqrt(2), np.cos(side)])
-    values = {"t": t}
+    forms = {"as printed": False, "corrected": True}
+    axes = {
+        name: values_at("meca500", "meca500-alignment", coordinates("t", t), corrected=right)["T6_R"]
+        for name, right in forms.items()
+    }
     off = {
-        name: np.degrees(np.arccos(np.clip(np.einsum("ti,ti->t", t, axes[:, 2, :]), -1, 1)))
-        for name, axes in (("as printed", turned(values)["T6_R"]), ("corrected", turned_back(values)["T6_R"]))
+        name: np.degrees(np.arccos(np.clip(np.einsum("ti,ti->t", t, R[:, 2, :]), -1, 1))) for name, R in axes.items()
     }
     return Run(tilt, off, {"at_20": off["as printed"][20]})
 
@@ -111,8 +113,8 @@ def wrench() -> Run:
     lever = np.linspace(0, 150, 61)
     push = np.tile([5.0, 0.0, 0.0], (len(lever), 1))
     shift = np.column_stack([0 * lever, 0 * lever, lever])
-    values = {"r_p": np.tile([0.0, 0.0, 20.0], (len(lever), 1)), "qp": shift, "F": push}
+    values = {"r_p": np.tile([0.0, 0.0, 20.0], (len(lever), 1)), "qp": shift, "F": push, "F_p": push}
     true = np.cross(values["r_p"], push)
-    told = by_shorter_lever(values)["M_p"]
+    told = values_at("meca500", "meca500-moment-p-1", values)["M_p"]
     curves = {"as printed": np.linalg.norm(told - true, axis=1), "corrected": np.zeros(len(lever))}
     return Run(lever, curves, {"told": float(np.linalg.norm(told[-1]))})

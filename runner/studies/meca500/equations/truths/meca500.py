@@ -6,7 +6,6 @@ Denavit-Hartenberg table uses the modified (Craig) convention. Lengths in mm, as
 """
 
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +15,6 @@ from runner.audit.truth import (
     Elements,
     Symbols,
     Truth,
-    Way,
     columns,
     jacobian_by_differences,
     product,
@@ -53,13 +51,15 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     """Return what the report's names stand for at random configurations, each joint drawn from a full turn.
 
     `theta1` to `theta6` are the joint positions in rad, `S1`, `C1` and so on their sines and cosines, `S23`, `C23` of
-    the sum of the second and third.
+    the sum of the second and third. `R_6` and `P_6` are rotation and origin of frame 6, `T_55` frame 5 in itself.
     """
     q = generator.uniform(-np.pi, np.pi, (count, JOINTS))
     values = {f"theta{i + 1}": q[:, i] for i in range(JOINTS)}
     values |= {f"S{i + 1}": np.sin(q[:, i]) for i in range(JOINTS)}
     values |= {f"C{i + 1}": np.cos(q[:, i]) for i in range(JOINTS)}
-    return values | {"S23": np.sin(q[:, 1] + q[:, 2]), "C23": np.cos(q[:, 1] + q[:, 2])}
+    T, degree = BY_MODEL.pose(q), np.full(count, np.pi / 180)
+    blocks = {"R_6": T[:, :3, :3], "P_6": T[:, :3, 3], "T_55": np.tile(np.eye(4), (count, 1, 1)), "degree": degree}
+    return values | blocks | {"S23": np.sin(q[:, 1] + q[:, 2]), "C23": np.cos(q[:, 1] + q[:, 2])}
 
 
 def positions(values: Symbols) -> FloatArray:
@@ -105,16 +105,6 @@ def _steps_by_table(values: Symbols) -> Elements:
     return {f"T_{i + 1}": row_transform(row, q[:, i]) for i, row in enumerate(TABLE)}
 
 
-def _row(place: int, mended: bool) -> Way:
-    row = TABLE[place] if mended else replace(TABLE[place], theta=0.0)
-    return lambda values: {f"T_{place + 1}": row_transform(row, positions(values)[:, place])}
-
-
-printed_row_1, printed_row_2, printed_row_3, printed_row_4, printed_row_5, printed_row_6 = (
-    _row(place, mended=False) for place in range(JOINTS)
-)
-mended_row_2, mended_row_6 = _row(1, mended=True), _row(5, mended=True)
-
 steps = Truth(_steps_by_model, _steps_by_table, ("Pinocchio, the maker's joints", "the mended table"))
 
 
@@ -140,11 +130,3 @@ jacobian_6 = _both(
     lambda q: in_frame_6(jacobian_by_table(q), pose(q)),
     "differences of the mended table's product, turned",
 )
-
-
-def _chained(count: int) -> Way:
-    return lambda values: {"T": product(list(_steps_by_model(values).values())[:count])}
-
-
-chained_as_printed, chained = _chained(JOINTS - 1), _chained(JOINTS)
-"""The product with 5 over 5 for its last factor, frame 5 in itself, which is the identity; and with all six."""

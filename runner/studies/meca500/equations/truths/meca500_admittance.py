@@ -14,9 +14,9 @@ from runner.audit.truth import (
     along,
     columns,
     derivative,
-    elements,
     jacobian_by_differences,
     rotation,
+    whole_and_elements,
 )
 from runner.base.arrays import FloatArray
 from runner.studies.meca500.equations.truths import meca500
@@ -32,6 +32,9 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     Rx(alpha) Ry(beta) Rz(gamma), beta 0.2 rad or more from its singularity, with rates `dalpha`, `dbeta`, `dgamma`;
     `S_alpha` and so on their sines and cosines; `M`, `B`, `K` a mass [kg], damper [N s/m] and spring [N/m] under a
     force `f` [N] for a time `t` [s].
+
+    `R_1` to `R_6` are the rotations of the frames, `R_6h` that of frame 6 at q = 0, `J_g` its Jacobian, `J_a` that of
+    its position and Euler angles, `J_we6` the matrix of their rates, `dx`. `dtheta`, `angles` and `deuler` are vectors.
     """
     values = dict(meca500.symbols(count, generator))
     values |= {f"rate{i + 1}": generator.uniform(-1, 1, count) for i in range(meca500.JOINTS)}
@@ -41,7 +44,18 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     values |= {f"S_{name}": np.sin(values[name]) for name in ("alpha", "beta")}
     values |= {f"C_{name}": np.cos(values[name]) for name in ("alpha", "beta")}
     ranges = {"M": (0.5, 4), "B": (5, 60), "K": (50, 500), "f": (-10, 10), "t": (0.05, 1)}
-    return values | {name: generator.uniform(low, high, count) for name, (low, high) in ranges.items()}
+    values |= {name: generator.uniform(low, high, count) for name, (low, high) in ranges.items()}
+    q, rates = meca500.positions(values), _rates(values)
+    frames = meca500.frames(q)
+    J_a, J_we = _analytic(q)
+    values |= {f"theta_{i + 1}": q[:, i] for i in range(meca500.JOINTS)}
+    values |= {f"R_{i}": frame[:, :3, :3] for i, frame in enumerate(frames, start=1)}
+    values |= {
+        "R_6h": np.tile(meca500.pose(0.0 * q[:1])[:, :3, :3], (count, 1, 1)),
+        "J_g": meca500.BY_MODEL.jacobian(q),
+    }
+    values |= {"J_a": J_a, "J_we6": J_we, "dx": along(J_a, rates), "I": np.tile(np.eye(3), (count, 1, 1))}
+    return values | {"dtheta": rates, "angles": _angles(values), "deuler": _euler_speed(values)}
 
 
 # The filter in time.
@@ -89,11 +103,6 @@ def summed(q: FloatArray) -> FloatArray:
     return along(np.stack([frame[:, :3, 2] for frame in meca500.frames(q)], axis=2), q)
 
 
-def summed_axes(values: Symbols) -> Elements:
-    """Return the same for a sample, as printed."""
-    return {"Theta": summed(meca500.positions(values))}
-
-
 def _home_turn(pose: Callable[[FloatArray], FloatArray], values: Symbols) -> FloatArray:
     """Return the flange's rotations from its attitude at q = 0, in the base frame, shape (T, 3, 3)."""
     home = pose(np.zeros((1, meca500.JOINTS)))[:, :3, :3]
@@ -104,21 +113,11 @@ def _logarithm(rotations: FloatArray) -> Elements:
     return {"Theta": np.array([pin.log3(R) for R in rotations])}
 
 
-def rotation_vector(values: Symbols) -> Elements:
-    """Return the logarithm of the flange's rotation from home."""
-    return _logarithm(_home_turn(meca500.pose, values))
-
-
 turn = Truth(
-    rotation_vector,
+    lambda values: _logarithm(_home_turn(meca500.pose, values)),
     lambda values: {"Theta": Rotation.from_matrix(_home_turn(meca500.BY_MODEL.pose, values)).as_rotvec()},
     ("logarithm, by the mended table", "quaternion, by Pinocchio's chain"),
 )
-
-
-def joint_twist(values: Symbols) -> Elements:
-    """Return J_g times the joint rates, J_g with the joint axes as angular rows."""
-    return {"twist": along(meca500.BY_MODEL.jacobian(meca500.positions(values)), _rates(values))}
 
 
 def _rates(values: Symbols) -> FloatArray:
@@ -164,15 +163,10 @@ def _rates_by_differences(values: Symbols) -> FloatArray:
 
 
 euler_rates = Truth(
-    lambda values: elements("J_we", _rates_by_differences(values)),
-    lambda values: elements("J_we", _rate_matrix(values)),
+    lambda values: whole_and_elements("J_we", _rates_by_differences(values)),
+    lambda values: whole_and_elements("J_we", _rate_matrix(values)),
     ("differences of Rx Ry Rz", "the axes themselves"),
 )
-
-
-def euler_velocity(values: Symbols) -> Elements:
-    """Return J_we times the rates of the Euler angles."""
-    return {"omega": along(_rate_matrix(values), _euler_speed(values))}
 
 
 velocity = Truth(
@@ -182,34 +176,15 @@ velocity = Truth(
 )
 
 
-def summed_euler(values: Symbols) -> Elements:
-    """Return J_we times the Euler angles themselves, as printed."""
-    return {"Theta": along(_rate_matrix(values), _angles(values))}
-
-
-def euler_vector(values: Symbols) -> Elements:
-    """Return the logarithm of Rx(alpha) Ry(beta) Rz(gamma)."""
-    return _logarithm(euler(_angles(values))[:, :3, :3])
-
-
 euler_turn = Truth(
-    euler_vector,
+    lambda values: _logarithm(euler(_angles(values))[:, :3, :3]),
     lambda values: {"Theta": Rotation.from_euler("XYZ", _angles(values)).as_rotvec()},
     ("logarithm", "quaternion"),
 )
 
 
-def from_analytic(values: Symbols) -> Elements:
-    """Return diag(I, J_we) J_a, J_a by differences of the position and of the Euler angles of frame 6."""
-    return {"J_ge": _lifted(meca500.positions(values))}
-
-
-def analytic_twist(values: Symbols) -> Elements:
-    """Return diag(I, J_we) times the rates of position and Euler angles of frame 6."""
-    return {"twist": along(_lifted(meca500.positions(values)), _rates(values))}
-
-
-def _lifted(q: FloatArray) -> FloatArray:
+def _analytic(q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the Jacobian of position and Euler angles of frame 6 by differences, and the matrix of their rates."""
     pose = meca500.pose(q)
     up, low = pose[:, 2, 2], -pose[:, 1, 2]  # cos beta cos alpha, cos beta sin alpha
     ahead, left = pose[:, 0, 0], -pose[:, 0, 1]  # cos beta cos gamma, cos beta sin gamma
@@ -221,9 +196,8 @@ def _lifted(q: FloatArray) -> FloatArray:
         beta = change[:, 0, 2] / np.sqrt(cosine_square)
         gamma = (ahead * -change[:, 0, 1] - left * change[:, 0, 0]) / cosine_square
         found.append(np.column_stack([change[:, :3, 3], alpha, beta, gamma]))
-    lifted = np.tile(np.eye(6), (len(q), 1, 1))
-    lifted[:, 3:, 3:] = _rate_matrix({"alpha": np.arctan2(low, up), "beta": np.arcsin(pose[:, 0, 2])})
-    return np.asarray(lifted @ np.stack(found, axis=2))
+    angles = {"alpha": np.arctan2(low, up), "beta": np.arcsin(pose[:, 0, 2])}
+    return np.stack(found, axis=2), _rate_matrix(angles)
 
 
 geometric = Truth(

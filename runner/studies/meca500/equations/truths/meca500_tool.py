@@ -3,7 +3,7 @@
 import numpy as np
 import pinocchio as pin
 
-from runner.audit.truth import Elements, Symbols, Truth, along, rotation
+from runner.audit.truth import Elements, Symbols, Truth, along, coordinates
 from runner.base.arrays import FloatArray
 from runner.studies.meca500.equations.truths.meca500 import BY_MODEL, JOINTS
 
@@ -13,65 +13,34 @@ POSES = 4
 def symbols(count: int, generator: np.random.Generator) -> Symbols:
     """Return tools held against a fixed point in four random orientations.
 
-    `R1` to `R4` are the flange's rotations and `P1` to `P4` its positions, shapes (T, 3, 3) and (T, 3); `p` is the tool
-    tip in the flange and `X` the point in the base frame; `short` is a shorter tool in the same direction `t`.
+    `R_1` to `R_4` are the flange's rotations and `P_1` to `P_4` its positions, shapes (T, 3, 3) and (T, 3); `p` is the
+    tool tip in the flange and `X` the point in the base frame; `short` is a shorter tool in the same direction `t`.
+    `T_F` is the flange's first transform, `T_FH` that of the tool, whose axes are the flange's.
     """
     tool = generator.uniform([-40, -40, 60], [40, 40, 140], (count, 3))
     point = generator.uniform(-200, 200, (count, 3))
     values = {"p": tool, "X": point}
     for k in range(1, POSES + 1):
         R = BY_MODEL.pose(generator.uniform(-np.pi, np.pi, (count, JOINTS)))[:, :3, :3]
-        values |= {f"R{k}": R, f"P{k}": point - along(R, tool)}
+        values |= {f"R_{k}": R, f"P_{k}": point - along(R, tool)}
     direction = generator.normal(size=(count, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    return values | {"t": direction, "short": tool - 25 * direction}
+    values |= coordinates("t", direction) | {"t": direction, "short": tool - 25 * direction}
+    return values | {"T_F": _rigid(values["R_1"], values["P_1"]), "T_FH": _rigid(np.eye(3), tool)}
 
 
-def chain(values: Symbols) -> Elements:
-    """Return the tip by the product of homogeneous transforms: eq. 1."""
-    flange = np.tile(np.eye(4), (len(values["p"]), 1, 1))
-    flange[:, :3, :3], flange[:, :3, 3] = values["R1"], values["P1"]
-    return {"P_H": along(flange, np.column_stack([values["p"], np.ones(len(flange))]))[:, :3]}
-
-
-def four_tips(values: Symbols) -> Elements:
-    """Return the tip from each of the four poses: eq. 4."""
-    return {f"P_H{k}": along(values[f"R{k}"], values["p"]) + values[f"P{k}"] for k in range(1, POSES + 1)}
-
-
-def differences(values: Symbols) -> Elements:
-    """Return the left side of eq. 5, the differences of rotations times the tool vector, shape (T, 9)."""
-    return {"RP": along(_stacked(values), values["p"])}
-
-
-def least_squares(values: Symbols) -> Elements:
-    """Return the tool vector (R' R)^-1 R' P of the equation after eq. 5."""
-    R, P = _stacked(values), _shifts(values)
-    transposed = R.transpose(0, 2, 1)
-    return {"p": np.asarray(np.linalg.solve(transposed @ R, along(transposed, P)[:, :, None])[:, :, 0], dtype=float)}
+def _rigid(R: FloatArray, P: FloatArray) -> FloatArray:
+    T = np.tile(np.eye(4), (len(P), 1, 1))
+    T[:, :3, :3], T[:, :3, 3] = R, P
+    return T
 
 
 def _stacked(values: Symbols) -> FloatArray:
-    return np.concatenate([values["R1"] - values[f"R{k}"] for k in range(2, POSES + 1)], axis=1)
+    return np.concatenate([values["R_1"] - values[f"R_{k}"] for k in range(2, POSES + 1)], axis=1)
 
 
 def _shifts(values: Symbols) -> FloatArray:
-    return np.concatenate([values[f"P{k}"] - values["P1"] for k in range(2, POSES + 1)], axis=1)
-
-
-def turned(values: Symbols) -> Elements:
-    """Return Rx(alpha) Ry(beta), the angles as the text describes them, as the rotation it is printed to be: eq. 7."""
-    return {"T6_R": _aligning(values)}
-
-
-def turned_back(values: Symbols) -> Elements:
-    """Return the transpose of Rx(alpha) Ry(beta)."""
-    return {"T6_R": _aligning(values).transpose(0, 2, 1)}
-
-
-def _aligning(values: Symbols) -> FloatArray:
-    alpha, beta = _angles(values)
-    return rotation("x", alpha)[:, :3, :3] @ rotation("y", beta)[:, :3, :3]
+    return np.concatenate([values[f"P_{k}"] - values["P_1"] for k in range(2, POSES + 1)], axis=1)
 
 
 def _angles(values: Symbols) -> tuple[FloatArray, FloatArray]:
@@ -96,11 +65,9 @@ def _by_pinocchio(values: Symbols) -> Elements:
 
 
 def _points(values: Symbols) -> Elements:
-    acted = {}
-    for k in range(1, POSES + 1):
-        rows = zip(values[f"R{k}"], values[f"P{k}"], values["p"], strict=True)
-        acted[f"P_H{k}"] = np.array([pin.SE3(R, P).act(p) for R, P, p in rows])
-    return acted | {"P_H": acted["P_H1"]}
+    rows = zip(values["R_1"], values["P_1"], values["p"], strict=True)
+    T = np.array([(pin.SE3(R, P) * pin.SE3(np.eye(3), p)).homogeneous for R, P, p in rows])
+    return {"P_H": T[:, :3, 3], "T_H": T}
 
 
 def _fitted(values: Symbols) -> Elements:
@@ -109,19 +76,14 @@ def _fitted(values: Symbols) -> Elements:
 
 
 def _between_tips(values: Symbols) -> Elements:
-    tips = [along(values["R1"], values[name]) + values["P1"] for name in ("p", "short")]
-    return {"t": along(values["R1"].transpose(0, 2, 1), tips[0] - tips[1])}
+    tips = [along(values["R_1"], values[name]) + values["P_1"] for name in ("p", "short")]
+    return {"t": along(values["R_1"].transpose(0, 2, 1), tips[0] - tips[1])}
 
 
 point = Truth(
-    lambda values: {"P_H": values["X"], **{f"P_H{k}": values["X"] for k in range(1, POSES + 1)}},
+    lambda values: {"P_H": values["X"], "T_H": _rigid(values["R_1"], values["X"])},
     _points,
     ("the fixed point itself", "rigid transforms by Pinocchio"),
-)
-stack = Truth(
-    lambda values: {"RP": _shifts(values)},
-    differences,
-    ("differences of the flange's positions", "differences of the turned tool vector"),
 )
 tool = Truth(lambda values: {"p": values["p"]}, _fitted, ("the tool that was drawn", "least squares by LAPACK"))
 axis = Truth(

@@ -4,7 +4,6 @@ import numpy as np
 import pinocchio as pin
 
 from runner.audit.truth import Elements, Symbols, Truth, along
-from runner.sensing.wrench import cross_matrix
 from runner.studies.meca500.equations.truths.meca500 import BY_MODEL, JOINTS
 
 
@@ -13,44 +12,13 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
 
     `F` and `M_p` are the force and the moment about S1's origin, p, in S1. `R` turns vectors of S1 into S2, `P` is S1's
     origin in S2; `qp` is the vector from S2's origin, q, to p, in S1, `P_2` that from p to q; `r_p` is the lever of the
-    force from p, `r_q` from q.
+    force from p, `r_q` from q. `F_p` is `F`, `S` is `P`, and `I` the identity.
     """
     R = BY_MODEL.pose(generator.uniform(-np.pi, np.pi, (count, JOINTS)))[:, :3, :3]
     P, F, lever = (generator.uniform(-size, size, (count, 3)) for size in (100, 20, 80))
     qp = along(R.transpose(0, 2, 1), P)
-    return {"R": R, "P": P, "F": F, "r_p": lever, "r_q": lever + qp, "qp": qp, "P_2": -qp, "M_p": np.cross(lever, F)}
-
-
-def by_lever(values: Symbols) -> Elements:
-    """Return r_q x F."""
-    return {"M_q": np.cross(values["r_q"], values["F"])}
-
-
-def by_shorter_lever(values: Symbols) -> Elements:
-    """Return r_p x F + qp x F as the moment about p, as printed."""
-    return {"M_p": np.cross(values["r_p"], values["F"]) + np.cross(values["qp"], values["F"])}
-
-
-def by_shift(values: Symbols) -> Elements:
-    """Return M_p + qp x F, where M_p is r_p x F."""
-    return {"M_q": values["M_p"] + np.cross(values["qp"], values["F"])}
-
-
-def by_matrix(values: Symbols) -> Elements:
-    """Return the product of the shift and the turn, both 6 by 6, and the wrench in S1."""
-    count = len(values["F"])
-    shift, turn = np.tile(np.eye(6), (count, 1, 1)), np.zeros((count, 6, 6))
-    shift[:, 3:, :3] = [cross_matrix(P) for P in values["P"]]
-    turn[:, :3, :3] = turn[:, 3:, 3:] = values["R"]
-    return {"wrench": along(shift @ turn, np.hstack([values["F"], values["M_p"]]))}
-
-
-def composed(values: Symbols) -> Elements:
-    """Return the product of a shift and a turn as homogeneous transforms."""
-    shift = np.tile(np.eye(4), (len(values["P"]), 1, 1))
-    turn = shift.copy()
-    shift[:, :3, 3], turn[:, :3, :3] = values["P"], values["R"]
-    return {"T": shift @ turn}
+    levers = {"r_p": lever, "r_q": lever + qp, "qp": qp, "P_2": -qp, "M_p": np.cross(lever, F)}
+    return {"R": R, "P": P, "S": P, "F": F, "F_p": F, "I": np.tile(np.eye(3), (count, 1, 1)), **levers}
 
 
 def _by_vectors(values: Symbols) -> Elements:

@@ -4,12 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from runner.audit.entry import values_at
 from runner.audit.rollout import Run
 from runner.audit.truth import along
 from runner.base.arrays import FloatArray
-from runner.studies.thesis.equations.truths import thesis_jacobians, thesis_measures
-from runner.studies.thesis.equations.truths.thesis import symbols_at
+from runner.studies.thesis.equations.truths import thesis_measures
 from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI, Arm
+from runner.studies.thesis.equations.truths.thesis_jacobians import frame_symbols
 from runner.studies.thesis.equations.truths.thesis_kinematics import tip_pose
 from runner.trajectories.motion import quintic_motion
 
@@ -54,7 +55,9 @@ def lever_arms() -> Run:
     """Return how the Macro follows its path by the columns of (3.6), and by the exchanged indices of J_ij."""
 
     def printed(q: FloatArray) -> FloatArray:
-        return np.asarray(thesis_jacobians.levers_from_frame_i(symbols_at(q[None]))["J"][0])
+        names = frame_symbols(MACRO, q[None]) | {f"eps_{i}": np.ones(1) for i in (1, 2, 3)}
+        columns = values_at("thesis", "thesis-3.6", names)
+        return np.column_stack([columns[f"J_{i}"][0] for i in (1, 2, 3)])
 
     def exchanged(q: FloatArray) -> FloatArray:
         return _right(MACRO)(q).T
@@ -82,11 +85,12 @@ def mini_jacobian() -> Run:
 def chained_tables() -> Run:
     """Return where the two D-H tables, one behind the other, place the tip of the combined arm."""
     angle = np.linspace(0.0, 1.0, 101)
-    values = symbols_at(angle[:, None] * np.ones(6))
-    real = tip_pose(COMBINED, COMBINED.q(values))[:, :3, 3]
+    q = angle[:, None] * np.ones(6)
+    real = tip_pose(COMBINED, q)[:, :3, 3]
+    arms = {"T_0E": tip_pose(MACRO, q[:, :3]), "T_36": tip_pose(MINI, q[:, 3:])}
     said, mended = (
-        np.linalg.norm(chain(values)["T"][:, :3, 3] - real, axis=1)
-        for chain in (thesis_measures.tables_chained, thesis_measures.tables_chained_with_turn)
+        np.linalg.norm(values_at("thesis", "thesis-frame-3", arms, corrected=right)["T"][:, :3, 3] - real, axis=1)
+        for right in (False, True)
     )
     return Run(angle, {"as printed": said, "corrected": mended})
 

@@ -14,7 +14,7 @@ def symbols(count: int, generator: np.random.Generator) -> dict[str, FloatArray]
 
     c12 is cos(q1 + q2); c1_2_3 is what the thesis prints as c(1-2-3), cos(q1 - q2 - q3). theta, alpha, a and d are
     the parameters of any one link, xi and omega_n those of any second-order loop, n any number of joints, c_0 to c_5
-    the coefficients of the quintic from x_0 to x_t in t_f.
+    the coefficients of the quintic from x_0 to x_t in t_f, s any number. `x` and `z` are the axes of the base.
     """
     q = generator.uniform(-np.pi, np.pi, (count, JOINTS))
     return _named(q, generator)
@@ -50,6 +50,7 @@ def _named(q: FloatArray, generator: np.random.Generator) -> dict[str, FloatArra
     values |= {name: generator.uniform(-1.0, 1.0, count) for name in ("a", "d", "x_0", "x_t")}
     values |= {"xi": generator.uniform(0.2, 2.0, count), "omega_n": generator.uniform(1.0, 300.0, count)}
     values |= {"t_f": generator.uniform(0.5, 5.0, count), "pi": np.full(count, np.pi)}
+    values |= {"s": values["d"]} | {axis: np.tile(row, (count, 1)) for axis, row in zip("xyz", np.eye(3), strict=True)}
     values |= {"n": generator.integers(2, 9, count).astype(float)}
     D, t_f = values["x_t"] - values["x_0"], values["t_f"]
     values |= {"c_0": values["x_0"], "c_1": 0.0 * D, "c_2": 0.0 * D}

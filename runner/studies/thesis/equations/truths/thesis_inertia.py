@@ -6,13 +6,12 @@ from functools import lru_cache
 import numpy as np
 
 from runner.audit.model_truths import AuditedArm, Dynamics, by_model
-from runner.audit.truth import Elements, Symbols, Truth, Way
+from runner.audit.truth import Elements, Symbols, Truth
 from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
 from runner.studies.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm
 
 _SHAPE = np.diag([0.02, 0.05, 0.09])  # of m L^2, about the masses of links 2 and 3, along the axes of the link
-_LINKS = (("q3", "link2"), ("tip", "link3"))  # where each one's mass is, and its frame
 
 
 def _tensor(arm: Arm) -> FloatArray:
@@ -35,27 +34,19 @@ def _at(arm: Arm, frame: str) -> Dynamics:
     return by_model(arm.audited.at(frame).model)
 
 
-def _mass_matrix(arm: Arm, turned: int) -> Way:
-    """Return M by (3.11) with the inertia turned into the base frame so many times."""
+def tensor_symbols(arm: Arm, q: FloatArray) -> Symbols:
+    """Return rotations `R_C_i` of an arm's links, and inertias.
 
-    def matrix(s: Symbols) -> Elements:
-        q = arm.q(s)
-        total = np.zeros((len(q), 3, 3))
-        for (end, link), mass in zip(_LINKS, arm.masses[1:], strict=True):
-            J_v, J_w = _at(arm, end).jacobian(q)[:, :3], _at(arm, link).jacobian(q)[:, 3:]
-            R = _at(arm, link).pose(q)[:, :3, :3]
-            inertia = np.tile(_tensor(arm), (len(q), 1, 1))
-            for _ in range(turned):
-                inertia = R @ inertia @ R.transpose(0, 2, 1)
-            total += mass * J_v.transpose(0, 2, 1) @ J_v + J_w.transpose(0, 2, 1) @ inertia @ J_w
-        return {"M": total}
-
-    return matrix
-
-
-turned_once, turned_twice = _mass_matrix(MACRO, 1), _mass_matrix(MACRO, 2)
-mini_turned_once, mini_turned_twice = _mass_matrix(MINI, 1), _mass_matrix(MINI, 2)
-"""(3.11) with I_C in the link's own frame, and with the I_C that (3.16) or (4.5) gives, turned already."""
+    `I_xx_i` to `I_zz_i` are of links that resist turning, about the axes of the link; `I_own_i` and `D_own_i`, all
+    zeros, those of the thesis' own links.
+    """
+    found: dict[str, FloatArray] = {}
+    for link, number in enumerate(range(arm.joints.start + 1, arm.joints.stop + 1), start=1):
+        found[f"R_C_{number}"] = _at(arm, f"link{link}").pose(q)[:, :3, :3]
+        found |= {f"{name}_{number}": np.zeros((len(q), 3, 3)) for name in ("I_own", "D_own")}
+        for place, axis in enumerate("xyz"):
+            found[f"I_{axis}{axis}_{number}"] = np.full(len(q), _tensor(arm)[place, place] if link > 1 else 0.0)
+    return found
 
 
 mass_matrix, mini_mass_matrix = (_turning(arm).truth("model.mass_matrix") for arm in (MACRO, MINI))
@@ -64,25 +55,20 @@ mass_matrix, mini_mass_matrix = (_turning(arm).truth("model.mass_matrix") for ar
 # The tensors of the thesis' own links: zero.
 
 
-def no_tensor(s: Symbols) -> Elements:
-    """Return three tensors of zeros."""
-    return {"I": np.zeros((len(s["q1"]), 3, 3, 3))}
-
-
-def no_turning(s: Symbols) -> Elements:
-    """Return a matrix of zeros."""
-    return {"M": np.zeros((len(s["q1"]), 3, 3))}
+def _by_link(arm: Arm, tensors: FloatArray, s: Symbols) -> Elements:
+    first = arm.joints.start + 1
+    return {f"I_own_{i}": np.tile(tensor, (len(s["q1"]), 1, 1)) for i, tensor in enumerate(tensors, start=first)}
 
 
 def _tensors(arm: Arm) -> Truth:
     def by_model(s: Symbols) -> Elements:
         tensors = np.array([inertia.inertia for inertia in list(arm.model.pin_model.inertias)[1:]])
-        return {"I": np.tile(tensors, (len(s["q1"]), 1, 1, 1))}
+        return _by_link(arm, tensors, s)
 
     def by_urdf(s: Symbols) -> Elements:
         links = [link.find("inertial/inertia") for link in ET.fromstring(arm.audited.urdf).iter("link")]  # noqa: S314
         written = [[float(tag.attrib[f"i{key}"]) for key in _KEYS] for tag in links[1:4] if tag is not None]
-        return {"I": np.tile(np.array(written).reshape(3, 3, 3), (len(s["q1"]), 1, 1, 1))}
+        return _by_link(arm, np.array(written).reshape(3, 3, 3), s)
 
     return Truth(by_model, by_urdf, ("Pinocchio", "the URDF as written"))
 

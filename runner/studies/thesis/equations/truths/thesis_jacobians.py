@@ -1,20 +1,33 @@
-"""Jacobian formulas of the thesis evaluated as printed, and the truths of axes and velocities."""
+"""Truths of axes and velocities of the thesis, and the symbols of its general formulas."""
+
+from functools import partial
 
 import numpy as np
 
 from runner.audit.model_truths import Dynamics, by_model
-from runner.audit.truth import Elements, Symbols, Truth, Way, along, coordinates, derivative, jacobian_by_differences
+from runner.audit.truth import (
+    Elements,
+    Symbols,
+    Truth,
+    along,
+    derivative,
+    elements,
+    jacobian_by_differences,
+)
 from runner.base.arrays import FloatArray
+from runner.studies.thesis.equations.truths import thesis_measures
 from runner.studies.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm
+from runner.studies.thesis.equations.truths.thesis_inertia import tensor_symbols
 from runner.studies.thesis.equations.truths.thesis_kinematics import model_frame, tip_pose
 
 # Axes of the joints: frame i lies on the axis of joint i+1.
 
 
 def _axis(arm: Arm, frame: int) -> Truth:
+    name = f"Z_{arm.joints.start + frame}"
     return Truth(
-        lambda s: coordinates("Z", by_model(arm.model).jacobian(arm.q(s))[:, 3:, frame]),
-        lambda s: coordinates("Z", arm.frame(frame, arm.q(s))[:, :3, 2]),
+        lambda s: {name: by_model(arm.model).jacobian(arm.q(s))[:, 3:, frame]},
+        lambda s: {name: arm.frame(frame, arm.q(s))[:, :3, 2]},
         ("angular Jacobian by Pinocchio", "z axis of the chain's frame"),
     )
 
@@ -22,17 +35,6 @@ def _axis(arm: Arm, frame: int) -> Truth:
 macro_axis_0, macro_axis_1, macro_axis_2 = (_axis(MACRO, frame) for frame in range(3))
 mini_axis_0, mini_axis_1, mini_axis_2 = (_axis(MINI, frame) for frame in range(3))
 joint_axes = MACRO.both(lambda d, s: {f"Z_{i}": d.jacobian(MACRO.q(s))[:, 3:, i] for i in (1, 2)})
-
-
-def axes_of_frames(s: Symbols) -> Elements:
-    """Return 0R_i Z for frames 1 and 2, Z_i as section 3.1 defines it."""
-    q = MACRO.q(s)
-    return {f"Z_{i}": model_frame(MACRO, i, q)[:, :3, :3] @ np.array([0.0, 0.0, 1.0]) for i in (1, 2)}
-
-
-def tip_column(s: Symbols) -> Elements:
-    """Return the last column of T_03, section 3.3.1."""
-    return coordinates("P", tip_pose(MACRO, MACRO.q(s))[:, :3, 3])
 
 
 # Velocity.
@@ -54,83 +56,55 @@ macro_twist = _velocity(MACRO, slice(0, 6))
 macro_velocity, mini_velocity = _velocity(MACRO, slice(0, 3)), _velocity(MINI, slice(0, 3))
 
 
-# The general formulas, on the Macro.
+# The symbols of the general formulas.
 
 
-def _end_by_differences(link: int, q: FloatArray) -> FloatArray:
-    return np.stack([derivative(lambda at: MACRO.frame(link, at)[:, :3, 3], q, joint) for joint in range(3)], axis=2)
+def frame_symbols(arm: Arm, q: FloatArray) -> dict[str, FloatArray]:
+    """Return axes `Z_i`, rotations `R_i` and vectors `P_ij` from origin to origin; E and n are frame 3 of the Macro."""
+    frames = {str(i + arm.joints.start): model_frame(arm, i, q) for i in range(4)}
+    ends = [*frames.items(), ("E", frames[str(arm.joints.stop)]), ("n", frames[str(arm.joints.stop)])]
+    values = {f"Z_{i}": frame[:, :3, 2] for i, frame in frames.items()}
+    values |= {f"R_{i}": frame[:, :3, :3] for i, frame in frames.items()}
+    return values | {f"P_{i}{j}": end[:, :3, 3] - start[:, :3, 3] for i, start in frames.items() for j, end in ends}
 
 
-def transposed(s: Symbols) -> Elements:
-    """Return J_ij = dG_j / dq_i as printed before (3.4)."""
-    return {"J": position_derivatives(s)["J"].transpose(0, 2, 1)}
+def _jacobian_symbols(arm: Arm, q: FloatArray) -> dict[str, FloatArray]:
+    """Return the linear and angular Jacobians `J_v_i` and `J_w_i` of the end of each link."""
+    found = {i: arm.end_jacobian(i, q) for i in (1, 2, 3)}
+    first = arm.joints.start
+    return {f"J_v_{i + first}": J[:, :3] for i, J in found.items()} | {
+        f"J_w_{i + first}": J[:, 3:] for i, J in found.items()
+    }
 
 
-def position_derivatives(s: Symbols) -> Elements:
-    """Return dG_i / dq_j."""
-    return {"J": _end_by_differences(3, MACRO.q(s))}
+def macro_symbols(count: int, generator: np.random.Generator) -> Symbols:
+    """Return random states as `thesis_measures.symbols` does, with what the general formulas are for the Macro.
+
+    `dG_ij` is the derivative of coordinate i of the tip with respect to joint j, `dx_j` that of the tip, and `dpi_j`
+    that of the end of link i. `eps_i` is 1 for a revolute joint. For the others see `frame_symbols`.
+    """
+    s = thesis_measures.symbols(count, generator)
+    q = MACRO.q(s)
+    found = frame_symbols(MACRO, q) | _jacobian_symbols(MACRO, q) | {f"eps_{i}": np.ones(count) for i in (1, 2, 3)}
+    columns: list[FloatArray] = []
+    for link in (1, 2, 3):
+        columns = [derivative(partial(_end, link), q, joint) for joint in range(3)]
+        found |= {f"dp{link}_{joint}": each for joint, each in enumerate(columns, start=1)}
+    found |= {f"dx_{joint}": each for joint, each in enumerate(columns, start=1)}
+    return {**s, **found, **elements("dG", np.stack(columns, axis=2))}
 
 
-def end_by_differences(s: Symbols) -> Elements:
-    """Return (3.13): derivatives of the position of the second link's end."""
-    return {"J": _end_by_differences(2, MACRO.q(s))}
+def _end(link: int, q: FloatArray) -> FloatArray:
+    return MACRO.frame(link, q)[:, :3, 3]
 
 
-def _with_axes(first: int) -> Way:
-    """Return (3.4) and (3.5) with the z axis of frame i - 1 + first as the angular part of column i."""
+def mini_symbols(count: int, generator: np.random.Generator) -> Symbols:
+    """Return random states as `thesis_measures.symbols` does, with what the general formulas are for the Mini.
 
-    def columns(s: Symbols) -> Elements:
-        axes = [model_frame(MACRO, i + first, MACRO.q(s))[:, :3, 2] for i in range(3)]
-        return {"J": np.concatenate([position_derivatives(s)["J"], np.stack(axes, axis=2)], axis=1)}
-
-    return columns
-
-
-with_joint_axes, with_following_axes = _with_axes(0), _with_axes(1)
-"""The axis of joint i, which is right, and that of frame i, as printed."""
-
-
-def _levers(shift: int, turned: bool = True) -> Way:
-    """Return columns Z_{i-1} x P, P from the origin of frame i - 1 + shift to the tip, in the base frame or its own."""
-
-    def columns(s: Symbols) -> Elements:
-        q = MACRO.q(s)
-        frames = [model_frame(MACRO, i, q) for i in range(4)]
-        found = []
-        for i in (1, 2, 3):
-            start = frames[i - 1 + shift]
-            lever = frames[3][:, :3, 3] - start[:, :3, 3]
-            if not turned:
-                lever = along(start[:, :3, :3].transpose(0, 2, 1), lever)  # the last column of iT_n
-            found.append(np.cross(frames[i - 1][:, :3, 2], lever))
-        return {"J": np.stack(found, axis=2)}
-
-    return columns
-
-
-levers_from_frame_i = _levers(1)
-"""(3.6) as printed: P_in from the origin of frame i."""
-
-levers_from_joint_i = _levers(0)
-"""(3.6) with P from the origin of frame i-1, where joint i is."""
-
-levers_not_turned = _levers(0, turned=False)
-"""The link Jacobian of section 3.2 with P_ij as the last column of iT_j, which is expressed in frame i."""
-
-
-def symbolic_columns(s: Symbols) -> Elements:
-    """Return [Z_0 x P_0E ...; Z_0 ...] below (3.6): the columns that the thesis in fact uses."""
-    axes = with_joint_axes(s)["J"][:, 3:]
-    return {"J": np.concatenate([levers_from_joint_i(s)["J"], axes], axis=1)}
-
-
-def _link_columns(arm: Arm, rows: slice, link: int) -> Way:
-    return lambda s: {"J": arm.end_jacobian(link, arm.q(s))[:, rows]}
-
-
-linear_columns_1, linear_columns_2, linear_columns_3 = (_link_columns(MACRO, slice(0, 3), link) for link in (1, 2, 3))
-angular_columns_3 = _link_columns(MACRO, slice(3, 6), 3)
-"""(3.14) and (3.15): Z_{i-1} x p and Z_{i-1}, and zeros behind the link."""
-
-mini_symbolic_columns = _link_columns(MINI, slice(0, 6), 3)
-"""(4.2)."""
+    `m_i` are the masses and `L_i` the lengths of the links. For the others see `frame_symbols` and `tensor_symbols`.
+    """
+    s = thesis_measures.symbols(count, generator)
+    measures = {f"m_{i}": np.full(count, MINI.masses[i - 4]) for i in (4, 5, 6)}
+    measures |= {f"L_{i}": np.full(count, MINI.a[i - 4]) for i in (4, 5, 6)}
+    q = MINI.q(s)
+    return {**s, **frame_symbols(MINI, q), **_jacobian_symbols(MINI, q), **tensor_symbols(MINI, q), **measures}

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from runner.audit.model_truths import by_model
-from runner.audit.truth import Elements, Symbols, Truth, Way, elements, product, rotation
+from runner.audit.truth import Elements, Symbols, Truth, Way, product, rotation, whole_and_elements
 from runner.base.arrays import FloatArray
 from runner.studies.thesis.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames, transform
 from runner.studies.thesis.equations.truths.thesis_arms import MACRO, MINI, Arm
@@ -44,7 +44,9 @@ def tip_pose(arm: Arm, q: FloatArray) -> FloatArray:
 
 def _truth(model: Callable[..., FloatArray], chain: Callable[..., FloatArray], arm: Arm, link: int) -> Truth:
     return Truth(
-        lambda s: elements("T", model(arm, link, arm.q(s))), lambda s: elements("T", chain(arm, link, arm.q(s))), WAYS
+        lambda s: whole_and_elements("T", model(arm, link, arm.q(s))),
+        lambda s: whole_and_elements("T", chain(arm, link, arm.q(s))),
+        WAYS,
     )
 
 
@@ -67,8 +69,8 @@ def _any_link_by_steps(s: Symbols) -> FloatArray:
 
 
 any_link = Truth(
-    lambda s: elements("T", _any_link_by_steps(s)),
-    lambda s: elements("T", _any_link(s)),
+    lambda s: whole_and_elements("T", _any_link_by_steps(s)),
+    lambda s: whole_and_elements("T", _any_link(s)),
     ("product of elementary turns and shifts", "quaternions"),
 )
 """A link's transform from its four parameters, (3.2)."""

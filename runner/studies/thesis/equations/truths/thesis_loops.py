@@ -1,9 +1,11 @@
 """Truths of the second-order loop and the quintic trajectory, sections 3.3.1 and 3.3.2 of the thesis."""
 
 import numpy as np
+from numpy.polynomial.polynomial import polyder, polyval
 from scipy.interpolate import BPoly, PPoly
 
-from runner.audit.truth import Elements, Symbols, Truth
+from runner.audit.truth import Elements, Symbols, Truth, Way
+from runner.base.arrays import FloatArray
 from runner.trajectories.motion import quintic_motion
 
 # The loop eps'' + k_v eps' + k_p eps = 0 with natural frequency omega_n and damping ratio xi.
@@ -30,19 +32,6 @@ gains = Truth(_by_poles, _by_companion, ("poles of the loop", "a unit mass with 
 # The quintic, rest to rest.
 
 
-def conditions(s: Symbols) -> Elements:
-    """Return the coefficients that the six conditions below (3.39) leave, solved as a linear system."""
-    t = s["t_f"]
-    A = np.zeros((len(t), 6, 6))
-    A[:, 0, 0], A[:, 1, 1], A[:, 2, 2] = 1.0, 1.0, 1.0
-    for k in range(6):
-        A[:, 3, k], A[:, 4, k], A[:, 5, k] = t**k, k * t ** max(k - 1, 0), k * (k - 1) * t ** max(k - 2, 0)
-    right = np.zeros((len(t), 6))
-    right[:, 0], right[:, 3] = s["x_0"], s["x_t"]
-    found = np.asarray(np.linalg.solve(A, right[..., None])[..., 0], dtype=float)
-    return {f"c_{k}": found[:, k] for k in range(6)}
-
-
 def _by_bernstein(s: Symbols) -> Elements:
     """Return them from the Bernstein form of the curve that is at rest at both ends."""
     found = []
@@ -63,11 +52,19 @@ def _by_runner(s: Symbols) -> Elements:
     return {f"c_{k}": values for k, values in enumerate(np.array(found).T)}
 
 
-def _left_over(s: Symbols) -> Elements:
-    none = 0.0 * s["x_0"]
-    return {"start": none, "start_rate": none, "start_bend": none, "end": none, "end_rate": none, "end_bend": none}
+def _ends(coefficients: Way) -> Way:
+    """Return positions, velocities and accelerations of a curve at 0 and at t_f."""
+
+    def found(s: Symbols) -> Elements:
+        c, times = np.array([*coefficients(s).values()]), {"0": 0.0 * s["t_f"], "f": s["t_f"]}
+        ends: dict[str, FloatArray] = {}
+        for order, name in enumerate(("X", "dX", "ddX")):
+            ends |= {f"{name}_{end}": polyval(t, polyder(c, order), tensor=False) for end, t in times.items()}
+        return ends
+
+    return found
 
 
-quintic = Truth(_by_bernstein, _by_runner, ("Bernstein form of the curve at rest at both ends", "the runner's quintic"))
-quintic_left_over = Truth(_left_over, _left_over, ("the conditions leave nothing over", "the same"))
-"""The six equations below (3.39), each with its right side brought over, at the coefficients of the true quintic."""
+_CURVES = ("Bernstein form of the curve at rest at both ends", "the runner's quintic")
+quintic = Truth(_by_bernstein, _by_runner, _CURVES)
+ends = Truth(_ends(_by_bernstein), _ends(_by_runner), _CURVES)

@@ -5,10 +5,10 @@ from itertools import combinations
 import numpy as np
 
 from runner.audit.model_truths import by_model
-from runner.audit.truth import Elements, Symbols, Truth, coordinates, product, rotation
+from runner.audit.truth import Elements, Symbols, Truth, product, rotation
 from runner.base.arrays import FloatArray
 from runner.studies.thesis.equations.truths import thesis
-from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, GRAVITY, MACRO, MINI, Arm
+from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI, Arm
 from runner.studies.thesis.equations.truths.thesis_kinematics import model_step, tip_pose
 
 _BASE_OF_MINI = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])  # 3_R_3', from the Mini's base
@@ -84,7 +84,7 @@ def _reach(arm: Arm) -> Truth:
 
 
 def _at_home(arm: Arm) -> Truth:
-    return arm.both(lambda d, s: coordinates("x", np.tile(d.pose(_home(arm))[0, :3, 3], (len(s["q1"]), 1))))
+    return arm.both(lambda d, s: {"x": np.tile(d.pose(_home(arm))[0, :3, 3], (len(s["q1"]), 1))})
 
 
 macro_reach, mini_reach = _reach(MACRO), _reach(MINI)
@@ -97,9 +97,9 @@ macro_home, mini_home, combined_home = _at_home(MACRO), _at_home(MINI), _at_home
 def symbols(count: int, generator: np.random.Generator) -> Symbols:
     """Return random states as `thesis.symbols` does, with the vectors and matrices of both arms.
 
-    `T_01` to `T_2E` and `T_34` to `T_56` are the transforms of the links, `J` is the Jacobian of the Macro, `J_Mv` and
-    `J_mv` are the linear ones, `dq_M` and `dq_m` joint velocities. The tip is at `x_d` and the end of the Macro at
-    `x_E`, both in frame 0; `r` is the tip in frame 3, whose turn is `R_03`.
+    `T_01` to `T_2E` and `T_34` to `T_56` are the transforms of the links, `T_0E` and `T_36` those of the arms. `J` is
+    the Jacobian of the Macro, `J_Mv` and `J_mv` are the linear ones, `dq_M` and `dq_m` joint velocities. The tip is at
+    `x_d` and the end of the Macro at `x_E`, both in frame 0; `r` is the tip in frame 3, whose turn is `R_03`.
     """
     s = thesis.symbols(count, generator)
     q_M, q_m = MACRO.q(s), MINI.q(s)
@@ -111,27 +111,21 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     }
     J, J_m = by_model(MACRO.model).jacobian(q_M), by_model(MINI.model).jacobian(q_m)
     rates = {"J": J, "J_Mv": J[:, :3], "J_mv": J_m[:, :3], "dq_M": MACRO.dq(s), "dq_m": MINI.dq(s)}
-    points = {"x_d": tip_pose(COMBINED, COMBINED.q(s)), "x_E": tip_pose(MACRO, q_M), "r": tip_pose(MINI, q_m)}
-    moved = {name: pose[:, :3, 3] for name, pose in points.items()}
-    return {**s, **steps, **rates, **moved, "R_03": base_of_mini(q_M)}
+    poses = {"x_d": tip_pose(COMBINED, COMBINED.q(s)), "x_E": tip_pose(MACRO, q_M), "r": tip_pose(MINI, q_m)}
+    points = {name: pose[:, :3, 3] for name, pose in poses.items()} | {"T_0E": poses["x_E"], "T_36": poses["r"]}
+    return {**s, **steps, **rates, **points, "R_03": base_of_mini(q_M)}
 
 
 # Joint axes, and the frame between the arms.
 
 
-def printed_axes(s: Symbols) -> Elements:
-    """Return z, x, x for either arm, section 2.1."""
-    z, x = [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]
-    return {"axes": np.tile([z, x, x, z, x, x], (len(s["q1"]), 1, 1))}
-
-
 def _axes_of_frames(s: Symbols) -> Elements:
     axes = np.array([COMBINED.frame(joint, _home(COMBINED))[0, :3, 2] for joint in range(6)])
-    return {"axes": np.tile(axes, (len(s["q1"]), 1, 1))}
+    return {"axes": np.tile(axes.T, (len(s["q1"]), 1, 1))}
 
 
 axes_at_home = Truth(
-    lambda s: {"axes": np.tile(COMBINED.model.tip_jacobian(np.zeros(6))[3:].T, (len(s["q1"]), 1, 1))},
+    lambda s: {"axes": np.tile(COMBINED.model.tip_jacobian(np.zeros(6))[3:], (len(s["q1"]), 1, 1))},
     _axes_of_frames,
     ("angular Jacobian by Pinocchio", "z axes of the Denavit-Hartenberg frames"),
 )
@@ -141,18 +135,6 @@ combined_tip = Truth(
     lambda s: {"T": COMBINED.frame(6, COMBINED.q(s))},
     ("Pinocchio", "product of elementary turns and shifts, joint 4 along link 3"),
 )
-
-
-def tables_chained(s: Symbols) -> Elements:
-    """Return Table 4.1 put right behind Table 3.1: 0T_E times 3T_6."""
-    return {"T": tip_pose(MACRO, MACRO.q(s)) @ tip_pose(MINI, MINI.q(s))}
-
-
-def tables_chained_with_turn(s: Symbols) -> Elements:
-    """Return the same with the turn between frame E of the Macro and the Mini's base."""
-    turn = np.eye(4)
-    turn[:3, :3] = _BASE_OF_MINI
-    return {"T": tip_pose(MACRO, MACRO.q(s)) @ turn @ tip_pose(MINI, MINI.q(s))}
 
 
 # The Mini's reference and its weight depend on how its base is turned.
@@ -167,18 +149,6 @@ mini_offset = MINI.both(lambda d, s: {"r": d.pose(MINI.q(s))[:, :3, 3]})
 
 
 macro_end_point = MACRO.both(lambda d, s: {"x": d.pose(MACRO.q(s))[:, :3, 3]})
-
-
-def upright_weight(s: Symbols) -> Elements:
-    """Return G of section 4.2, which takes gravity as (0, 0, -9.81) in frame 3."""
-    c5, s56 = s["c5"], s["s56"]
-    return {"G": np.column_stack([0.0 * c5, 0.1962 * c5 - 0.0981 * s56, -0.0981 * s56])}
-
-
-def turned_weight(s: Symbols) -> Elements:
-    """Return G with gravity turned into frame 3."""
-    g = base_of_mini(MACRO.q(s)).transpose(0, 2, 1) @ GRAVITY
-    return {"G": MINI.weight(MINI.q(s), g)}
 
 
 riding_weight = COMBINED.both(lambda d, s: {"G": d.gravity(COMBINED.q(s))[:, 3:]})

@@ -4,12 +4,10 @@ With its three joints the linear Jacobian is square; the samples exclude its sin
 evaluated with M, V, G and J as printed in the thesis; the truth is the motion of the model, and of the chain.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 
 from runner.audit.entry import parts, right_elements
-from runner.audit.evaluation import evaluate_used
+from runner.audit.evaluation import Values
 from runner.audit.model_truths import Dynamics, by_model, by_urdf
 from runner.audit.truth import Elements, Symbols, Truth, along, columns, derivative
 from runner.base.arrays import FloatArray
@@ -35,6 +33,7 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
 
     `J` is its linear Jacobian, `dJ` the Jacobian's rate by differences, `M`, `V` and `G` those of its dynamics, all as
     the thesis prints them. The tip is at `x`, with the rates `dx` and `ddx`; `x_g` is a goal, `F_star` a control input.
+    `x_d`, `dx_d` and `ddx_d` are a desired motion; `deps` and `deps_d` are the rates of the two errors.
     """
     s = regular_symbols(count, generator)
     q, dq, ddq = MACRO.q(s), MACRO.dq(s), MACRO.ddq(s)
@@ -46,7 +45,9 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     tip = {"x": MACRO.frame(3, q)[:, :3, 3], "dx": along(J, dq), "ddx": along(J, ddq) + along(dJ, dq)}
     goal = {"x_g": np.tile(_GOAL, (count, 1)), "k_p": np.full(count, _K_P), "k_v": np.full(count, _K_V)}
     arm = {"M": printed.mass_matrix(q), "V": printed.coriolis_torque(q, dq), "G": printed.gravity_torque(q)}
-    return {**s, "J": J, "dJ": dJ, "dq": dq, **arm, **tip, **goal, "F_star": _input(s)}
+    desired = {"x_d": columns(s, ("x_0", "x_t", "a")), "dx_d": columns(s, ("d", "dq4", "dq5")), "ddx_d": _input(s)}
+    rates = {"deps": tip["dx"], "deps_d": tip["dx"] - desired["dx_d"], "T_03": MACRO.frame(3, q)}
+    return {**s, "J": J, "dJ": dJ, "dq": dq, **arm, **tip, **goal, **desired, **rates, "F_star": _input(s)}
 
 
 # The truth.
@@ -95,63 +96,33 @@ def _input(s: Symbols) -> FloatArray:
     return columns(s, ("ddq4", "ddq5", "ddq6"))
 
 
-def _torque(s: Symbols, control_input: FloatArray) -> FloatArray:
-    """Return J' F with F by (3.32) for an input F*."""
-    printed = right_elements(next(part for part in parts("thesis") if part.path.name == "3_3.yaml"))
-    return evaluate_used({"tau": printed["tau"]}, printed, {**s, "F_star": control_input})["tau"]
+def _closed(control_input: str, desired: str = "") -> Truth:
+    """Return the tip's acceleration under the torques J' F with F by (3.32) for one of the names F* in 3_3.yaml.
 
-
-def chosen_input(s: Symbols) -> Elements:
-    """Return the tip's acceleration that the thesis derives: F* itself."""
-    return {"acceleration": _input(s)}
-
-
-def _desired(s: Symbols) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return any desired position, velocity and acceleration of the tip."""
-    return columns(s, ("x_0", "x_t", "a")), columns(s, ("d", "dq4", "dq5")), _input(s)
-
-
-def _goal_input(s: Symbols) -> FloatArray:
-    """Return F* by (3.33)."""
-    return np.asarray(-_K_V * s["dx"] - _K_P * (s["x"] - _GOAL))
-
-
-def _tracking_input(s: Symbols) -> FloatArray:
-    """Return F* by (3.40)."""
-    x_d, dx_d, ddx_d = _desired(s)
-    return np.asarray(ddx_d - _K_V * (s["dx"] - dx_d) - _K_P * (s["x"] - x_d))
-
-
-def goal_acceleration(s: Symbols) -> Elements:
-    """Return the tip's acceleration that the thesis derives for a goal, F* of (3.33).
-
-    It is the second derivative of the error by (3.34), with the gains of (3.37) and (3.38).
+    `ddeps`, or `ddeps_d` if it tracks a motion, is the same less the desired one.
     """
-    return {"acceleration": _goal_input(s)}
 
+    def torque(s: Symbols) -> FloatArray:
+        known = right_elements(next(part for part in parts("thesis") if part.path.name == "3_3.yaml"))
+        wanted = Values(s, known)[control_input]
+        return Values({**s, "F_star": wanted}, known)["tau"]
 
-def tracking_loop(s: Symbols) -> Elements:
-    """Return the same by (3.41)."""
-    return {"acceleration": _tracking_input(s) - _desired(s)[2]}
-
-
-def _closed(law: Callable[[Symbols], FloatArray], desired: Callable[[Symbols], FloatArray | float]) -> Truth:
-    """Return the tip's acceleration, less the desired one, under the torques of (3.32) with a law's F*."""
+    def named(acceleration: FloatArray, s: Symbols) -> Elements:
+        return {"ddx": acceleration, "ddeps_d" if desired else "ddeps": acceleration - (s[desired] if desired else 0.0)}
 
     def by_pinocchio(s: Symbols) -> Elements:
         q, dq = MACRO.q(s), MACRO.dq(s)
-        rows = zip(q, dq, _torque(s, law(s)), strict=True)
+        rows = zip(q, dq, torque(s), strict=True)
         ddq = np.array([MACRO.model.forward_dynamics(*row) for row in rows])
-        return {"acceleration": along(_PINOCCHIO.jacobian(q)[:, :3], ddq) + _model_bias(s) - desired(s)}
+        return named(along(_PINOCCHIO.jacobian(q)[:, :3], ddq) + _model_bias(s), s)
 
     def by_energies(s: Symbols) -> Elements:
         q, dq = MACRO.q(s), MACRO.dq(s)
-        free = _torque(s, law(s)) - _URDF.torque(q, dq, 0.0 * q)
+        free = torque(s) - _URDF.torque(q, dq, 0.0 * q)
         motion = along(_URDF.jacobian(q)[:, :3], _solve(_URDF.mass_matrix(q), free))
-        return {"acceleration": motion + _chain_bias(s) - desired(s)}
+        return named(motion + _chain_bias(s), s)
 
     return Truth(by_pinocchio, by_energies, _WAYS)
 
 
-any_closed, goal_closed = (_closed(law, lambda _: 0.0) for law in (_input, _goal_input))
-tracking_closed = _closed(_tracking_input, lambda s: _desired(s)[2])
+any_closed, goal_closed, tracking_closed = _closed("F_star"), _closed("F_goal"), _closed("F_track", "ddx_d")

@@ -17,20 +17,16 @@ _OF_MINI = {"v_M": "v_m", "J_M": "J_m", "0TE": "3T6"}  # the others end in -mini
 
 
 @lru_cache(maxsize=32)
-def _expressions(name: str) -> dict[str, Expression]:
+def _expression(name: str) -> Expression:
     entry = next(entry for _, entry in entries("thesis") if entry.id == f"thesis-{name}")
-    return {element: parse(text) for element, text in entry.right.elements.items()}
+    (text,) = entry.right.elements.values()
+    return parse(text)
 
 
 def _matrix(name: str, q: FloatArray, mini: bool = False) -> FloatArray:
-    """Return the matrix of an entry of the Macro, or the Mini's own, at the arm's joint positions (T, 3).
-
-    Its shape is (T, rows, columns), (T, 1, n) for a vector.
-    """
-    found = _expressions(_OF_MINI.get(name, f"{name}-mini") if mini else name)
-    names = symbols_at(np.column_stack([0.0 * q, q]) if mini else q)
-    values = np.column_stack([evaluate(expression, names) for expression in found.values()])
-    return values.reshape(len(q), -1, int([*found][-1][-1]))
+    """Return the matrix or vector of an entry of the Macro, or the Mini's own, at the arm's joint positions (T, 3)."""
+    found = _expression(_OF_MINI.get(name, f"{name}-mini") if mini else name)
+    return evaluate(found, symbols_at(np.column_stack([0.0 * q, q]) if mini else q))
 
 
 def mass_matrix(q: FloatArray, mini: bool = False) -> FloatArray:
@@ -52,7 +48,7 @@ def coriolis_torque(q: FloatArray, dq: FloatArray, mini: bool = False) -> FloatA
 
 def gravity_torque(q: FloatArray, mini: bool = False) -> FloatArray:
     """Return G(q) below (3.24), shape (T, 3)."""
-    return _matrix("G", q, mini)[:, 0]
+    return _matrix("G", q, mini)
 
 
 def compare(model: RobotModel, mini: bool, samples: int, generator: np.random.Generator) -> dict[str, float]:

@@ -9,12 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from runner.audit.model_truths import audited_arm, by_model
+from runner.audit.model_truths import audited_arm, by_model, sample
 from runner.audit.truth import (
     Elements,
     Symbols,
     Truth,
-    Way,
     columns,
     coordinates,
     product,
@@ -43,6 +42,19 @@ def constants(count: int) -> dict[str, FloatArray]:
     return {name: np.full(count, value) for name, value in values.items()}
 
 
+def symbols(count: int, generator: np.random.Generator) -> Symbols:
+    """Return random configurations with the report's measures.
+
+    `b_0` to `b_7` are the z axes of the frames of the report's chain and `r_0E` to `r_7E` the vectors from their
+    origins to the tip, in cm. `J` is the Jacobian with linear rows in m/rad.
+    """
+    values = sample(ARM.model, ARM.joints, count, generator)
+    found = frames(positions(values))
+    axes = {f"b_{i}": frame[:, :3, 2] for i, frame in enumerate(found)}
+    levers = {f"r_{i}E": found[-1][:, :3, 3] - frame[:, :3, 3] for i, frame in enumerate(found)}
+    return {**values, **axes, **levers, **constants(count), "J": _metres(values), "pi": np.full(count, np.pi)}
+
+
 def positions(values: Symbols) -> FloatArray:
     """Return the joint positions of a sample, shape (T, 7), in rad."""
     return columns(values, ARM.joints)
@@ -50,7 +62,15 @@ def positions(values: Symbols) -> FloatArray:
 
 def pose(q: FloatArray) -> FloatArray:
     """Return the transform of frame 7 in the base frame by the report's chain, shape (T, 4, 4), in cm."""
-    return product([step for place in range(JOINTS) for step in steps(place, q[:, place])])
+    return frames(q)[-1]
+
+
+def frames(q: FloatArray) -> list[FloatArray]:
+    """Return the same of frames 0 to 7, shape (T, 4, 4) each."""
+    found = [np.tile(np.eye(4), (len(q), 1, 1))]
+    for place in range(JOINTS):
+        found.append(product([found[-1], *steps(place, q[:, place])]))
+    return found
 
 
 def steps(place: int, angle: FloatArray | float) -> list[FloatArray]:
@@ -113,43 +133,15 @@ def _by_origins(values: Symbols) -> Elements:
 link = Truth(_by_model, _by_origins, ("Pinocchio, robots/xarm7.urdf", "the maker's joint origins"))
 
 
-def _step(place: int) -> Way:
-    return lambda values: {f"A_{place + 1}": product(steps(place, positions(values)[:, place]))}
-
-
-step_1, step_2, step_3, step_4, step_5, step_6, step_7 = (_step(place) for place in range(JOINTS))
-
-
 # Jacobian and pseudo-inverse.
 
 
-def printed_column(values: Symbols) -> Elements:
-    """Return the Jacobian with the axis and origin of frame i - 1 of the report's chain in column i."""
-    return {"J": printed_jacobians(positions(values))}
-
-
 def printed_jacobians(q: FloatArray) -> FloatArray:
-    """Return the same for rows of joint positions, shapes (T, 7) to (T, 6, 7), linear rows in cm/rad."""
-    return _columns(q, first=0)
-
-
-def right_column(values: Symbols) -> Elements:
-    """Return the Jacobian with the axis and origin of frame i in column i: the joint turns about its own z axis."""
-    return {"J": _columns(positions(values), first=1)}
-
-
-def _columns(q: FloatArray, first: int) -> FloatArray:
-    frames = [np.tile(np.eye(4), (len(q), 1, 1))]
-    for place in range(JOINTS):
-        frames.append(product([frames[-1], *steps(place, q[:, place])]))
-    tip_position = frames[-1][:, :3, 3]
-    return np.stack(
-        [
-            np.hstack([np.cross(frame[:, :3, 2], tip_position - frame[:, :3, 3]), frame[:, :3, 2]])
-            for frame in frames[first : first + JOINTS]
-        ],
-        axis=2,
-    )
+    """Return the Jacobians with axis and origin of frame i - 1 in column i, (T, 7) to (T, 6, 7), in cm/rad and 1."""
+    found = frames(q)
+    axes = [frame[:, :3, 2] for frame in found[:JOINTS]]
+    levers = [found[-1][:, :3, 3] - frame[:, :3, 3] for frame in found]
+    return np.stack([np.hstack([np.cross(b, r), b]) for b, r in zip(axes, levers, strict=False)], axis=2)
 
 
 def _metres(values: Symbols) -> FloatArray:
@@ -157,18 +149,9 @@ def _metres(values: Symbols) -> FloatArray:
     return np.asarray(BY_MODEL.jacobian(positions(values)) / np.array([100.0, 100.0, 100.0, 1.0, 1.0, 1.0])[:, None])
 
 
-def left_inverse(values: Symbols) -> Elements:
-    """Return (J' J)^-1 J', computed as it is printed; J' J is 7 by 7 and of rank 6."""
-    return {"J^+": np.array([_left_inverse(J) for J in _metres(values)])}
-
-
 def left_inverse_of(q: FloatArray) -> FloatArray:
-    """Return the same at one configuration, shapes (7,) to (7, 6), for twists in cm/s and rad/s."""
-    return _left_inverse(BY_MODEL.jacobian(q[None])[0])
-
-
-def _left_inverse(J: FloatArray) -> FloatArray:
-    """Return what a computer makes of (J' J)^-1 J': rounding, or nothing where it meets an exact zero."""
+    """Return what a computer makes of (J' J)^-1 J', shapes (7,) to (7, 6): rounding, or nothing at an exact zero."""
+    J = BY_MODEL.jacobian(q[None])[0]
     try:
         inverse: FloatArray = np.linalg.inv(J.T @ J) @ J.T
     except np.linalg.LinAlgError:
@@ -176,20 +159,13 @@ def _left_inverse(J: FloatArray) -> FloatArray:
     return inverse
 
 
-def right_inverse(values: Symbols) -> Elements:
-    """Return J' (J J')^-1."""
-    J = _metres(values)
-    transposed = J.transpose(0, 2, 1)
-    return {"J^+": np.asarray(np.linalg.solve(J @ transposed, J).transpose(0, 2, 1), dtype=float)}
-
-
 def _by_factors(values: Symbols) -> Elements:
     Q, R = np.linalg.qr(_metres(values).transpose(0, 2, 1))
-    return {"J^+": np.asarray(Q @ np.linalg.inv(R).transpose(0, 2, 1), dtype=float)}
+    return {"J_plus": np.asarray(Q @ np.linalg.inv(R).transpose(0, 2, 1), dtype=float)}
 
 
 pseudo_inverse = Truth(
-    lambda values: {"J^+": np.asarray(np.linalg.pinv(_metres(values)), dtype=float)},
+    lambda values: {"J_plus": np.asarray(np.linalg.pinv(_metres(values)), dtype=float)},
     _by_factors,
     ("singular values", "least length by orthogonal factors"),
 )

@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runner.audit.truth import Elements, Symbols, Truth, Way, columns, coordinates, derivative
+from runner.audit.truth import Elements, Symbols, Truth, columns, coordinates, derivative
 from runner.base.arrays import FloatArray
 from runner.studies.xarm7.equations.truths.xarm7 import BY_MODEL, JOINTS, L1, constants, pose
 from runner.studies.xarm7.kinematics import CENTIMETRES, printed_inverse
@@ -130,24 +130,11 @@ def solve(target: FloatArray, *, sign: bool = True, root: bool = True) -> FloatA
     return printed_inverse(target / CENTIMETRES, Q6, right)
 
 
-def line(values: Symbols) -> Elements:
-    """Return the line as the report gives it."""
-    return {"tip": points(values["y"])}
-
-
 def _reached(pose_of: Callable[[FloatArray], FloatArray], values: Symbols) -> Elements:
     q = solve(points(values["y"]))
     inside = ((q >= _LIMITS[0]) & (q <= _LIMITS[1])).all(axis=1)
     tips = pose_of(full(q))[:, :3, 3]
     return {"tip": np.where(inside[:, None], tips, np.nan)}
-
-
-def _axis(*axis: float) -> Way:
-    return lambda values: {"direction": np.tile(axis, (len(values["y"]), 1))}
-
-
-along_x, along_y = _axis(1.0, 0.0, 0.0), _axis(0.0, 1.0, 0.0)
-"""The x axis, the direction that the report names, and the y axis."""
 
 
 def _direction(tips: FloatArray) -> FloatArray:
