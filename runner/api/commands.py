@@ -6,6 +6,7 @@ from pathlib import Path
 
 from runner import store
 from runner.api.boundary import public, public_class, workers_only_work
+from runner.api.functions import use_functions
 from runner.api.overrides import config_folders, run_overrides, sweep_overrides, tuning_overrides
 from runner.api.run import Run
 from runner.api.sweep import Sweep
@@ -30,7 +31,8 @@ def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (),
         config_dirs: Your config folders, searched before the built-in ones.
         plugins: Your plug-ins as GROUP=MODULE, such as "controller=mine/spring.py". They stay loaded; restart Python
             after you edit such a file.
-        values: Overrides as keywords; two underscores mean a dot. Strings are read as on the command line.
+        values: Overrides as keywords; two underscores mean a dot. Strings are read as on the command line. `controller`
+            may also be a function, see docs/plugins.md.
 
     Raises:
         RunnerError: if the config cannot be run (a ConfigError, which lists all its problems), or a folder cannot be
@@ -39,7 +41,7 @@ def run(*overrides: str, config_dirs: Folders = (), plugins: Sequence[str] = (),
     from runner.sweeps import job
 
     use_plugins(plugins)
-    texts = run_overrides(overrides, values)
+    texts = run_overrides(overrides, use_functions(values))
     return public_class(Run, job.run(*texts, config_dirs=config_folders(config_dirs)))
 
 
@@ -78,7 +80,7 @@ def sweep(
     from runner.sweeps.run import Engine, run_sweep
 
     use_plugins(plugins)
-    folders, entries = config_folders(config_dirs), sweep_overrides(overrides, values)
+    folders, entries = config_folders(config_dirs), sweep_overrides(overrides, use_functions(values))
     texts = [each if isinstance(each, str) else each.typed for each in entries]
     _reject_hydra(texts)
     engine, loader = Engine(workers, address), Composer(folders)
@@ -130,7 +132,7 @@ def tune(
     from runner.sweeps.tuning.objective import Objective
 
     use_plugins(plugins)
-    folders, texts = config_folders(config_dirs), tuning_overrides(overrides, values)
+    folders, texts = config_folders(config_dirs), tuning_overrides(overrides, use_functions(values))
     _reject_hydra(texts)
     Engine(workers, None)  # its check
     objectives = [Objective(metric, "minimize") for metric in _several(minimize)]

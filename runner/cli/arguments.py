@@ -81,7 +81,8 @@ _SHARED: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
 }
 _MEANINGS = {
     "config_dir": "your own folder with YAML and URDFs; repeat for more",
-    "plugin": "your own controller, trajectory, plant, environment or metric, as controller=FILE.py; repeat for more",
+    "plugin": "your own controller, trajectory, plant, environment or metric, as controller=FILE.py; "
+    "a controller can be one function: controller=FILE.py:NAME; repeat for more",
     "quiet": "print only the path of the result",
 }
 

@@ -1,8 +1,9 @@
 """`runner benchmark check LAW.py`: check in seconds if your controller fits the benchmark.
 
 LAW.py is the file for `--plugin controller=LAW.py`; its config controller/LAW.yaml and its ranges LAW.ranges.yaml are
-next to it. Every run of it is composed and compared with a run of a built-in controller. The first control steps are
-computed on each arm, and the total time is estimated. Nothing is stored. Exit code 2 if the controller does not fit.
+next to it. LAW.py:NAME is a law that is one function, without config. Every run of it is composed and compared with a
+run of a built-in controller. The first control steps are computed on each arm, and the total time is estimated. Nothing
+is stored. Exit code 2 if the controller does not fit.
 """
 
 import shlex

@@ -2,12 +2,14 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import ModuleType
 from typing import Any, Protocol, runtime_checkable
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import ControlLaw, Loop
 from runner.controllers.force.admittance_filter import Admittance
+from runner.plugins.discovery import functions_in_use
 from runner.plugins.features import Features, read_features
 from runner.plugins.guard import Attribute, Guard, Method, array, checked, find_fault, refuse
 from runner.plugins.registry import KindConfig, Registry
@@ -136,15 +138,41 @@ class Controllers(Registry[ControllerConfig, [Robot], tuple[Loop, ...]]):
         return read_features(ControllerFeatures, self.module(kind))
 
     def build_for(self, config: ControllerConfig, robot: Robot, joints: bool) -> tuple[Loop, ...]:
-        """Build the loops of a config; a built-in controller follows the joints if it can and `joints` is True.
+        """Build the loops of a config; a controller follows the joints if it can and `joints` is True.
 
         Raises:
             ConfigError: see `build`.
         """
-        if joints and self.is_ours(config.kind) and self.features(config.kind).FOLLOWS_JOINTS:
-            loops: tuple[Loop, ...] = self.module(config.kind).build(config, robot, joints=True)
+        if not (joints and self.features(config.kind).FOLLOWS_JOINTS):
+            return self.build(config, robot)
+        make = self.module(config.kind).build
+        if self.is_ours(config.kind):
+            loops: tuple[Loop, ...] = make(config, robot, joints=True)
             return loops
-        return self.build(config, robot)
+        return guard_loops(self.ask(config, make, robot, joints=True), config, robot)
+
+    def module(self, kind: str) -> ModuleType:
+        """Return the module of a kind; see Kinds. A kind that is one function has the module of function_module."""
+        module = super().module(kind)
+        functions = {point.name: point.attr for point in functions_in_use(self.group)}
+        if kind in self._modules or kind not in functions:
+            return module
+        from runner.controllers.joint_space.function_law import function_module  # for few runs
+
+        return function_module(getattr(module, functions[kind], None), kind, module)
+
+    def of_functions(self) -> dict[str, ModuleType]:
+        """Return the modules of the controllers that are one function, by kind.
+
+        Raises:
+            ConfigError: if one cannot be a controller, or has the name of a built-in controller.
+        """
+        kinds = [point.name for point in functions_in_use(self.group)]
+        problems = [f"{self.group}.kind: '{kind}' is a built-in kind; rename your function" for kind in kinds
+                    if kind in self._modules]  # fmt: skip
+        if problems:
+            raise ConfigError(problems)
+        return {kind: self.module(kind) for kind in kinds}
 
     def start_posture(self, config: ControllerConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
         """Return the joint positions at the start of a trajectory, or None for no preference; see ControllerFeatures.

@@ -2,11 +2,13 @@
 
 A plug-in is a module, such as one with a controller's `CONFIG` and `build`. An installed package declares its plug-ins
 as entry points in group `runner.<group>`. Any other module must be named on the command line, as in
-`runner --plugin controller=mine/spring.py`. A config cannot name one, so a YAML file cannot run code.
+`runner --plugin controller=mine/spring.py`. A config cannot name one, so a YAML file cannot run code. A controller can
+also be one function of a module, as in `controller=mine/laws.py:pd`.
 """
 
 import hashlib
 import importlib
+import inspect
 import os
 import sys
 from collections.abc import Mapping, Sequence
@@ -16,7 +18,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
-from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest
+from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest, unknown
 
 GROUPS = (
     "calibration", "controller", "environment", "joint_torque_sensor", "metric", "mismatch", "noise", "plant",
@@ -30,16 +32,20 @@ _VARIABLE = "RUNNER_PLUGINS"  # one part a line, with absolute paths of files; w
 def use_plugins(given: Sequence[str]) -> None:
     """Add parts in this process and in its worker processes.
 
+    A part replaces an earlier one of the same group and name.
+
     Args:
         given: Parts as GROUP=MODULE. MODULE is a file, as in "controller=mine/spring.py", or a module on the Python
-            path, as in "controller=mine.spring". Both add the kind `spring`.
+            path, as in "controller=mine.spring". Both add the kind `spring`. A controller can also be a function of a
+            module: "controller=mine/laws.py:pd" adds the kind `pd`.
 
     Raises:
-        RunnerError: if a group does not exist or a module cannot be found.
+        RunnerError: if a group does not exist, or a module or function cannot be found.
     """
     lines = list(in_use())
     for text in given:
-        group, _, module = text.partition("=")
+        group, _, place = text.partition("=")
+        module, function = _split(place)
         if group not in GROUPS or not module:
             raise RunnerError(
                 f"--plugin {text}: must be GROUP=MODULE, as in controller=mine/spring.py{nearest(group, GROUPS)}; "
@@ -49,9 +55,13 @@ def use_plugins(given: Sequence[str]) -> None:
             if not Path(module).is_file():
                 raise RunnerError(f"--plugin {text}: no file {module}")
             module = str(Path(module).resolve())
-        _check_found(text, _point(f"{group}={module}").value, module)
-        if f"{group}={module}" not in lines:
-            lines.append(f"{group}={module}")
+        line = f"{group}={module}{function}"
+        point = entry_point(line)
+        _check_found(text, point.module, module)
+        if function:
+            _check_function(text, point)
+        lines = [each for each in lines if not each.startswith(f"{group}=") or entry_point(each).name != point.name]
+        lines.append(line)
     os.environ[_VARIABLE] = "\n".join(lines)
 
 
@@ -72,11 +82,14 @@ def in_use() -> tuple[str, ...]:
 
 def named_parts() -> list[str]:
     """Return the parts named on the command line as GROUP=MODULE, with paths relative to the working directory."""
-    found = []
-    for line in in_use():
-        group, _, module = line.partition("=")
-        found.append(f"{group}={os.path.relpath(module) if _is_file(module) else module}")
-    return found
+    return [named_part(line) for line in in_use()]
+
+
+def named_part(line: str) -> str:
+    """Return a part as GROUP=MODULE with the path of a file relative to the working directory."""
+    group, _, place = line.partition("=")
+    module, function = _split(place)
+    return f"{group}={os.path.relpath(module) if _is_file(module) else module}{function}"
 
 
 def added_parts(group: str) -> tuple[EntryPoint, ...]:
@@ -84,7 +97,7 @@ def added_parts(group: str) -> tuple[EntryPoint, ...]:
 
     The entry points of installed packages are cached by `sys.path`, because reading them takes milliseconds.
     """
-    of_command_line = [_point(line) for line in in_use() if line.partition("=")[0] == group]
+    of_command_line = [entry_point(line) for line in in_use() if line.partition("=")[0] == group]
     return (*of_command_line, *_installed(tuple(sys.path)).get(group, ()))
 
 
@@ -93,12 +106,18 @@ def has_users_parts() -> bool:
     return any(not point.value.startswith("runner.") for group in GROUPS for point in added_parts(group))
 
 
+def functions_in_use(group: str) -> tuple[EntryPoint, ...]:
+    """Return the parts of a group that are one function."""
+    return tuple(point for point in added_parts(group) if point.attr)
+
+
 def load(group: str, name: str, module: str) -> ModuleType:
-    """Import a part's module.
+    """Import a part's module, given by its name; a function after the name has no effect.
 
     Raises:
         ConfigError: if the import fails; the message contains the line in the module.
     """
+    module = _split(module)[0]
     try:
         return importlib.import_module(module)
     except Exception as error:
@@ -114,6 +133,7 @@ def source_files(module: str) -> list[Path]:
 
     For a part of a built-in study, these are the files in the folder `parts` of the study.
     """
+    module = _split(module)[0]
     package, _, rest = module.rpartition(".") if module.startswith("runner.") else module.partition(".")
     spec = find_spec(package if rest else module)
     if spec is None:
@@ -123,11 +143,24 @@ def source_files(module: str) -> list[Path]:
     return [Path(spec.origin)] if spec.origin else []
 
 
+def entry_point(line: str) -> EntryPoint:
+    """Return a part given as GROUP=MODULE; the folder of a file is added to `sys.path`."""
+    group, _, place = line.partition("=")
+    module, function = _split(place)
+    if _is_file(module):
+        folder = str(Path(module).parent)
+        if folder not in sys.path:
+            sys.path.append(folder)  # last, so that its modules do not hide installed ones
+        module = Path(module).stem
+    name = function[1:] or module.rpartition(".")[2]
+    return EntryPoint(name=name, value=f"{module}{function}", group=f"runner.{group}")
+
+
 def digests() -> dict[str, str]:
     """Return a digest of the source of each part named on the command line, by the part as `named_parts` returns it."""
     found = {}
     for text in named_parts():
-        content = b"\0".join(path.read_bytes() for path in source_files(_point(text).value))
+        content = b"\0".join(path.read_bytes() for path in source_files(entry_point(text).value))
         found[text] = hashlib.sha256(content).hexdigest()[:24]
     return found
 
@@ -142,15 +175,10 @@ def _is_file(module: str) -> bool:
     return module.endswith(".py")
 
 
-def _point(line: str) -> EntryPoint:
-    """Return the part of a line GROUP=MODULE; the folder of a file is added to `sys.path`."""
-    group, _, module = line.partition("=")
-    if _is_file(module):
-        folder = str(Path(module).parent)
-        if folder not in sys.path:
-            sys.path.append(folder)  # last, so that its modules do not hide installed ones
-        module = Path(module).stem
-    return EntryPoint(name=module.rpartition(".")[2], value=module, group=f"runner.{group}")
+def _split(place: str) -> tuple[str, str]:
+    """Return a module or file, and its function with a leading colon, or an empty string, from MODULE:FUNCTION."""
+    module, colon, function = place.rpartition(":")
+    return (module, f":{function}") if colon and function.isidentifier() else (place, "")
 
 
 def _check_found(text: str, name: str, module: str) -> None:
@@ -162,3 +190,15 @@ def _check_found(text: str, name: str, module: str) -> None:
         raise RunnerError(f"--plugin {text}: no module {name}; name a file, as in {name.replace('.', '/')}.py")
     if _is_file(module) and (spec.origin is None or Path(spec.origin).resolve() != Path(module)):
         raise RunnerError(f"--plugin {text}: Python has another module {name}, {spec.origin}; rename yours")
+
+
+def _check_function(text: str, point: EntryPoint) -> None:
+    group = point.group.removeprefix("runner.")
+    if group != "controller":
+        raise RunnerError(f"--plugin {text}: only a controller can be a function; give {group}=MODULE")
+    module = load(group, point.name, point.module)
+    if point.attr not in vars(module):
+        own = [name for name, value in vars(module).items() if inspect.isfunction(value)]
+        raise RunnerError(
+            unknown(f"function in {Path(module.__file__ or '').name}", point.attr, own, f"--plugin {text}")
+        )

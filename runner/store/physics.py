@@ -33,7 +33,7 @@ _TABLE = """
         torque_filter torque_law
     controllers/force: admittance admittance_filter force_reading=controllers.force_reading hybrid_force
         impedance tip_force
-    controllers/joint_space: adaptive computed_torque iterative_learning joint_law joint_pd joint_pid
+    controllers/joint_space: adaptive computed_torque function_law iterative_learning joint_law joint_pd joint_pid
         motor_pd passivity sliding_mode
     controllers/kinematic: differential_inverse_kinematics limited_motion resolved_rate
     controllers/macro_mini: inertial_damping macro_mini stage_loops

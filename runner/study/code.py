@@ -12,6 +12,7 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from runner.base.errors import RunnerError
+from runner.plugins.discovery import entry_point, named_part
 from runner.plugins.folder_code import folder_module
 from runner.study.job import MissingError
 
@@ -101,12 +102,14 @@ class UserPlugin:
         name: What the group calls it.
         module: What names its module: a file, or a module that Python finds.
         folder: The folder of its module, in which its config stands as GROUP/NAME.yaml.
+        function: True if it is one function, which needs no config.
     """
 
     group: str
     name: str
     module: str
     folder: Path
+    function: bool = False
 
     @property
     def override(self) -> str:
@@ -116,8 +119,13 @@ class UserPlugin:
     @property
     def options(self) -> tuple[str, ...]:
         """What a command that uses it has before the overrides."""
-        module = os.path.relpath(self.module) if self.module.endswith(".py") else self.module
-        return "--config-dir", os.path.relpath(self.folder), "--plugin", f"{self.group}={module}"
+        folders = [word for folder in self.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
+        return *folders, "--plugin", named_part(f"{self.group}={self.module}")
+
+    @property
+    def config_dirs(self) -> tuple[Path, ...]:
+        """Config folders that it needs."""
+        return () if self.function else (self.folder,)
 
 
 def read_user_plugins(lines: Sequence[str]) -> tuple[UserPlugin, ...]:
@@ -126,17 +134,17 @@ def read_user_plugins(lines: Sequence[str]) -> tuple[UserPlugin, ...]:
     Raises:
         RunnerError: if the config of one does not stand beside its module.
     """
-    parts = [_part(*line.split("=", 1)) for line in lines]
+    parts = [_part(line) for line in lines]
     for part in parts:
         config = part.folder / part.group / f"{part.name}.yaml"
-        if not config.is_file():
+        if not (part.function or config.is_file()):
             raise RunnerError(f"--plugin {part.group}={part.module}: no config beside it, {config}")
     return tuple(parts)
 
 
-def _part(group: str, module: str) -> UserPlugin:
-    if module.endswith(".py"):
-        return UserPlugin(group, Path(module).stem, module, Path(module).parent)
-    spec = find_spec(module)
+def _part(line: str) -> UserPlugin:
+    point = entry_point(line)
+    spec = find_spec(point.module)
     folder = Path(spec.origin).parent if spec is not None and spec.origin else Path()
-    return UserPlugin(group, module.rpartition(".")[2], module, folder)
+    group, _, module = line.partition("=")
+    return UserPlugin(group, point.name, module, folder, bool(point.attr))

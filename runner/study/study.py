@@ -84,7 +84,7 @@ class Study:
     @property
     def config_dirs(self) -> tuple[Path, ...]:
         """Folders of configs: its own, but for ours without robots, and those of parts that were given."""
-        return (*self._own_dirs, *dict.fromkeys(part.folder for part in self._given))
+        return (*self._own_dirs, *dict.fromkeys(folder for part in self._given for folder in part.config_dirs))
 
     @property
     def _own_dirs(self) -> tuple[Path, ...]:

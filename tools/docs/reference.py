@@ -23,6 +23,7 @@ from runner.config.judgement import Bound, CaveatsConfig
 from runner.config.limits import SweepConfig
 from runner.config.robot import OneArmConfig, StageConfig
 from runner.config.run import RunSettings
+from runner.controllers.joint_space.joint_law import JointLawConfig
 from runner.plugins.metric_units import families
 from runner.plugins.registry import Kinds
 from runner.schema.model import StrictModel, nested_model
@@ -107,6 +108,10 @@ def _keys() -> Iterator[str]:
         for kind in (kind for kind in registry.names() if registry.is_ours(kind)):
             yield f"#### {group}.kind: {kind}\n\n"
             yield _table(group, registry.config_model(kind), _of_kind(group, kind))
+        if group == "controller":
+            yield "#### controller: one function\n\n"
+            yield "A [function](plugins.md#a-law-as-one-function) has the keys of its arguments, and:\n\n"
+            yield _table(group, JointLawConfig, _read("function_law"))
     for group, known in GROUPS.items():
         if group in kinds or group in _ELSEWHERE:
             continue

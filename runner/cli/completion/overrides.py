@@ -82,7 +82,8 @@ def _plugins(plugins: Sequence[str], group: str) -> Iterator[str]:
     for plugin in plugins:
         of_group, _, module = plugin.partition("=")
         if of_group == group and module:
-            yield PurePath(module).stem if module.endswith(".py") else module.rpartition(".")[2]
+            name = module.rpartition(":")[2]
+            yield PurePath(name).stem if name.endswith(".py") else name.rpartition(".")[2]
 
 
 def _top(root: str) -> Iterator[str]:

@@ -30,6 +30,7 @@ from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.files import groups, user_overrides
 from runner.config.compose.overrides import force, prepare
 from runner.config.compose.sources import checked_sources
+from runner.plugins.discovery import in_use
 
 _KEPT = 512  # combinations of options, about 30 kB each
 _MOST = 1000  # files and folders in the config folders; if there are more, Hydra composes each time
@@ -106,7 +107,8 @@ class Composer:
         lines = tuple(str(each.input_line) for each in sorted(options, key=lambda each: each.key_or_group))
         files = _files(conf_dir(), *self.config_dirs)
         load = _load_options if files is not None else _load_options.__wrapped__
-        config: DictConfig = pickle.loads(load(self.config_dirs, lines, root, mode, files, default_plant()))  # noqa: S301
+        others = files, default_plant(), in_use()
+        config: DictConfig = pickle.loads(load(self.config_dirs, lines, root, mode, *others))  # noqa: S301
         return config
 
 
@@ -165,7 +167,8 @@ def _load_options(
 ) -> bytes:
     """Return the pickled config that Hydra composes from options.
 
-    The last arguments are the other inputs of the result: the state of the files, and the plant of `default`.
+    The last arguments are the other inputs of the result: the state of the files, the plant of `default`, and the
+    plug-ins.
     """
     config = Composer(config_dirs).hydra.load_configuration(root, list(options), mode, from_shell=False)
     try:

@@ -15,6 +15,7 @@ from pathlib import Path
 from runner.base.errors import ConfigError, nearest
 from runner.base.paths import STUDY_FILE, conf_dir
 from runner.base.sanitize import quoted
+from runner.plugins.discovery import functions_in_use
 
 _HEAD = 10_000  # characters to search for the first comment of a file
 
@@ -39,12 +40,19 @@ def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str
         config_dirs: Config folders of the user.
 
     Returns:
-        Name of each option, such as "thesis/figure_3_5", and the first comment in its file except directives.
+        Name of each option, such as "thesis/figure_3_5", and the first comment in its file except directives; of a
+        function the first line of its docstring.
     """
     found: dict[str, str] = {}
     for folder in (conf_dir(), *config_dirs):
         files = described_files(folder / group)
         found |= {option_in(folder, group, name): description for name, description in files.items()}
+    if group == "controller" and functions_in_use(group):
+        from runner.controllers import CONTROLLERS  # for few commands
+
+        found |= {
+            kind: (module.__doc__ or "").partition("\n")[0] for kind, module in CONTROLLERS.of_functions().items()
+        }
     return dict(sorted(found.items()))
 
 

@@ -29,6 +29,7 @@ from runner.base.limits import ExcessError, read_text
 from runner.base.paths import check_inside, conf_dir, ships
 from runner.base.sanitize import quoted
 from runner.config.compose.files import place_in, refuse_settings, settings_error
+from runner.config.compose.functions import FunctionSource
 
 _SCHEME = "checked"
 _USERS = "command-line"  # Hydra's name of where such a folder comes from
@@ -44,7 +45,7 @@ def checked_sources(config_dirs: Sequence[Path]) -> Iterator[None]:
     In the folder of a study, names of experiments begin with the name of the study; see place_in. Only
     conf/plant/default.yaml calls a function.
     """
-    for plugin in (CheckedSource, CheckedSearchPath):
+    for plugin in (CheckedSource, CheckedSearchPath, FunctionSource):
         Plugins.instance().register(plugin)
     OmegaConf.register_new_resolver("default_plant", lambda: f"/plant/{default_plant()}", replace=True)
     before = _folders.set(config_dirs)
@@ -68,6 +69,7 @@ class CheckedSearchPath(SearchPathPlugin):
         for folder in reversed(folders):
             search_path.prepend(_USERS, f"{_SCHEME}://{folder}")
         search_path.prepend("runner", f"{_SCHEME}://{os.devnull}")  # has no file, and is first without other folders
+        search_path.append("functions", f"{FunctionSource.scheme()}://")
 
 
 class CheckedSource(ConfigSource):

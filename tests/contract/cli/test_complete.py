@@ -120,6 +120,7 @@ def test_plug_ins(tmp_path, tab):
     assert tab("--plugin controller=mine/") == ["controller=mine/spring.py"]
     assert tab("--plugin=controller=mine/s") == ["--plugin=controller=mine/spring.py"]
     assert tab("--plugin controller=mine/spring.py controller=sp") == ["controller=spring"]
+    assert tab("--plugin controller=mine/laws.py:my_pd controller=my") == ["controller=my_pd"]
     assert "trajectory=spring" not in tab("--plugin controller=mine/spring.py trajectory=")
     assert tab("report --plugin metric=mine/s") == ["metric=mine/spring.py"]
 

@@ -37,6 +37,7 @@ SHARED = {
     "config/composed": "contract/config/test_compose.py",
     "config/calibration": "contract/calibration/test_calibration_job.py",
     "config/compose/files": "contract/config/test_options.py",
+    "config/compose/functions": "contract/plugins/test_functions_as_laws.py",
     "config/compose/composition_errors": "contract/config/test_compose.py",
     "config/compose/messages": "contract/config/test_validation.py",
     "config/cross_checks": "unit/config/test_controller_wrappers.py",
