@@ -13,6 +13,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir
 from runner.config.robot import ArmConfig, RobotConfig, StageConfig
+from runner.plants.friction_law import joint_friction
 from runner.robots.description import find_file, find_urdf, mjcf_of, read_arm, read_urdf, with_payloads
 from runner.robots.inertials import Payload, armature_file, set_file
 from runner.robots.joint_dynamics import dynamics_of
@@ -169,8 +170,7 @@ def _read(config: RobotConfig, paths: Sequence[Path]) -> RobotOutline:
         joints += [prefix + joint for joint in tree.chain]
         stages.append(ArmOutline(name, arm, path, urdf, prefix, place, tuple(tree.chain), units, efforts, tuple(home)))
         below = prefix
-    for kind, value in (("viscous", config.friction.viscous), ("coulomb", config.friction.coulomb)):
-        expand(f"robot.friction.{kind}", value, joints)
+    joint_friction("robot.friction", config.friction, joints)
     return RobotOutline(config, tuple(stages))
 
 

@@ -90,7 +90,7 @@ def _refused(config: RunConfig, plant: TorquePlantConfig, flexibility: Flexibili
     if len(config.arm.stages) > 1 and plant.dynamics == "decoupled":
         problems.append("stages that do not feel each other have rigid joints; take plant.dynamics=coupled")
     (moved,) = find_motion(config.arm, plant.model_copy(update={"dynamics": "coupled", "wrist_rotation": "real"})).arms
-    if ((moved.viscous > 0.0) | (moved.coulomb > 0.0))[~flexibility.flexible].any():
+    if moved.friction.acts[~flexibility.flexible].any():
         problems.append(
             "plant.friction acts on the motors of flexible joints alone; take a list with 0 for the joints that are "
             "rigid"

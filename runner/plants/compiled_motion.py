@@ -8,22 +8,21 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Self
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.plants.compiled_friction import CompiledFriction, FrictionScalars, friction_scalars, put
 from runner.robots.model import RobotModel
 from runner.robots.robot import StageBase
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import ArmConstants, constants_of, to_scalars
 from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repeat, Slots
 from runner.symbolic.engine import MOST_JOINTS, evaluator
-from runner.symbolic.expression import Value, absolute, both, equal, less, places, select
+from runner.symbolic.expression import Value, places
 from runner.symbolic.program import Expressed, Frame, program
 from runner.symbolic.structure import Values, any_number, arm_pattern
-from runner.symbolic.vectors import Matrix, Vector, add, product, scale, subtract, times, transpose
+from runner.symbolic.vectors import Vector, add, product, scale, subtract, times, transpose
 
 if TYPE_CHECKING:  # these modules use this one
     from runner.plants.decoupled import Motion
     from runner.plants.flexible_joints import Flexibility
-
-_PIVOTS, _ROUNDING = 100, 1e-12  # as in runner/plants/friction.py
 
 
 class ArmScalars(NamedTuple):
@@ -31,14 +30,12 @@ class ArmScalars(NamedTuple):
 
     Attributes:
         constants: Constants of its bodies.
-        viscous: Viscous friction coefficient of each joint, shape (n,).
-        coulomb: Coulomb friction torque of each joint, shape (n,).
+        friction: Friction of its joints.
         base: Constants of the bodies from the robot's base to this arm's base; None if the base does not rotate.
     """
 
     constants: ArmConstants
-    viscous: Vector
-    coulomb: Vector
+    friction: FrictionScalars
     base: ArmConstants | None
 
 
@@ -99,7 +96,7 @@ def motion_scalars(motion: "Motion", step: float, tick: float, number: Callable[
         elif index:
             base = constants_of(robot.model, number, [0.0] * 3, str(robot.stages[index].base_frame))
         constants = constants_of(arm.model, number, own)
-        arms.append(ArmScalars(constants, to_scalars(arm.viscous, number), to_scalars(arm.coulomb, number), base))
+        arms.append(ArmScalars(constants, friction_scalars(arm.friction, number), base))
     return MotionScalars(number(step), number(tick), gravity, tuple(arms))
 
 
@@ -126,14 +123,15 @@ def expressed_motion(motion: "Motion", numbers: MotionScalars, at: Slots, torque
             # Gravity on a mounted stage follows the rotation of its base at the start of the tick.
             whole = ArmAlgebra(own.base).tip(places(STATE, 0, nq), [0.0] * nq)
             first, gravity = at.take(SCRATCH, 3)
-            bases.append(_put(SCRATCH, first, product(transpose(whole[1]), numbers.gravity)))
+            bases.append(put(SCRATCH, first, product(transpose(whole[1]), numbers.gravity)))
             constants = constants._replace(gravity=gravity)
         joint, count = arm.joints.start, arm.model.nq
-        mover = Mover(ArmAlgebra(constants), joint, nq, count, at)
+        algebra = ArmAlgebra(constants)
         acting: Vector = torques[joint : joint + count]
-        if arm.viscous.any() or arm.coulomb.any():
-            acting = mover.brake(acting, own.viscous, own.coulomb, numbers.tick, arms)
-        mover.move(acting, numbers.step, arms)
+        if arm.friction.acts.any():
+            state = places(STATE, joint, count), places(STATE, nq + joint, count)
+            acting = CompiledFriction(algebra, own.friction, *state, at).brake(acting, numbers.tick, arms)
+        Mover(algebra, joint, nq, count, at).move(acting, numbers.step, arms)
     return [*bases, *arms]
 
 
@@ -177,8 +175,8 @@ class Mover:
             *add(two, scale(weight_two, a_i)),
         ]
         sixth = h / 6.0
-        begin = _put(SCRATCH, first, [*q, *v, *[0.0] * (2 * n)])
-        stages = Repeat([_put(SCRATCH, first, stage)], 4, tabled=True)
+        begin = put(SCRATCH, first, [*q, *v, *[0.0] * (2 * n)])
+        stages = Repeat([put(SCRATCH, first, stage)], 4, tabled=True)
         ends = zip(self._first, (add(q, scale(h, v), scale(h * sixth, one)), add(v, scale(sixth, two))), strict=True)
         end = Block([(STATE, place_ + index, value) for place_, values in ends for index, value in enumerate(values)])
         parts.append(Repeat([begin, stages, end], "steps"))
@@ -200,70 +198,6 @@ class Mover:
         """Return the accelerations of the links under their torques, shapes (n,)."""
         bias = self._algebra.inverse_dynamics(q, v, [0.0] * len(q))
         return Factors(self._algebra.mass_matrix(q)).solve(subtract(tau, bias))
-
-    def brake(self, acting: Vector, viscous: Vector, coulomb: Vector, h: Value, parts: list[Part]) -> Vector:
-        """Add a tick's friction by backward Euler; return the torques minus friction. See runner/plants/friction.py."""
-        n, q, v = self._count, self._q, self._v
-        M = self._algebra.mass_matrix(q)
-        bias = self._algebra.inverse_dynamics(q, v, [0.0] * n)
-        pushed = add(product(M, v), scale(h, subtract(acting, bias)))
-        braked = [[M[i][j] + h * viscous[i] if i == j else M[i][j] for j in range(n)] for i in range(n)]
-        factors = Factors(braked)
-        columns = [factors.solve([h if i == j else 0.0 for i in range(n)]) for j in range(n)]
-        first, scratch = self._at.take(SCRATCH, n + n * n + n + 1)
-        speed, mobility = scratch[:n], scratch[n : n + n * n]
-        mu: Vector = scratch[n + n * n : 2 * n + n * n]
-        A = [mobility[i * n : (i + 1) * n] for i in range(n)]
-        found = [*factors.solve(pushed), *(columns[j][i] for i in range(n) for j in range(n))]
-        parts.append(_put(SCRATCH, first, found))
-        if any(value != 0.0 for value in coulomb):
-            self._pivot(A, speed, mu, coulomb, first + n + n * n, parts)
-        else:
-            mu = [0.0] * n
-        braked_speed = subtract(speed, product(A, mu))
-        first, less_friction = self._at.take(SCRATCH, n)
-        drag = [b * w for b, w in zip(viscous, braked_speed, strict=True)]
-        parts.append(_put(SCRATCH, first, subtract(subtract(acting, drag), mu)))
-        return less_friction
-
-    def _pivot(self, A: Matrix, speed: Vector, mu: Vector, limit: Vector, first: int, parts: list[Part]) -> None:
-        """Add the search for the torques that stop joints; see `stopping_torques` of runner/plants/friction.py."""
-        n = self._count
-        state, direction = self._at.take(STATE, n)
-        held = [equal(side, 0.0) for side in direction]
-        sliding = [side * c for side, c in zip(direction, limit, strict=True)]
-        left = subtract(speed, product(A, sliding))
-        # A moving joint has a row with only a one on the diagonal.
-        system = [
-            [
-                select(held[i], A[i][i], 1.0) if i == j else select(both(held[i], held[j]), A[i][j], 0.0)
-                for j in range(n)
-            ]
-            for i in range(n)
-        ]
-        stopping = Factors(system).solve([select(held[i], left[i], 0.0) for i in range(n)])
-        now = [select(held[i], stopping[i], sliding[i]) for i in range(n)]
-        left = subtract(speed, product(A, now))
-        wrong, sides = [], []
-        for i in range(n):
-            too_much = select(held[i], absolute(now[i]) - limit[i], -left[i] * direction[i] / A[i][i])
-            wrong.append(less(_ROUNDING * (limit[i] + absolute(speed[i]) / A[i][i]), too_much))
-            sides.append(select(held[i], select(less(now[i], 0.0), -1.0, 1.0), 0.0))
-        outputs: list[tuple[str, int, Any]] = []
-        open_: Value = 1.0  # 1 if no earlier joint is on the wrong side
-        for i in range(n):
-            outputs.append(
-                (STATE, state + i, select(wrong[i], select(equal(open_, 1.0), sides[i], direction[i]), direction[i]))
-            )
-            open_ = select(wrong[i], 0.0, open_)
-            clipped = select(less(limit[i], now[i]), limit[i], select(less(now[i], -limit[i]), -limit[i], now[i]))
-            outputs.append((SCRATCH, first + i, clipped))
-        outputs.append((SCRATCH, first + n, 1.0 - open_))
-        parts.append(Repeat([Block(outputs)], _PIVOTS, until_zero=first + n))
-
-
-def _put(space: str, first: int, values: Vector) -> Block:
-    return Block([(space, first + index, value) for index, value in enumerate(values)])
 
 
 class ArmCode(ABC):
@@ -384,7 +318,7 @@ class CompiledLinksTorque(ArmCode):
         first, tau = at.take(ROWS, n)
         ddq = Mover(ArmAlgebra(constants._replace(gravity=gravity)), 0, n, n, at).acceleration(q, v, tau)
         motors = [times(body.armature, a) for body, a in zip(constants.bodies, ddq, strict=True)]
-        return [_put(ROWS, first, subtract(tau, motors))]
+        return [put(ROWS, first, subtract(tau, motors))]
 
     def at(self, q: FloatArray, v: FloatArray, tau: FloatArray) -> FloatArray:
         """Return the torques of the links, shape (nq,), in N m; valid until the next call."""

@@ -14,13 +14,14 @@ from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_config import FlexibleJointsConfig
 from runner.plants.flexible_joints import FlexibleJoints, SeriesElastic, links_of
 from runner.plants.friction import with_friction
+from runner.plants.friction_law import JointFriction, joint_friction
 from runner.plants.plant import Plant
 from runner.plants.servo import ServoConfig
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
 from runner.schema.model import StrictModel
 from runner.schema.units import Seconds
-from runner.schema.values import FrictionConfig, expand
+from runner.schema.values import FrictionConfig
 
 
 class TorquePlantConfig(StrictModel):
@@ -54,15 +55,13 @@ class ArmMotion:
         urdf: URDF of the arm, as a string.
         model: Model of the arm.
         joints: Joints of the arm among those of the robot.
-        viscous: Viscous friction coefficient of each joint, shape (n,), in N m s/rad.
-        coulomb: Coulomb friction torque of each joint, shape (n,), in N m.
+        friction: Friction of each joint.
     """
 
     urdf: str
     model: RobotModel
     joints: slice
-    viscous: FloatArray
-    coulomb: FloatArray
+    friction: JointFriction
 
 
 @dataclass(frozen=True)
@@ -89,9 +88,9 @@ def find_motion(robot: Robot, config: TorquePlantConfig) -> Motion:
 
     Raises:
         ConfigError: if coupled dynamics is combined with a base that does not rotate, which rigid bodies cannot do, or
-            if the length of a list is not the number of joints.
+            for wrong friction; see joint_friction.
     """
-    viscous, coulomb = friction_by_joint(robot, config.friction)
+    friction = joint_friction("plant.friction", config.friction, robot.model.joint_names)
     ignore_base_rotation = config.wrist_rotation == "parallel"
     if len(robot.stages) == 1 or config.dynamics == "coupled":
         if ignore_base_rotation and len(robot.stages) > 1:
@@ -99,27 +98,10 @@ def find_motion(robot: Robot, config: TorquePlantConfig) -> Motion:
                 "plant.wrist_rotation: parallel leaves the rider's base unturned, which coupled rigid bodies "
                 "cannot; set plant.dynamics=decoupled, or plant.wrist_rotation=real"
             )
-        arms = [ArmMotion(robot.urdf, robot.model, slice(0, robot.model.nq), viscous, coulomb)]
+        arms = [ArmMotion(robot.urdf, robot.model, slice(0, robot.model.nq), friction)]
     else:
-        arms = [
-            ArmMotion(stage.urdf, stage.model, stage.joints, viscous[stage.joints], coulomb[stage.joints])
-            for stage in robot.stages
-        ]
+        arms = [ArmMotion(stage.urdf, stage.model, stage.joints, friction.of(stage.joints)) for stage in robot.stages]
     return Motion(robot, tuple(arms), ignore_base_rotation)
-
-
-def friction_by_joint(robot: Robot, friction: FrictionConfig) -> tuple[FloatArray, FloatArray]:
-    """Return viscous and dry friction of each joint of a robot, shapes (nq,), in N m s/rad and N m.
-
-    Raises:
-        ConfigError: if the length of a list is not the number of joints.
-    """
-    names = robot.model.joint_names
-    viscous, coulomb = (
-        np.array(expand(f"plant.friction.{key}", value, names))
-        for key, value in (("viscous", friction.viscous), ("coulomb", friction.coulomb))
-    )
-    return viscous, coulomb
 
 
 def assemble_plant(
@@ -144,7 +126,7 @@ def assemble_plant(
         for arm in motion.arms:
             plant = make(arm.urdf, arm.model)
             on_error.callback(plant.close)
-            plants.append(with_friction(plant, arm.model, arm.viscous, arm.coulomb, tick))
+            plants.append(with_friction(plant, arm.model, arm.friction, tick))
         whole = plants[0] if len(plants) == 1 else Decoupled(robot, plants, motion.ignore_base_rotation)
         on_error.pop_all()
     return whole
@@ -177,7 +159,7 @@ def assemble_flexible(
     links = links_of(arm.model, flexibility.flexible)
     parts = links, flexibility, step, steps_per_tick
     plant = FlexibleJoints(*parts) if make is None else SeriesElastic(make(links), *parts)
-    return with_friction(plant, links, arm.viscous, arm.coulomb, step * steps_per_tick)
+    return with_friction(plant, links, arm.friction, step * steps_per_tick)
 
 
 def default_step(tick: float, stages: int) -> float:

@@ -1,10 +1,11 @@
-"""Dry and viscous friction of joints, and of motors behind springs."""
+"""Friction of joints, and of motors behind springs, over a tick."""
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import lapack, pin
 from runner.plants.flexible_joints import FlexibleJoints
+from runner.plants.friction_law import JointFriction
 from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
 
@@ -12,13 +13,13 @@ _PIVOTS = 100  # upper limit; an arm of ten joints needs one if no joint starts 
 _ROUNDING = 1e-12  # relative to the acting torques
 
 
-def with_friction(plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> Plant:
+def with_friction(plant: Plant, model: RobotModel, law: JointFriction, tick: float) -> Plant:
     """Return a plant with friction in its joints or in the motors behind them; the plant itself without friction."""
-    if not (viscous.any() or coulomb.any()):
+    if not law.acts.any():
         return plant
     if isinstance(plant, FlexibleJoints):
-        return MotorFriction(plant, viscous, coulomb, tick)
-    return Frictional(plant, model, viscous, coulomb, tick)
+        return MotorFriction(plant, law, tick)
+    return Frictional(plant, model, law, tick)
 
 
 class _Friction(PlantWrapper):
@@ -26,20 +27,26 @@ class _Friction(PlantWrapper):
 
     Args:
         plant: The plant without friction; one call of `advance` takes one tick.
-        viscous: b of each joint, shape (nq,), in N m s/rad.
-        coulomb: c of each joint, shape (nq,), in N m.
+        law: Friction of each joint.
         tick: h, in s.
     """
 
-    def __init__(self, plant: Plant, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
+    def __init__(self, plant: Plant, law: JointFriction, tick: float) -> None:
         super().__init__(plant)
-        self._viscous, self._coulomb, self._tick = viscous, coulomb, tick
+        self._law, self._tick = law, tick
         self._friction = np.zeros(len(plant.q))
+        self._direction = np.zeros(len(plant.q))
+        """0 for a joint that friction held in the last tick, 1 or -1 for one that moved up or down."""
 
     @property
     def friction(self) -> FloatArray:
         """Friction torques in the last tick; see Plant."""
         return self._friction
+
+    def reset(self, q: FloatArray, dq: FloatArray) -> None:
+        """Reset the arm to a state; see Plant."""
+        super().reset(q, dq)
+        self._direction = np.sign(dq)
 
     def advance(self, tau: FloatArray) -> None:
         """Hold the torques minus friction for one tick; see Plant."""
@@ -54,31 +61,25 @@ class _Friction(PlantWrapper):
 class Frictional(_Friction):
     r"""A plant with friction in its joints, by backward Euler over the plant's tick h.
 
-    .. math:: (M + h b) \dot q^+ = M \dot q + h (\tau - V - G - \mu), \quad
-        \mu \in c \, \mathrm{sgn}(\dot q^+), \qquad \tau_f = -b \dot q^+ - \mu
+    .. math:: (M + h b) \dot q^+ = M \dot q + h (\tau - V - G - o - \mu), \quad
+        \mu \in l \, \mathrm{sgn}(\dot q^+), \qquad \tau_f = -b \dot q^+ - o - \mu
 
-    mu is the torque that stops a joint within the tick, or the whole c if that does not suffice. So even large friction
-    causes no oscillation. tau_f is held over the tick and is of first order in h. tau contains all loads on the joints.
-    Contact forces that the plant computes enter with their values of the last tick.
+    b, with the sigmoid's secant, and the level l are those of the law at the start of the tick, where l is the static
+    level if friction held the joint in the last tick; o is the asymmetry. mu is the torque that stops a joint within
+    the tick, or the whole l if that does not suffice. So even large friction causes no oscillation, and friction never
+    adds energy. tau_f is held over the tick and is of first order in h. tau contains all loads on the joints. Contact
+    forces that the plant computes enter with their values of the last tick.
 
     Args:
         plant: The plant without friction; one call of `advance` takes one tick.
         model: Model of the arm, for M, V and G.
-        viscous: b of each joint, shape (nq,), in N m s/rad.
-        coulomb: c of each joint, shape (nq,), in N m.
+        law: Friction of each joint.
         tick: h, in s.
     """
 
-    def __init__(self, plant: Plant, model: RobotModel, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
-        super().__init__(plant, viscous, coulomb, tick)
+    def __init__(self, plant: Plant, model: RobotModel, law: JointFriction, tick: float) -> None:
+        super().__init__(plant, law, tick)
         self._model, self._data = model.separate()
-        self._damping = tick * viscous
-        self._direction = np.zeros(model.nq)
-
-    def reset(self, q: FloatArray, dq: FloatArray) -> None:
-        """Reset the arm to a state; see Plant."""
-        super().reset(q, dq)
-        self._direction[:] = 0.0
 
     def set_gravity(self, gravity: FloatArray) -> None:
         """Set the gravity vector; see Plant."""
@@ -90,11 +91,12 @@ class Frictional(_Friction):
         bias = pin.nonLinearEffects(model, data, self.q, self.dq).copy()
         M = np.triu(pin.crba(model, data, self.q))  # crba fills the upper triangle only
         M += np.triu(M, 1).T
-        pushed = M @ self.dq + h * (tau + self._contact_torque() - bias)
-        _, columns, _ = lapack.dposv(M + np.diag(self._damping), np.column_stack([pushed, h * np.eye(len(tau))]))
+        damping, level = self._law.at(self.dq, self._direction == 0.0)
+        pushed = M @ self.dq + h * (tau + self._contact_torque() - bias - self._law.asymmetry)
+        _, columns, _ = lapack.dposv(M + np.diag(h * damping), np.column_stack([pushed, h * np.eye(len(tau))]))
         speed, mobility = columns[:, 0], columns[:, 1:]
-        mu, self._direction = stopping_torques(mobility, speed, self._coulomb, self._direction)
-        friction: FloatArray = self._viscous * (speed - mobility @ mu) + mu
+        mu, self._direction = stopping_torques(mobility, speed, level, self._direction)
+        friction: FloatArray = damping * (speed - mobility @ mu) + mu + self._law.asymmetry
         return friction
 
     def _contact_torque(self) -> FloatArray:
@@ -110,30 +112,32 @@ class Frictional(_Friction):
 class MotorFriction(_Friction):
     r"""Flexible joints with motor friction, by backward Euler over the tick h; see Frictional.
 
-    .. math:: (B + h b) \dot\theta^+ = B \dot\theta + h (\tau - K (\theta - q) - D (\dot\theta - \dot q) - \mu), \quad
-        \mu \in c \, \mathrm{sgn}(\dot\theta^+), \qquad \tau_f = -b \dot\theta^+ - \mu
+    .. math:: (B + h b) \dot\theta^+ = B \dot\theta + h (\tau - K (\theta - q) - D (\dot\theta - \dot q) - o - \mu)
 
-    The motors do not act on each other, so mu is the torque that stops a motor within the tick, clipped at c. The
-    springs' torques are held over the tick.
+    The motors do not act on each other, so mu is the torque that stops a motor within the tick, clipped at its level.
+    The springs' torques are held over the tick.
 
     Args:
         plant: The plant without friction.
-        viscous: b of each joint's motor, shape (nq,), in N m s/rad; 0 for a rigid joint.
-        coulomb: c of each joint's motor, shape (nq,), in N m; 0 for a rigid joint.
+        law: Friction of each joint's motor; 0 for a rigid joint.
         tick: h, in s.
     """
 
-    def __init__(self, plant: FlexibleJoints, viscous: FloatArray, coulomb: FloatArray, tick: float) -> None:
-        super().__init__(plant, viscous, coulomb, tick)
+    def __init__(self, plant: FlexibleJoints, law: JointFriction, tick: float) -> None:
+        super().__init__(plant, law, tick)
         self._springs = plant
+        self._own = law.of(plant.flexibility.flexible)
 
     def _find_friction(self, tau: FloatArray) -> FloatArray:
         plant, h, on = self._springs, self._tick, self._springs.flexibility.flexible
-        B, b, c = plant.flexibility.motors[on], self._viscous[on], self._coulomb[on]
-        free = (B * plant.dtheta[on] + h * (tau - plant.spring_torque())[on]) / (B + h * b)
-        mu = np.clip(free * (B + h * b) / h, -c, c)
+        B, o = plant.flexibility.motors[on], self._own.asymmetry
+        b, level = self._own.at(plant.dtheta[on], self._direction[on] == 0.0)
+        free = (B * plant.dtheta[on] + h * ((tau - plant.spring_torque())[on] - o)) / (B + h * b)
+        stopping = free * (B + h * b) / h
+        mu = np.clip(stopping, -level, level)
+        self._direction[on] = np.where(mu == stopping, 0.0, np.sign(free))
         friction = np.zeros(len(tau))
-        friction[on] = b * (free - h * mu / (B + h * b)) + mu
+        friction[on] = b * (free - h * mu / (B + h * b)) + mu + o
         return friction
 
 

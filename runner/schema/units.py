@@ -31,6 +31,8 @@ WRITTEN: Mapping[str, Mapping[str, Decimal | float]] = {
     "N s/m": {"N s/m": _ONE},
     "N m s/rad": {"N m s/rad": _ONE},
     "1/s": {"1/s": _ONE},
+    "s/rad": {"s/rad": _ONE, "s/deg": 180.0 / math.pi},
+    "s/m": {"s/m": _ONE},
     "Hz": {"Hz": _ONE, "kHz": _KILO},
 }
 """Spellings of each unit of a key, with their factors to that unit."""
@@ -86,6 +88,7 @@ AxisDamping = Annotated[T, Unit("N s/m", turned="N m s/rad")]
 # Values of revolute and prismatic joints.
 JointPosition = Annotated[T, Unit("rad", sliding="m")]
 JointSpeed = Annotated[T, Unit("rad/s", sliding="m/s")]
+JointSteepness = Annotated[T, Unit("s/rad", sliding="s/m")]
 JointTorque = Annotated[T, Unit("N m", sliding="N")]
 JointInertia = Annotated[T, Unit("kg m^2", sliding="kg")]
 JointStiffness = Annotated[T, Unit("N m/rad", sliding="N/m")]

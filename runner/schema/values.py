@@ -1,15 +1,24 @@
 """Config of joint friction, mounts and tools, and config values per joint of a stage and per stage of a robot."""
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Annotated, Any, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat
 
-from runner.base.errors import ConfigError, nearest
+from runner.base.errors import ConfigError, nearest, unknown
 from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
-from runner.schema.units import JointDamping, JointTorque, Kilograms, Metres, MomentOfInertia, Radians
+from runner.schema.units import (
+    JointDamping,
+    JointSpeed,
+    JointSteepness,
+    JointTorque,
+    Kilograms,
+    Metres,
+    MomentOfInertia,
+    Radians,
+)
 
 T = TypeVar("T")
 
@@ -19,18 +28,6 @@ Name = Annotated[str, Field(min_length=1, max_length=LONGEST_NAME)]
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 PositivePerJoint = PositiveFloat | list[PositiveFloat]
 NonNegativePerJoint = NonNegativeFloat | list[NonNegativeFloat]
-
-
-class FrictionConfig(StrictModel):
-    """Config of joint friction: one value for all joints, or a list with one for each.
-
-    Attributes:
-        viscous: Torque per speed, in N m s/rad; N s/m for prismatic joints.
-        coulomb: Torque against any motion, in N m; N for prismatic joints. Joints at rest move only above it.
-    """
-
-    viscous: JointDamping[NonNegativePerJoint]
-    coulomb: JointTorque[NonNegativePerJoint]
 
 
 class MountConfig(StrictModel):
@@ -65,12 +62,18 @@ class ToolConfig(StrictModel):
     tip_radius: Metres[PositiveFloat]
 
 
-def expand(key: str, value: float | list[float], joints: Sequence[str]) -> list[float]:
-    """Return one value for each joint.
+def expand(key: str, value: float | list[float] | Mapping[str, float], joints: Sequence[str]) -> list[float]:
+    """Return one value for each joint; 0 for a joint that a mapping does not name.
 
     Raises:
-        ConfigError: if the length of a list differs from the number of joints; names the joints.
+        ConfigError: if the length of a list differs from the number of joints, or a mapping names an unknown joint;
+            names the joints.
     """
+    if isinstance(value, Mapping):
+        problems = [unknown("joint", name, joints, key) for name in value if name not in joints]
+        if problems:
+            raise ConfigError(problems)
+        return [value.get(name, 0.0) for name in joints]
     if not isinstance(value, list):
         return [value] * len(joints)
     if len(value) != len(joints):
@@ -95,16 +98,17 @@ def _number(value: Any, zero_allowed: bool) -> float:
     return number
 
 
-def _per_stage(check: Any) -> BeforeValidator:
-    def of_stage(stage: object, value: Any) -> Any:
-        try:
-            return check(value)
-        except ValueError as error:
-            raise ValueError(f"{stage} {error}") from None
+def _of_part(part: object, check: Callable[[Any], Any], value: Any) -> Any:
+    try:
+        return check(value)
+    except ValueError as error:
+        raise ValueError(f"{part} {error}") from None
 
+
+def _per_stage(check: Any) -> BeforeValidator:
     def parse(value: Any) -> Any:
         if isinstance(value, Mapping):
-            return {str(stage): of_stage(stage, item) for stage, item in value.items()}
+            return {str(stage): _of_part(stage, check, item) for stage, item in value.items()}
         return check(value)
 
     return BeforeValidator(parse)
@@ -141,6 +145,67 @@ OptionalPerStage = float | list[float | None] | dict[str, float | list[float | N
 SpringPerStage = Annotated[OptionalPerStage, _optional("rigid joints")]
 MotorPerStage = Annotated[OptionalPerStage, _optional("a joint whose motor has none")]
 NotchPerStage = Annotated[OptionalPerStage, _optional("joints without a notch")]
+
+
+def _by_joint(check: Callable[[Any], Any]) -> BeforeValidator:
+    def parse(value: Any) -> Any:
+        if isinstance(value, list):
+            return [_of_part(f"value {number}", check, item) for number, item in enumerate(value, start=1)]
+        return check(value)
+
+    return _per_stage(parse)
+
+
+FiniteByJoint = Annotated[float | list[float] | dict[str, float], _by_joint(_finite)]
+NonNegativeByJoint = Annotated[
+    float | list[float] | dict[str, float], _by_joint(lambda value: _number(value, zero_allowed=True))
+]
+OptionalNonNegativeByJoint = Annotated[
+    float | list[float] | dict[str, float] | None,
+    _by_joint(lambda value: None if value is None else _number(value, zero_allowed=True)),
+]
+OptionalPositiveByJoint = Annotated[
+    float | list[float] | dict[str, float] | None,
+    _by_joint(lambda value: None if value is None else _number(value, zero_allowed=False)),
+]
+
+
+class SigmoidConfig(StrictModel):
+    """Config of smooth friction, which is zero at rest; values as in FrictionConfig.
+
+    Attributes:
+        level: Torque from one end of the curve to the other, in N m; N for prismatic joints.
+        steepness: Steepness of the curve, in s/rad; s/m for prismatic joints.
+        shift: Speed by which the curve is shifted, in rad/s; m/s for prismatic joints.
+    """
+
+    level: JointTorque[NonNegativeByJoint]
+    steepness: JointSteepness[NonNegativeByJoint]
+    shift: JointSpeed[FiniteByJoint]
+
+
+class FrictionConfig(StrictModel):
+    """Config of joint friction: one value for all joints, a list with one for each, or values by the joint's name.
+
+    Attributes:
+        viscous: Torque per speed, in N m s/rad; N s/m for prismatic joints.
+        coulomb: Torque against any motion, in N m; N for prismatic joints. Joints at rest move only above it.
+        asymmetry: Torque that is added to coulomb and static upwards and subtracted downwards, in N m; N for prismatic
+            joints.
+        static: Torque above which joints at rest move, in N m; N for prismatic joints. None for coulomb.
+        stribeck_speed: Speed over which friction falls from static to coulomb, in rad/s; m/s for prismatic joints. None
+            if it falls as soon as a joint moves.
+        stribeck_exponent: Exponent of the speed in this fall: 1 is exponential, 2 a Gauss curve.
+        sigmoid: Smooth friction.
+    """
+
+    viscous: JointDamping[NonNegativeByJoint]
+    coulomb: JointTorque[NonNegativeByJoint]
+    asymmetry: JointTorque[FiniteByJoint]
+    static: JointTorque[OptionalNonNegativeByJoint]
+    stribeck_speed: JointSpeed[OptionalPositiveByJoint]
+    stribeck_exponent: Literal[1, 2]
+    sigmoid: SigmoidConfig
 
 
 def by_stage(key: str, value: T | Mapping[str, T], stages: Sequence[str]) -> list[T]:

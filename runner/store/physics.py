@@ -42,9 +42,10 @@ _TABLE = """
         hand push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary
         tracking
-    plants: __init__=plants.__init__ bullet bullet_servers compiled_motion=compiled.motion
+    plants: __init__=plants.__init__ bullet bullet_servers compiled_friction
+        compiled_motion=compiled.motion
         computation=plants.computation decoupled flexible_config
-        flexible_joints=plants.flexible_joints friction kinds=plants.kinds kinematic mujoco
+        flexible_joints=plants.flexible_joints friction friction_law kinds=plants.kinds kinematic mujoco
         plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched
     plugins: features guard metric_units registry
     robots: __init__=robots.__init__ chain description

@@ -1,8 +1,9 @@
-"""Sine, cosine and arctangent from sums and products, bit-identical on every processor.
+"""Sine, cosine, arctangent and exponential from sums and products, bit-identical on every processor.
 
-The polynomials are from fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, s_atan.c). The total error is below two units
-in the last place. Reduction to |r| <= pi/4 uses pi/2 in three parts (Cody and Waite, Software Manual for the Elementary
-Functions, 1980). It is valid for |x| up to about 10^6 rad. A run with a joint beyond this value has diverged.
+The polynomials are from fdlibm (Sun Microsystems, 1993: k_sin.c, k_cos.c, s_atan.c, e_exp.c). The total error is below
+two units in the last place. Reduction to |r| <= pi/4 uses pi/2 in three parts (Cody and Waite, Software Manual for the
+Elementary Functions, 1980). It is valid for |x| up to about 10^6 rad. A run with a joint beyond this value has
+diverged.
 """
 
 import math
@@ -39,6 +40,15 @@ _ARCTANGENT = (
     -3.65315727442169155270e-02,
     1.62858201153657823623e-02,
 )
+_LN_2 = (6.93147180369123816490e-01, 1.90821492927058770002e-10)
+_EXPONENTIAL = (
+    1.66666666666666019037e-01,
+    -2.77777777770155933842e-03,
+    6.61375632143793436117e-05,
+    -1.65339022054652515390e-06,
+    4.13813679705723846039e-08,
+)
+_LARGEST, _BITS = 700.0, 10  # of a decay and of its number of halvings
 
 
 def sine_cosine(x: Value) -> tuple[Value, Value]:
@@ -76,6 +86,22 @@ def angle_of(y: Value, x: Value) -> Value:
     flat = known + (r - r * z * _polynomial(z, _ARCTANGENT))
     upper = select(steep, math.pi / 2.0 - flat, flat)
     return select(less(x, 0.0), math.pi - upper, upper)
+
+
+def decay(x: Value) -> tuple[Value, Value]:
+    """Return exp(-x) and 1 - exp(-x) for x >= 0; above 700 those of 700."""
+    x = select(less(_LARGEST, x), _LARGEST, x)
+    halvings = round_to_even(x / math.log(2.0))
+    r = (halvings * _LN_2[0] - x) + halvings * _LN_2[1]
+    z = r * r
+    c = r - z * _polynomial(z, _EXPONENTIAL)
+    grown = r - (r * c) / (c - 2.0)  # exp(r) - 1
+    scale: Value = 1.0
+    for bit in range(_BITS):
+        half = floor(0.5 * halvings)
+        scale = scale * select(equal(halvings - 2.0 * half, 1.0), 0.5**2**bit, 1.0)
+        halvings = half
+    return scale + scale * grown, (1.0 - scale) - scale * grown
 
 
 def _polynomial(z: Value, coefficients: tuple[float, ...]) -> Value:

@@ -5,7 +5,16 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from runner.config.robot import Armature
 from runner.schema.model import StrictModel
-from runner.schema.values import FinitePerStage, NonNegativePerStage, PositivePerStage, TorquePerStage
+from runner.schema.values import (
+    FiniteByJoint,
+    FinitePerStage,
+    NonNegativeByJoint,
+    NonNegativePerStage,
+    OptionalNonNegativeByJoint,
+    OptionalPositiveByJoint,
+    PositivePerStage,
+    TorquePerStage,
+)
 from runner.trajectories.joint_motion import Configuration
 
 _IN_WORDS = {
@@ -13,6 +22,10 @@ _IN_WORDS = {
     PositivePerStage: "number above 0, by stage",
     NonNegativePerStage: "number of 0 or more, by stage",
     TorquePerStage: "number above 0, or a list with one for each joint, by stage",
+    FiniteByJoint: "number, a list with one for each joint, or numbers by joint",
+    NonNegativeByJoint: "number of 0 or more, a list with one for each joint, or numbers by joint",
+    OptionalNonNegativeByJoint: "number of 0 or more, a list with one for each joint, numbers by joint, or `null`",
+    OptionalPositiveByJoint: "number above 0, a list with one for each joint, numbers by joint, or `null`",
     Configuration: "number, or a list with one for each joint",
     Armature: "number of 0 or more, or a list with one for each joint, or the name of a set",
 }

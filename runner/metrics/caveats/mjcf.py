@@ -21,7 +21,8 @@ def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
     mapping is empty for the kinematic plant.
     """
     from runner.config.flexibility import find_flexibility
-    from runner.plants.decoupled import TorquePlantConfig, friction_by_joint
+    from runner.plants.decoupled import TorquePlantConfig
+    from runner.plants.friction_law import joint_friction
     from runner.robots.joint_dynamics import by_value
 
     arm, plant = config.arm, config.plant
@@ -29,7 +30,8 @@ def left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
         return {}
     viscous, coulomb = np.zeros((2, arm.model.nq))
     if isinstance(plant, TorquePlantConfig):
-        viscous, coulomb = friction_by_joint(arm, plant.friction)
+        friction = joint_friction("plant.friction", plant.friction, arm.model.joint_names)
+        viscous, coulomb = friction.viscous, friction.coulomb
     flexibility = find_flexibility(config)
     armature = arm.model.armature
     if flexibility is not None:

@@ -98,4 +98,5 @@ def test_a_value_of_one_arm_is_refused_for_a_robot_of_several():
 @pytest.mark.parametrize("robot", ["macro", "combined", "xarm7", "meca500"])
 def test_our_own_robots_are_as_their_files_say(robot):
     said = yaml.safe_load((conf_dir() / f"robot/{robot}.yaml").read_text())["robot"]
-    assert compose([f"robot={robot}"]).resolved["robot"] == said
+    friction = DEFAULTS["friction"] | said["friction"]
+    assert compose([f"robot={robot}"]).resolved["robot"] == said | {"friction": friction}

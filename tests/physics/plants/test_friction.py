@@ -5,32 +5,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from support.engines import ENGINES
+from support.friction import MASS as M
+from support.friction import WHEEL, friction_law
 from support.physics import assert_order, assert_passive
 
 from runner.plants.friction import Frictional, stopping_torques, with_friction
 from runner.plants.rk4 import Rk4
 from runner.robots import RobotModel
 
-M = 0.5 + 2.0 * 0.3**2  # kg m^2, of the wheel about its joint
-WHEEL = """
-<robot name="wheel"><link name="base"><inertial><mass value="0"/>
-  <inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial></link><link name="wheel"><inertial>
-  <origin xyz="0.3 0 0"/><mass value="2"/><inertia ixx="0.3" iyy="0.3" izz="0.5" ixy="0" ixz="0" iyz="0"/>
-</inertial></link>
-<joint name="q1" type="revolute"><parent link="base"/><child link="wheel"/><axis xyz="0 0 1"/>
-  <limit lower="-1e9" upper="1e9" effort="1e9" velocity="1e9"/></joint></robot>
-"""
-
 
 @pytest.fixture(params=ENGINES)
 def turn(request, engine):
     """Turn the wheel about the vertical, in every engine."""
 
-    def turn(viscous=0.0, coulomb=0.0, speed=0.0, torque=0.0, tick=1e-3, ticks=1000):
+    def turn(speed=0.0, torque=0.0, tick=1e-3, ticks=1000, **friction):
         """Return its speeds, the first included, and where it ends."""
         model = RobotModel(WHEEL, "wheel")
         inner = engine(request.param, WHEEL, model, tick)
-        plant = Frictional(inner, model, np.array([viscous]), np.array([coulomb]), tick)
+        plant = Frictional(inner, model, friction_law(**friction), tick)
         plant.reset(np.zeros(1), np.array([speed]))
         speeds = [speed]
         for _ in range(ticks):
@@ -83,7 +75,7 @@ def sliding(macro):
     """Make the Macro with friction in its joints, in motion."""
 
     def make(viscous, coulomb, tick=1e-3, speed=(2.0, -1.0, 1.5)):
-        plant = with_friction(Rk4(macro, tick, 1), macro, np.full(3, viscous), np.full(3, coulomb), tick)
+        plant = with_friction(Rk4(macro, tick, 1), macro, friction_law(3, viscous=viscous, coulomb=coulomb), tick)
         plant.reset(np.array([0.3, 0.4, -0.9]), np.array(speed))
         return plant
 
@@ -92,7 +84,7 @@ def sliding(macro):
 
 def test_without_friction_the_plant_is_left_as_it_is(macro):
     plant = Rk4(macro, 1e-3, 1)
-    assert with_friction(plant, macro, np.zeros(3), np.zeros(3), 1e-3) is plant
+    assert with_friction(plant, macro, friction_law(3), 1e-3) is plant
 
 
 @pytest.mark.parametrize(("viscous", "coulomb"), [(3.0, 0.0), (0.0, 4.0), (2.0, 2.0)])
@@ -209,6 +201,28 @@ def test_each_joint_of_a_staged_robot_has_its_own_friction(simulated, dynamics):
             "plant.friction.viscous: 2 values for 3 joints (q1, q2, q3); found [1.0, 2.0]",
         ),
         ("plant.friction.coulomb=-1", "plant.friction.coulomb: must be 0 or more; found -1"),
+        (
+            "plant.friction={coulomb: 2, static: [2,1,2]}",
+            "plant.friction.static: 1 of q2 is below plant.friction.coulomb, 2; a joint at rest is held by as much",
+        ),
+        (
+            "plant.friction={coulomb: 2, asymmetry: [1,2,-3]}",
+            "plant.friction.asymmetry: -3 of q3 is more than plant.friction.coulomb, 2; such friction would drive",
+        ),
+        ("plant.friction.coulomb=[1,-1,1]", "plant.friction.coulomb: value 2 must be 0 or more; found [1, -1, 1]"),
+        ("plant.friction.static={q2: -1}", "plant.friction.static: q2 must be 0 or more; found "),
+        ("plant.friction.sigmoid.level=-1", "plant.friction.sigmoid.level: must be 0 or more; found -1"),
+        ("plant.friction.sigmoid.steepness=-1", "plant.friction.sigmoid.steepness: must be 0 or more; found -1"),
+        (
+            "plant.friction.sigmoid={level: 1, steepness: 1e3, shift: -1}",
+            "plant.friction.sigmoid.shift: -1 of q1 times plant.friction.sigmoid.steepness, 1000, must be within 700",
+        ),
+        ("plant.friction.stribeck_speed=0", "plant.friction.stribeck_speed: must be above 0"),
+        ("plant.friction.stribeck_exponent=3", "plant.friction.stribeck_exponent: "),
+        (
+            "plant.friction.coulomb={q2: 1, q4: 1}",
+            "plant.friction.coulomb: unknown joint 'q4'. Allowed: q1, q2, q3.",
+        ),
         ("plant.friction.dry=1", "plant.friction.dry: unknown key"),
     ],
 )

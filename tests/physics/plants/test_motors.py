@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from support.friction import friction_law
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
 from runner.plants.friction import MotorFriction, stopping_torques
@@ -15,10 +16,10 @@ B, K = 0.5, 200.0  # kg m^2, N m/rad
 TICK = 1e-3  # s
 
 
-def rubbed(viscous=0.0, coulomb=0.0, braked=np.inf, motor=B):
+def rubbed(viscous=0.0, coulomb=0.0, braked=np.inf, motor=B, **more):
     springs = Flexibility(*(np.array([value]) for value in (K, motor, 0.0, braked, 0.0)))
     plant = FlexibleJoints(RobotModel(ONE_JOINT, "arm"), springs, TICK, 1)
-    return plant, MotorFriction(plant, np.array([viscous]), np.array([coulomb]), TICK)
+    return plant, MotorFriction(plant, friction_law(viscous=viscous, coulomb=coulomb, **more), TICK)
 
 
 def test_a_motor_within_its_dry_friction_stands_still_and_takes_what_drives_it():

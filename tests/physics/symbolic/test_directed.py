@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from support.friction import friction_law
 
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants.decoupled import ArmMotion, Motion
@@ -41,7 +42,7 @@ def wheel(one_stage):
         loop = LoopCode(Held([model], False, HeldNumbers(torque)), slice(0, 1), 1, TICK)
         noise = EncoderNoise(none, none, none, "none", "exact")
         commands = Commands(robot, False, (loop,), noise, np.array([limit]))
-        motion = Motion(robot, (ArmMotion(URDF, model, slice(0, 1), none, none),), False)
+        motion = Motion(robot, (ArmMotion(URDF, model, slice(0, 1), friction_law()),), False)
         return LoopProgram(commands, motion, TICK, TICK, 1, 0)
 
     return make

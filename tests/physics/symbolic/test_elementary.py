@@ -1,4 +1,4 @@
-"""Sine, cosine and arctangent against those of the platform, in units of the last place."""
+"""Sine, cosine, arctangent and exponential against those of the platform, in units of the last place."""
 
 import math
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.symbolic.code import GIVEN, ROWS, Block, Slots
-from runner.symbolic.elementary import angle_of, sine_cosine
+from runner.symbolic.elementary import angle_of, decay, sine_cosine
 from runner.symbolic.program import Expressed, program
 
 
@@ -45,6 +45,14 @@ def test_the_angle_of_a_point_is_good_to_the_last_places():
     theirs = np.arctan2(*points.T)
     assert np.abs((found - theirs) / np.spacing(theirs.clip(1e-300))).max() <= 2.0
     np.testing.assert_array_equal(found[:3], [0.0, np.pi, np.pi / 2.0])
+
+
+def test_an_exponential_decay_and_what_it_leaves_are_good_to_the_last_places():
+    x = np.concatenate([[0.0, 0.5], 10.0 ** np.random.default_rng(0).uniform(-300, np.log10(700.0), 20000)])
+    found = computed("decay", lambda given: list(decay(given[0])), x[:, None])
+    for ours, theirs in zip(found.T, (np.exp(-x), -np.expm1(-x)), strict=True):
+        assert np.abs((ours - theirs) / np.spacing(theirs)).max() <= 2.0
+    np.testing.assert_array_equal(computed("decay", lambda given: list(decay(given[0])), np.array([[1e9]]))[0, 1], 1.0)
 
 
 def test_what_is_not_finite_gives_nothing():

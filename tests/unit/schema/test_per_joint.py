@@ -16,6 +16,15 @@ def test_a_list_is_taken_as_it_is():
     assert expand("plant.friction.viscous", [0.5, 0.7], JOINTS) == [0.5, 0.7]
 
 
+def test_joints_without_a_name_in_a_mapping_have_zero():
+    assert expand("plant.friction.viscous", {"elbow": 0.5}, JOINTS) == [0.0, 0.5]
+
+
+def test_an_unknown_joint_is_rejected_with_the_nearest():
+    with pytest.raises(ConfigError, match=r"a\.key: unknown joint 'elbo'\. Allowed: .* Did you mean 'elbow'\?"):
+        expand("a.key", {"elbo": 0.5}, JOINTS)
+
+
 def test_a_list_of_another_length_names_key_and_joints():
     with pytest.raises(ConfigError, match=r"a\.key: 3 values for 2 joints \(shoulder, elbow\); found"):
         expand("a.key", [1.0, 2.0, 3.0], JOINTS)

@@ -64,6 +64,7 @@ SHARED = {
     "metrics/caveats/setting": "physics/metrics/test_monitor.py",
     "metrics/caveats/versions": "physics/metrics/test_monitor.py",
     "metrics/family": "contract/plugins/test_metrics.py",
+    "plants/compiled_friction": "physics/symbolic/test_tick.py",
     "plants/flexible_config": "physics/plants/test_flexible_joints.py",
     "plants/kinds": "physics/plants/test_plant_kinds.py",
     "plants/rk4_flexible_links": "physics/plants/test_flexible_links.py",

@@ -1,0 +1,145 @@
+"""Friction laws of joints: viscous, dry with a static level, Stribeck's curve, and a sigmoid."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runner.base.arrays import FloatArray
+from runner.base.errors import ConfigError
+from runner.schema.values import FrictionConfig, expand
+
+_STEEPEST = 700.0  # exp of it is a double
+_ARRAYS = "viscous", "coulomb", "asymmetry", "stiction", "stribeck_speed", "sigmoid"
+
+
+@dataclass(frozen=True)
+class JointFriction:
+    r"""Friction torques of n joints against their speeds v.
+
+    .. math:: \tau_f = -b v - \sigma(v) - \mu, \quad \mu \in o + [c + (s - c) w(v)] \, \mathrm{sgn}(v), \qquad
+        w(v) = e^{-(|v| / v_s)^e}, \quad
+        \sigma(v) = \frac{\phi_1}{1 + e^{-\phi_2 (v + \phi_3)}} - \frac{\phi_1}{1 + e^{-\phi_2 \phi_3}}
+
+    At rest sgn is any number of [-1, 1] and w is 1. w is the curve of Armstrong-Helouvry, Dupont and Canudas de Wit
+    (Automatica 30(7), 1994), sigma that of Gaz et al. (IEEE Robotics and Automation Letters 4(4), 2019).
+
+    Attributes:
+        viscous: b, shape (n,), in N m s/rad.
+        coulomb: c, shape (n,), in N m.
+        asymmetry: o, shape (n,), in N m, at most c in magnitude.
+        stiction: s - c, shape (n,), in N m; s is the static level.
+        stribeck_speed: v_s, shape (n,), in rad/s; 0 if w is 0 in motion.
+        sigmoid: phi_1, phi_2 and phi_3, shape (3, n), in N m, s/rad and rad/s.
+        exponent: e.
+    """
+
+    viscous: FloatArray
+    coulomb: FloatArray
+    asymmetry: FloatArray
+    stiction: FloatArray
+    stribeck_speed: FloatArray
+    sigmoid: FloatArray
+    exponent: int
+
+    def of(self, joints: slice | NDArray[np.bool_]) -> "JointFriction":
+        """Return the friction of some of the joints."""
+        return replace(self, **{name: getattr(self, name)[..., joints] for name in _ARRAYS})
+
+    @cached_property
+    def acts(self) -> NDArray[np.bool_]:
+        """True for each joint with friction, shape (n,)."""
+        parts = self.viscous, self.coulomb, self.stiction, self.sigmoid[0] * self.sigmoid[1]
+        found: NDArray[np.bool_] = np.any(np.array(parts) > 0.0, axis=0)
+        return found
+
+    @cached_property
+    def odds(self) -> FloatArray:
+        """exp(-phi_2 phi_3) for joints that move up, and its inverse for those that move down, shape (2, n)."""
+        found: FloatArray = np.exp(np.array([[-1.0], [1.0]]) * self.sigmoid[1] * self.sigmoid[2])
+        return found
+
+    @cached_property
+    def slopes(self) -> FloatArray:
+        """phi_1 phi_2 odds / (1 + odds) of the sigmoid, shape (2, n), in N m s/rad."""
+        found: FloatArray = self.sigmoid[0] * self.sigmoid[1] * self.odds / (1.0 + self.odds)
+        return found
+
+    def at(self, v: FloatArray, held: NDArray[np.bool_]) -> tuple[FloatArray, FloatArray]:
+        """Return the law that holds for a tick from its first speeds on.
+
+        The sigmoid becomes its secant through the origin, sigma(v) / v. So no part of friction can drive a joint.
+
+        Args:
+            v: Speeds at the start of the tick, shape (n,), in rad/s.
+            held: True for joints at rest, shape (n,).
+
+        Returns:
+            Torque per speed, in N m s/rad, and level of dry friction, in N m, of each joint, shapes (n,).
+        """
+        damping, level = self.viscous, self.coulomb
+        if self.slopes.any():
+            damping = damping + self._secant(v)
+        if self.stiction.any():
+            level = level + self.stiction * np.where(held, 1.0, self._weight(np.abs(v)))
+        return damping, level
+
+    def _weight(self, speed: FloatArray) -> FloatArray:
+        """Return w in motion, shape (n,)."""
+        falls = self.stribeck_speed > 0.0
+        share = speed / np.where(falls, self.stribeck_speed, 1.0)
+        return np.where(falls, np.exp(-(share**self.exponent)), 0.0)
+
+    def _secant(self, v: FloatArray) -> FloatArray:
+        """Return sigma(v) / v, shape (n,), in N m s/rad."""
+        up, y = v >= 0.0, self.sigmoid[1] * np.abs(v)
+        slope, odds = np.where(up, *self.slopes), np.where(up, *self.odds)
+        share = np.where(y > 0.0, -np.expm1(-y) / np.where(y > 0.0, y, 1.0), 1.0)
+        found: FloatArray = slope * share / (1.0 + odds * np.exp(-y))
+        return found
+
+
+def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> JointFriction:
+    """Return the friction of each joint.
+
+    Args:
+        key: Key of the config, such as plant.friction.
+        config: The config.
+        joints: Names of the joints, shape (n,).
+
+    Raises:
+        ConfigError: for a list of the wrong length, an unknown joint, a static level below the Coulomb level, an
+            asymmetry above it, or a sigmoid that is too steep for its shift.
+    """
+
+    def array(name: str, value: Any) -> FloatArray:
+        return np.array(expand(f"{key}.{name}", value, joints))
+
+    coulomb, asymmetry = array("coulomb", config.coulomb), array("asymmetry", config.asymmetry)
+    static = coulomb if config.static is None else array("static", config.static)
+    if isinstance(config.static, dict):
+        static = np.where([joint in config.static for joint in joints], static, coulomb)
+    speed = 0.0 if config.stribeck_speed is None else config.stribeck_speed
+    sigmoid = np.array([array(f"sigmoid.{name}", value) for name, value in config.sigmoid])
+    problems = [
+        f"{key}.static: {static[i]:g} of {joints[i]} is below {key}.coulomb, {coulomb[i]:g}; a joint at rest is held "
+        "by as much as a moving one or more"
+        for i in np.flatnonzero(static < coulomb).tolist()
+    ]
+    problems += [
+        f"{key}.asymmetry: {asymmetry[i]:g} of {joints[i]} is more than {key}.coulomb, {coulomb[i]:g}; such friction "
+        "would drive the joint"
+        for i in np.flatnonzero(np.abs(asymmetry) > coulomb).tolist()
+    ]
+    problems += [
+        f"{key}.sigmoid.shift: {sigmoid[2, i]:g} of {joints[i]} times {key}.sigmoid.steepness, {sigmoid[1, i]:g}, must "
+        f"be within {_STEEPEST:g} in magnitude"
+        for i in np.flatnonzero(np.abs(sigmoid[1] * sigmoid[2]) > _STEEPEST).tolist()
+    ]
+    if problems:
+        raise ConfigError(problems)
+    viscous, speeds = array("viscous", config.viscous), array("stribeck_speed", speed)
+    return JointFriction(viscous, coulomb, asymmetry, static - coulomb, speeds, sigmoid, config.stribeck_exponent)
