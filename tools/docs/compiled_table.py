@@ -38,7 +38,15 @@ _CASES = {
     "torque limits": ("torque_limits=thesis",),
     "a command delay": ("plant.computation.delay=2",),
     "several steps a tick": ("plant.step=0.005",),
-    "viscous and dry friction": ("plant.friction.viscous=1", "plant.friction.coulomb=1"),
+    "friction of every kind": (
+        "plant.friction.viscous=1",
+        "plant.friction.coulomb=1",
+        "plant.friction.asymmetry=0.5",
+        "plant.friction.static=2",
+        "plant.friction.stribeck_speed=0.1",
+        "plant.friction.sigmoid.level=1",
+        "plant.friction.sigmoid.steepness=10",
+    ),
     "a payload": ("robot.payload.mass=0.5",),
     "a model error drawn for each repetition": ("mismatch.mass=1.1", "mismatch.spread=0.1"),
     "loops of several periods": (

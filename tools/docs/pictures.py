@@ -18,6 +18,7 @@ from runner.reporting.charts.canvas import GREY, INK, drawing
 from runner.studies.thesis.diagrams.block_diagram import block_diagram
 from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node
 from runner.studies.thesis.diagrams.operational_space import operational_space_graph
+from tools.docs.friction_picture import friction
 from tools.docs.robot_pictures import robots
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "pictures"
@@ -122,6 +123,7 @@ PICTURES: dict[str, Callable[[], str]] = {
     "pairs": pairs,
     "operational_space": operational_space,
     "robots": robots,
+    "friction": friction,
 }
 
 

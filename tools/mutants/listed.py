@@ -171,6 +171,12 @@ MUTANTS = [
         ("a contact that friction does not know", "self._contact_torque() - bias", "-bias"),
     ),
     *_of(
+        "plants/friction_law.py",
+        "physics/plants/test_friction_law.py",
+        ("a static level that moving joints have", "np.where(held, 1.0, self._weight(np.abs(v)))", "1.0"),
+        ("a sigmoid that drives a joint", "share / (1.0 + odds * np.exp(-y))", "share / (1.0 - odds * np.exp(-y))"),
+    ),
+    *_of(
         "plants/servo.py",
         "physics/plants/test_servo.py",
         ("a world that does not reach the joints", "self.tau + self.load", "self.tau"),
