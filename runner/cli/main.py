@@ -29,7 +29,7 @@ GROUPS = {
     "Look at results": ("results", "report", "table", "figures", "sensitivity"),
     "Compare and check": ("compare", "check", "verify"),
     "Reproduce papers": ("reproduce", "study", "audit", "benchmark"),
-    "Robots and controllers": ("list", "doctor", "example"),
+    "Robots and controllers": ("list", "schema", "doctor", "example"),
 }
 """Names of the commands, by what a person wants to do."""
 COMMANDS = tuple(name for names in GROUPS.values() for name in names)

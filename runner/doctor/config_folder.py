@@ -1,17 +1,20 @@
 """Config folder to start from: a robot's YAML file and its repaired URDF, or its MJCF."""
 
+import json
 from pathlib import Path
 
 import yaml
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, StoreError
+from runner.config.json_schema import json_schema
 from runner.doctor.examination import Examination
 from runner.robots.joint_dynamics import FileDynamics
 from runner.store.atomic import write_atomically
 
 _ROBOT = """\
 # @package _global_
+# yaml-language-server: $schema=../schema.json
 # {name}, {joints} joints, from {source} by runner doctor
 defaults:
   - override /controller: {controller}
@@ -31,6 +34,8 @@ robot:
 
 def write_folder(examination: Examination, folder: Path) -> list[Path]:
     """Write `robot/NAME.yaml` and `robots/NAME.urdf`, or an MJCF as it is, with its files, if nothing is fixed.
+
+    Beside them stands `schema.json`, by which an editor completes the keys of the YAML file.
 
     Raises:
         RunnerError: if something bars the arm, one of the files is there already, or they cannot be written.
@@ -65,6 +70,7 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
     try:
         for path, content in files.items():
             write_atomically(path, content)
+        write_atomically(folder / "schema.json", f"{json.dumps(json_schema(), indent=1)}\n".encode())
     except StoreError as error:
         for path in filter(Path.is_file, files):
             path.unlink()

@@ -19,6 +19,7 @@ from runner.cli.main import COMMANDS, COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
 from runner.config.compose.files import group_options
 from runner.config.groups import GROUPS
+from runner.config.json_schema import meanings
 from runner.config.judgement import Bound, CaveatsConfig
 from runner.config.limits import SweepConfig
 from runner.config.robot import OneArmConfig, StageConfig
@@ -176,16 +177,6 @@ def _rows(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> 
 
 def _inline(value: Any) -> str:
     return yaml.safe_dump(value, default_flow_style=True, width=1000).removesuffix("\n").removesuffix("\n...")
-
-
-def meanings(model: type[StrictModel]) -> dict[str, str]:
-    """Return what the docstrings of a model and its bases say of its keys."""
-    found: dict[str, str] = {}
-    for base in reversed(model.__mro__):
-        text = inspect.cleandoc(base.__doc__ or "").partition("Attributes:\n")[2]
-        entries = re.findall(r"^    (\w+): (.+?)(?=^    \w|\Z)", text, re.M | re.S)
-        found |= {name: " ".join(meaning.split()) for name, meaning in entries if name in model.model_fields}
-    return found
 
 
 def _null(text: str) -> str:

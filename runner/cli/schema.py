@@ -1,0 +1,28 @@
+"""`runner schema [GROUP]`: print the JSON Schema of config files, for editors that complete keys."""
+
+import json
+from argparse import Namespace
+
+from runner.cli.arguments import Parser
+
+
+def add_arguments(parser: Parser) -> None:
+    """Add the arguments."""
+    parser.add_argument(
+        "group", nargs="?", default="", metavar="GROUP", help="a group, such as controller; default: the whole config"
+    )
+    parser.add_shared(output="write it to a file, such as schema.json")
+
+
+def run(options: Namespace) -> int:
+    """Print the schema, or write it and print its path."""
+    from runner.config.json_schema import json_schema
+    from runner.store.atomic import write_atomically
+
+    text = json.dumps(json_schema(options.group), indent=1) + "\n"
+    if options.output is None:
+        print(text, end="")
+    else:
+        write_atomically(options.output, text.encode())
+        print(options.output)
+    return 0
