@@ -13,7 +13,7 @@ def test_from_a_stranger_s_urdf_to_a_report_in_three_commands(cli, tmp_path):
     examined = cli("doctor", KUKA, "--output", "mine")
     assert examined.code == 0
     assert examined.out.splitlines()[-2:] == ["runner --config-dir mine robot=lbr_iiwa", "mine"]
-    assert len((tmp_path / "mine/robot/lbr_iiwa.yaml").read_text().splitlines()) <= 18
+    assert len((tmp_path / "mine/robot/lbr_iiwa.yaml").read_text().splitlines()) <= 19
     ran = cli("--config-dir", "mine", "robot=lbr_iiwa", "duration=0.2")
     assert ran.code == 0
     assert runner.open_run(ran.folder).metrics["max_tracking_error"].median < 1e-4
@@ -95,7 +95,7 @@ def test_config_and_page_in_one_folder(cli):
     with strangers.short_examination():
         ending = cli("doctor", KUKA, "-o", "mine", "--format", "config,html")
     assert ending.code == 0
-    assert sorted(entry.name for entry in ending.folder.iterdir()) == ["report.html", "robot", "robots"]
+    assert sorted(entry.name for entry in ending.folder.iterdir()) == ["report.html", "robot", "robots", "schema.json"]
 
 
 @pytest.mark.parametrize(
