@@ -125,7 +125,7 @@ class RunConfig:
     @property
     def varies_model(self) -> bool:
         """True if each repetition has another nominal model."""
-        return "mismatch" in self.plugged or self.model_error.spread > 0.0
+        return "mismatch" in self.plugged or self.model_error.varies
 
     @property
     def compilable(self) -> bool:

@@ -33,7 +33,7 @@ from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import options_of
 from runner.plugins.registry import KindConfig
-from runner.robots.mismatch import MismatchConfig
+from runner.robots.mismatch import MismatchConfig, check_links
 from runner.robots.robot import Robot, end_points
 from runner.sensing import ForceTorqueConfig, JointTorqueConfig, NoiseConfig
 from runner.trajectories import TRAJECTORIES, Trajectory
@@ -98,6 +98,7 @@ def _build(groups: Parts, arm: Robot, steps: Steps, problems: Problems) -> Parts
     ignore_base_rotation = problems.recall(_ignores_base_rotation, arm, plant)
     path = build_path(_build_path, arm, trajectory, ignore_base_rotation)
     loops = build_loops(CONTROLLERS.build_for, controller, arm, isinstance(path, TipOfJoints))
+    problems.recall(check_links, arm, groups["mismatch"])
     path = problems.attempt(_shape, groups, arm, path, loops)
     build_path(check_path, arm, path)
     ticks = problems.attempt(count_ticks, groups["settings"], steps, path)

@@ -11,7 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.torque_filter import TorqueFilter, with_filter
-from runner.controllers.torque_law import Arm, PinocchioArm, clip
+from runner.controllers.torque_law import Arm, clip
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import RadiansPerSecond
@@ -110,9 +110,7 @@ class MomentumObserver(TorqueFilter):
 
     def start(self, q: FloatArray) -> FloatArray:
         """Return the state before the first tick: the arm at rest at q, without a disturbance."""
-        b = PinocchioArm(self.models[0]).momentum(q, np.zeros(len(q)), self.parameters.gravity)[1][
-            self._first : self._end
-        ]
+        b = 0.0 - self.models[0].copy().gravity_torque(q)[self._first : self._end]
         return np.concatenate([np.zeros(len(b)), 0.5 * self.parameters.period * b, *[-b] * (1 + self._late)])
 
     def measured(self, state: FloatArray, reading: FloatArray) -> FloatArray:

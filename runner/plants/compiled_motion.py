@@ -17,7 +17,7 @@ from runner.symbolic.code import ROWS, SCRATCH, STATE, TABLE, Block, Part, Repea
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, places
 from runner.symbolic.program import Expressed, Frame, program
-from runner.symbolic.structure import Values, any_number, arm_pattern
+from runner.symbolic.structure import any_number, arm_pattern, values_of
 from runner.symbolic.vectors import Vector, add, product, scale, subtract, times, transpose
 
 if TYPE_CHECKING:  # these modules use this one
@@ -225,10 +225,8 @@ class ArmCode(ABC):
             at = Slots()
             return Expressed([], self._express(at), at.widths, [])
 
-        values = Values()
-        self._scalars(values.number)
         frame = program(*self._names(), express, 1).frame(1, last=-1)
-        frame.pars[:, 0] = values.values
+        frame.pars[:, 0] = values_of(self._scalars)
         return frame
 
     @abstractmethod

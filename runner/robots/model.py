@@ -137,6 +137,13 @@ class RobotModel:
         return float(pin.computeMechanicalEnergy(self.pin_model, self._data, q, dq))
 
     @property
+    def link_names(self) -> tuple[str, ...]:
+        """Name of the link that each joint moves."""
+        frames = list(self.pin_model.frames)
+        of_joint = {frame.parentFrame: frame.name for frame in frames if frame.type == pin.FrameType.BODY}
+        return tuple(of_joint[self.pin_model.getFrameId(name)] for name in self.joint_names)
+
+    @property
     def gravity(self) -> FloatArray:
         """Gravity in the base frame, shape (3,), in m/s^2."""
         gravity: FloatArray = self.pin_model.gravity.linear.copy()

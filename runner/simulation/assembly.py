@@ -138,9 +138,13 @@ def find_start(config: RunConfig) -> FloatArray:
 
 def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
     """Return the nominal robot of the controllers, and their loops."""
-    generator = np.random.default_rng([config.settings.seed, repetition, MISMATCH])
-    nominal = MISMATCHES.build(config.mismatch, config.arm, generator)
-    nominal = with_nominal_links(config, with_nominal_motors(config, nominal))
+    draw = np.random.default_rng([config.settings.seed, repetition, MISMATCH])
+    robot = with_nominal_links(config, with_nominal_motors(config, MISMATCHES.build(config.mismatch, config.arm, draw)))
+    return robot, build_loops(config, robot)
+
+
+def build_loops(config: RunConfig, nominal: Robot) -> tuple[Loop, ...]:
+    """Return the loops of the controllers with a nominal robot."""
     loops = config.loops
     if nominal is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, nominal, isinstance(config.path, TipOfJoints))
@@ -148,14 +152,13 @@ def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loo
     if config.notch is not None:
         loops = add_notch(nominal, loops, config.notch.by_joint(config.arm), config.notch.width)
     observer, timing = config.disturbance_observer, config.timing
-    return nominal, add_observers(observer, nominal, loops, config.torque_limits, timing.tick, timing.late)
+    return add_observers(observer, nominal, loops, config.torque_limits, timing.tick, timing.late)
 
 
 def _find_commands(config: RunConfig, loops: tuple[Loop, ...]) -> Commands | None:
     """Return the control loops for compilation; None if they cannot be compiled."""
-    if config.commands != "torque" or not config.compilable or is_flexible(config):
-        return None
-    return find_commands(config, loops)
+    fits = config.commands == "torque" and config.compilable and not is_flexible(config)
+    return find_commands(config, loops) if fits else None
 
 
 def _make_plant(config: RunConfig, nominal: Robot, period: float, touched: Wall | None = None) -> Plant:

@@ -26,6 +26,7 @@ from runner.sensing.encoders import encoder_errors
 from runner.simulation.assembly import assemble_program, metric_context, reach_of
 from runner.simulation.compiled.commands import Rows
 from runner.simulation.compiled.loop_program import LoopProgram, run_all
+from runner.simulation.drawn_loops import draw_commands, draws_together
 from runner.simulation.recorder import DIVERGED_SPEED, describe, failure_of, find_divergence
 from runner.simulation.results import Collector
 
@@ -79,6 +80,11 @@ class RunSpec:
         )
 
     @property
+    def inputs(self) -> Hashable:
+        """Key of the runs whose parameters and start are determined together."""
+        return id(self.config if draws_together(self.config) else self.loop_program)
+
+    @property
     def scene(self) -> Hashable:
         """Key of the runs that are measured together."""
         config = self.config
@@ -121,7 +127,7 @@ class BatchSimulator:
         if not config.compilable:
             return None
         numbers = range(config.settings.repetitions) if chosen is None else chosen
-        if not config.varies_model:
+        if not config.varies_model or draws_together(config):
             alike = self._loop(config, numbers[0])
             return None if alike is None else [RunSpec(config, number, *alike) for number in numbers]
         found = []
@@ -133,8 +139,12 @@ class BatchSimulator:
         return found
 
     def _loop(self, config: RunConfig, repetition: int) -> tuple[LoopProgram, FloatArray] | None:
-        """Return the closed loop of a repetition and its start; see assemble_program."""
-        drawn = (config.settings.seed, repetition) if config.varies_model else ()  # one model each
+        """Return the closed loop of a repetition and its start; see assemble_program.
+
+        If nominal models are drawn together, the code is that of repetition 0.
+        """
+        repetition = 0 if draws_together(config) else repetition
+        drawn = (config.settings.seed, repetition) if config.varies_model else ()
         return self.memory.known(("loop", *drawn, *config.cache_key), lambda: assemble_program(config, repetition))
 
     def simulate(self, runs: Sequence[RunSpec]) -> Iterator[BatchResult | tuple[int, Trace]]:
@@ -160,12 +170,13 @@ class BatchSimulator:
         paths = [self._desired(run, times) for run in runs]
         alike = all(path is paths[0] for path in paths)
         errors = draw_errors(runs, rows)
+        values, start = _inputs(runs, [wrong[:, 0] for wrong in errors])
         found = run_all(
             loop_program,
-            np.array([run.loop_program.values for run in runs]),
+            values,
             self._shared(runs if not alike else runs[:1], times, paths),
             errors,
-            _start(runs, [wrong[:, 0] for wrong in errors]),
+            start,
         )
         seconds, well = (time.perf_counter() - began) / (len(runs) * rows), _ended_well(found)
         for places in _grouped(range(len(runs)), lambda place: runs[place].scene):
@@ -223,14 +234,25 @@ class BatchSimulator:
         )
 
 
-def _start(runs: Sequence[RunSpec], errors: Sequence[FloatArray]) -> FloatArray:
-    """Return the initial state of each run according to its loops; see Commands.start."""
-    states: dict[int, FloatArray] = {}
-    for own in _grouped(range(len(runs)), lambda place: id(runs[place].loop_program)):
-        q = np.array([runs[place].q_start for place in own])
-        found = runs[own[0]].loop_program.commands.start(q, [wrong[own] for wrong in errors])
-        states |= dict(zip(own, found, strict=True))
-    return np.array([states[place] for place in range(len(runs))])
+def _inputs(runs: Sequence[RunSpec], errors: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+    """Return parameters and initial state of each run; see LoopProgram.values and Commands.start.
+
+    Nominal models that are drawn together are drawn here.
+    """
+    inputs: dict[int, tuple[FloatArray, FloatArray]] = {}
+    for own in _grouped(range(len(runs)), lambda place: runs[place].inputs):
+        loop_program, config = runs[own[0]].loop_program, runs[own[0]].config
+        commands, values = (
+            loop_program.commands,
+            np.broadcast_to(loop_program.values, (len(own), len(loop_program.values))),
+        )
+        if draws_together(config):
+            commands = draw_commands(config, [runs[place].repetition for place in own])
+            values = loop_program.drawn_values(commands)
+        start = commands.start(np.array([runs[place].q_start for place in own]), [wrong[own] for wrong in errors])
+        inputs |= dict(zip(own, zip(values, start, strict=True), strict=True))
+    all_values, starts = zip(*(inputs[place] for place in range(len(runs))), strict=True)
+    return np.array(all_values), np.array(starts)
 
 
 def draw_errors(runs: Sequence[RunSpec], rows: int) -> list[FloatArray]:

@@ -9,7 +9,7 @@ from runner.plants import Plant
 from runner.plants.flexible_joints import MotorSide
 from runner.plugins.features import Commands
 from runner.robots.robot import Robot
-from runner.simulation.compiled.commands import Commands as CompiledCommands
+from runner.simulation.compiled import commands as code
 from runner.trajectories import Trajectory
 
 
@@ -33,6 +33,7 @@ class ClosedLoop:
         motor_side: Encoders and drives at the motors of flexible joints; None for rigid joints.
         nominal: The nominal robot of the controllers.
         compiled: The control loops for compiled code; None if they are interpreted.
+        drawn: Drawn nominal model of `compiled`; None if the nominal model is not drawn with others.
     """
 
     robot: Robot
@@ -49,7 +50,8 @@ class ClosedLoop:
     delay: int | None
     nominal: Robot
     motor_side: MotorSide | None = None
-    compiled: CompiledCommands | None = None
+    compiled: code.Commands | None = None
+    drawn: code.DrawnRow | None = None
 
     def close(self) -> None:
         """Release the resources of the plant."""

@@ -52,7 +52,8 @@ def simulate(
     timing = timing or constant_delay(closed.robot.model.nq, closed.delay or 0, ticks)
     laws: ControlLoops
     if closed.compiled is not None:
-        laws = CompiledLoops(closed.compiled, ticks, [cast(JointEncoders, each).errors for each in encoders])
+        errors = [cast(JointEncoders, each).errors for each in encoders]
+        laws = CompiledLoops(closed.compiled, ticks, errors, closed.drawn)
     else:
         laws = InterpretedLoops(closed, encoders, tips or {}, torques, timing)
     recorder = Recorder(closed, timing, laws.rows)

@@ -27,6 +27,7 @@ from runner.sensing import ForceTorqueSensor
 from runner.sensing.streams import ENVIRONMENT
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
+from runner.simulation.drawn_loops import with_drawn
 from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.results import Collector, RunResult
 from runner.simulation.sensors import make_sensors
@@ -37,6 +38,7 @@ MOST_THREADS = 4
 TICKS = TICKS_AT_ONCE // MOST_THREADS
 """Approximate number of ticks of a block, which take a tenth of a second."""
 
+_DRAWN = 32  # nominal models that are drawn together
 _AHEAD = 2  # blocks of each thread, running or queued
 
 
@@ -67,7 +69,8 @@ def simulate_repetition(config: RunConfig, repetition: int = 0, ticks: int | Non
         return found.traces[0] if isinstance(found, BatchResult) else found[1]
     closed = assemble(config, repetition)
     try:
-        return simulate_assembled(replace(closed, ticks=ticks), config, repetition)[0]
+        (own,) = with_drawn(closed, config, [repetition]) or [closed]
+        return simulate_assembled(replace(own, ticks=ticks), config, repetition)[0]
     finally:
         closed.close()
 
@@ -92,7 +95,11 @@ def _simulate_one_by_one(config: RunConfig) -> RunResult:
     warnings: list[str] = []
     try:
         for repetition in range(repetitions):
-            if repetition > 0 and config.varies_model:  # new model
+            if repetition % _DRAWN == 0:
+                drawn = with_drawn(loop, config, range(repetition, min(repetition + _DRAWN, repetitions)))
+            if drawn is not None:
+                loop = drawn[repetition % _DRAWN]
+            elif repetition > 0 and config.varies_model:  # new model
                 last, loop = loop, assemble(config, repetition)
                 last.close()
             trace, told = simulate_assembled(loop, config, repetition)

@@ -48,14 +48,14 @@ _TABLE = """
         flexible_joints=plants.flexible_joints friction friction_law kinds=plants.kinds kinematic mujoco
         plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched
     plugins: features guard metric_units registry
-    robots: __init__=robots.__init__ chain description
+    robots: __init__=robots.__init__ chain description drawn
         inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_urdf model
         modes mounting robot=robots.robot task_space tree workspace
     schema: values
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
         kinds=sensing.kinds streams velocity wrench
     simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop
-        contact=loop.contact loop=simulation recorder results run=job sensors
+        contact=loop.contact drawn_loops loop=simulation recorder results run=job sensors
     simulation/compiled: commands law loop_program maths=compiled.maths
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         program regressor structure tangent vectors=compiled.vectors

@@ -1,32 +1,35 @@
 """Constants of the rigid bodies of an arm, with every joint axis rotated to z."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.robots.drawn import DrawnModel
 from runner.robots.model import RobotModel
-from runner.symbolic.vectors import Matrix, Scalar, Vector
+from runner.symbolic.vectors import Matrix, Scalar, Vector, product, rotate_tensor, transpose
 
 _ROUNDING = 1e-14  # a right angle's cosine is 6e-17
 _AXES = np.eye(3)
 
 
 @dataclass(frozen=True)
-class NoConstantFolding:
-    """Function from numbers to scalars that is also called for 0, 1 and -1.
+class Folding:
+    """Function from numbers to scalars with its own rule for numbers that may stay floats, such as 0, 1 and -1.
 
     Attributes:
         make: The function.
+        fold: Function for a number that may stay a float.
     """
 
-    make: Callable[[float], Scalar]
+    make: Callable[[Any], Scalar]
+    fold: Callable[[Any], Scalar]
 
-    def __call__(self, value: float) -> Scalar:
-        """Return the scalar for a number."""
+    def __call__(self, value: Any) -> Scalar:
+        """Return the scalar for a number that does not stay a float."""
         return self.make(value)
 
 
@@ -84,13 +87,18 @@ def constants_of(
     Links on fixed joints belong to their parent body, as merged by Pinocchio.
 
     Args:
-        model: Model of the arm, which must not change later.
+        model: Model of the arm, which must not change later. Masses of a DrawnModel are arrays over its arms.
         number: Function that returns the scalar for a constant. It is not called for 0, 1 and -1, which stay floats,
-            unless it is NoConstantFolding.
+            unless it is a Folding.
         gravity: Gravity vector in the base frame, shape (3,), in m/s^2, as scalars; None for the model's.
         tip: Name of the tip frame; None for the model's.
     """
-    bodies, (tip_body, rotation, position) = _raw_bodies(model), _raw_tip(model, tip)
+    common = model.common if isinstance(model, DrawnModel) else model
+    bodies = _raw_bodies(common)
+    if isinstance(model, DrawnModel):
+        bodies = [_drawn(*own) for own in zip(bodies, model.rows.transpose(1, 2, 0), strict=True)]
+    frame = model.tip_frame if tip is None else model.pin_model.getFrameId(tip)
+    tip_body, rotation, position = _raw_tip(common, frame)
     return ArmConstants(
         tuple(
             Body(
@@ -114,7 +122,7 @@ def constants_of(
 
 
 @lru_cache(maxsize=256)
-def _raw_bodies(model: RobotModel) -> tuple[Body, ...]:
+def _raw_bodies(model: RobotModel) -> Sequence[Body]:
     """Return the bodies of an arm with float constants, each joint's axis rotated to z."""
     arm, turns = model.pin_model, _turns(model)
     bodies = []
@@ -143,11 +151,24 @@ def _raw_bodies(model: RobotModel) -> tuple[Body, ...]:
     return tuple(bodies)
 
 
+def _drawn(body: Body, parameters: FloatArray) -> Body:
+    """Return a body with inertial parameters over runs, shape (10, runs); see Arm.regressor."""
+    back = transpose(body.turn)
+    mass, *moment = parameters[:4]
+    xx, xy, yy, xz, yz, zz = parameters[4:]
+    inertia = rotate_tensor(back, [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return replace(
+        body,
+        mass=_near(mass),
+        moment=[_near(np.asarray(part)) for part in product(back, moment)],
+        inertia=[[_near(np.asarray(part)) for part in row] for row in inertia],
+    )
+
+
 @lru_cache(maxsize=256)
-def _raw_tip(model: RobotModel, frame: str | None) -> tuple[int, Any, Any]:
+def _raw_tip(model: RobotModel, frame: int) -> tuple[int, Any, Any]:
     """Return the body with a frame, and the frame's rotation and origin in it."""
-    arm = model.pin_model
-    end = arm.frames[model.tip_frame if frame is None else arm.getFrameId(frame)]
+    end = model.pin_model.frames[frame]
     turn = _turns(model)[end.parentJoint - 1].T
     return end.parentJoint - 1, _rounded(turn @ end.placement.rotation), _rounded(turn @ end.placement.translation)
 
@@ -171,7 +192,7 @@ def _axis_to_z(joint: Any) -> FloatArray:
     return np.column_stack([across, np.cross(axis, across), axis])
 
 
-def to_scalars(values: Any, number: Callable[[float], Scalar]) -> Any:
+def to_scalars(values: Any, number: Callable[[Any], Scalar]) -> Any:
     """Return numbers as nested scalars: 0, 1 and -1 as floats, others converted by `number`."""
     values = _rounded(values)
     if isinstance(values, list):
@@ -179,16 +200,34 @@ def to_scalars(values: Any, number: Callable[[float], Scalar]) -> Any:
     return _scalar(values, number)
 
 
-def _scalar(value: float, number: Callable[[float], Scalar]) -> Scalar:
-    return number(value) if value not in (0.0, 1.0, -1.0) or isinstance(number, NoConstantFolding) else value
+def to_scalar(value: Any, number: Callable[[Any], Scalar]) -> Scalar:
+    """Return a number or an array over runs as a scalar, rounded; see to_scalars."""
+    return _scalar(_near(value) if isinstance(value, np.ndarray) else _rounded(value), number)
+
+
+def _scalar(value: Any, number: Callable[[Any], Scalar]) -> Scalar:
+    if isinstance(number, Folding):
+        return number.fold(value)
+    constant = constant_of(value)
+    return number(value) if constant is None else constant
+
+
+def constant_of(value: Any) -> float | None:
+    """Return 0, 1 or -1 if a number, or an array over runs, is equal to it; else None."""
+    first = float(value[0] if isinstance(value, np.ndarray) else value)
+    return first if first in (0.0, 1.0, -1.0) and np.all(value == first) else None
 
 
 def _rounded(values: Any) -> Any:
     """Return numbers as nested lists; values within rounding of 0, 1 or -1 are replaced by these."""
-    values = np.asarray(values, dtype=np.float64)
+    return _near(np.asarray(values, dtype=np.float64)).tolist()
+
+
+def _near(values: FloatArray) -> FloatArray:
+    """Return numbers; those within rounding of 0, 1 or -1 are replaced by these."""
     nearest = np.clip(np.round(values), -1.0, 1.0)
     near = np.abs(values - nearest) < _ROUNDING
-    return np.where(near, nearest + 0.0, values).tolist()
+    return np.where(near, nearest + 0.0, values)
 
 
 def _symmetric(values: Matrix, number: Callable[[float], Scalar]) -> Matrix:

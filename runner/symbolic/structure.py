@@ -1,30 +1,57 @@
 """Fixed structure and variable parameters of compiled control laws and arms."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
+from runner.robots.drawn import by_run
 from runner.robots.model import RobotModel
-from runner.symbolic.arm import constants_of, to_scalars
-from runner.symbolic.vectors import Scalar, as_array
+from runner.symbolic.arm import Folding, constant_of, constants_of, to_scalar, to_scalars
+from runner.symbolic.vectors import Scalar
 
 
 class CannotCompileError(RunnerError):
     """A law has no compiled form; the message contains the reason."""
 
 
-class Values:
-    """Values of a program's parameters, in the order of the calls of `number`."""
+Visit = Callable[[Callable[[Any], Any]], object]
+"""A function that calls another for each number of a program, in the order of the program's parameters."""
 
-    def __init__(self) -> None:
-        self.values: list[float] = []
 
-    def number(self, value: float) -> float:
-        """Append a value, and return it."""
-        self.values.append(value)
+def values_of(visit: Visit, constants: Sequence[float | None] | None = None) -> FloatArray:
+    """Return the values of a program's parameters, shape (k,); shape (runs, k) if some are arrays over runs.
+
+    Args:
+        visit: Visit of the numbers.
+        constants: Constants of the program, if it was made for other numbers; see constants_in.
+    """
+    values: list[Any] = []
+
+    def number(value: Any) -> Any:
+        values.append(value)
         return value
+
+    if constants is None:
+        visit(number)
+    else:
+        known = iter(constants)
+        visit(Folding(number, lambda value: number(value) if (own := next(known)) is None else own))
+    return by_run(values)
+
+
+def constants_in(visit: Visit) -> list[float | None]:
+    """Return the constants of a program: 0, 1 or -1 for each number that may be one; None for a parameter."""
+    found: list[float | None] = []
+
+    def fold(value: Any) -> Any:
+        found.append(constant_of(value))
+        return value
+
+    visit(Folding(lambda value: value, fold))
+    return found
 
 
 def scalars(numbers: Any, number: Callable[[float], Scalar]) -> Any:
@@ -33,8 +60,10 @@ def scalars(numbers: Any, number: Callable[[float], Scalar]) -> Any:
         inner = [scalars(value, number) for value in numbers]
         return type(numbers)(*inner) if hasattr(numbers, "_fields") else tuple(inner)
     if isinstance(numbers, np.ndarray):
-        flat = [to_scalars(value, number) for value in numbers.ravel()]
-        return as_array(flat).reshape(numbers.shape)
+        found = np.empty(numbers.shape, dtype=object)
+        for place in np.ndindex(numbers.shape):
+            found[place] = to_scalar(numbers[place], number)
+        return found
     return to_scalars(numbers, number)
 
 

@@ -10,6 +10,7 @@ from runner.controllers.controller import VelocityGain
 from runner.controllers.joint_space.joint_law import DesiredJoints, JointLaw, JointLawConfig, joint_law_builder
 from runner.controllers.joint_space.joint_law import start_posture as start_posture
 from runner.controllers.torque_law import Arm, PinocchioArm
+from runner.robots.drawn import each_run
 from runner.robots.model import RobotModel
 from runner.symbolic.maths import Array, Scalar
 
@@ -84,7 +85,8 @@ class Adaptive(JointLaw[AdaptiveParameters, AdaptiveConfig]):
         self._bounded = config.scale == "parameter"
         if self._bounded:
             arm, home = PinocchioArm(model, config.gravity_compensation), self._motion.parameters.posture.rest
-            gains *= config.natural_frequency**2 * self._scales(arm, home, inertia)
+            scales = each_run(lambda D: self._scales(arm, home, D), inertia)
+            gains = gains * (config.natural_frequency**2 * scales)
         self._state_size = len(gains)
         return AdaptiveParameters(
             rate=config.natural_frequency,
@@ -125,17 +127,17 @@ class Adaptive(JointLaw[AdaptiveParameters, AdaptiveConfig]):
         return torque, state + change
 
     def _scales(self, arm: PinocchioArm, home: FloatArray, D: FloatArray) -> FloatArray:
-        """Return 1 / (N max |D^-1/2 Y_p|^2) of each parameter, shape (P,); 0 for one that is not excited."""
+        """Return 1 / (N max |D^-1/2 Y_p|^2) of each parameter, shape (..., P); 0 for one that is not excited."""
         largest = np.zeros(1)
         for way in (*np.eye(len(home)), np.ones(len(home))):
             speed = _SPEED * way
             Y = arm.regressor(home, speed, speed, _ACCELERATION * way)
             if self._friction:
                 Y = np.concatenate([Y, _friction(arm, speed, speed)], axis=1)
-            largest = np.maximum(largest, (Y**2 / D[:, None]).sum(axis=0))
-        excited = largest > np.finfo(float).eps * largest.max()
-        scales: FloatArray = np.zeros_like(largest)
-        scales[excited] = 1.0 / (excited.sum() * largest[excited])
+            largest = np.maximum(largest, (Y**2 / D[..., None]).sum(axis=-2))
+        excited = largest > np.finfo(float).eps * largest.max(axis=-1, keepdims=True)
+        count = excited.sum(axis=-1, keepdims=True)
+        scales: FloatArray = np.divide(1.0, count * largest, out=np.zeros_like(largest), where=excited)
         return scales
 
 

@@ -10,6 +10,7 @@ from runner.base.arrays import FloatArray
 from runner.controllers.controller import Loop, VelocityGain
 from runner.controllers.operational_space.tip_task import TipParameters, TipTask
 from runner.controllers.torque_law import Arm, Arms, TorqueLaw, second_order
+from runner.robots.drawn import each_run
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
@@ -171,13 +172,15 @@ def null_space_projection(backend: Backend, J: Array, ddq: Array) -> Array:
 
 def _inertia_at_rest(model: RobotModel, rest: FloatArray, first: int) -> FloatArray:
     """Return the inertia of the joints from `first` on with a fixed tip, shape (nq, nq); zero for the others."""
-    inertia = np.zeros((model.nq, model.nq))
-    held = slice(first, model.nq)
-    M, J = model.mass_matrix(rest), model.tip_jacobian(rest)[:3]
-    M_inverse = np.linalg.pinv(M, hermitian=True)
-    mobility = M_inverse - M_inverse @ J.T @ np.linalg.pinv(J @ M_inverse @ J.T, hermitian=True) @ J @ M_inverse
-    inertia[held, held] = np.linalg.pinv(mobility[held, held], hermitian=True)
-    return inertia
+    J = model.tip_jacobian(rest)[:3]
+
+    def held(M: FloatArray) -> FloatArray:
+        M_inverse, inertia = np.linalg.pinv(M, hermitian=True), np.zeros(M.shape)
+        mobility = M_inverse - M_inverse @ J.T @ np.linalg.pinv(J @ M_inverse @ J.T, hermitian=True) @ J @ M_inverse
+        inertia[..., first:, first:] = np.linalg.pinv(mobility[..., first:, first:], hermitian=True)
+        return inertia
+
+    return np.asarray(each_run(held, model.mass_matrix(rest)))
 
 
 class WholeBodyParameters(NamedTuple):

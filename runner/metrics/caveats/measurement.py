@@ -4,6 +4,7 @@ from runner.metrics.caveats.rule import SettingRule
 from runner.metrics.caveats.setting import Setting
 
 _FACTORS = ("mass", "centre_of_mass", "length", "gravity")
+_OF_LINK = ("mass", "centre_of_mass", "inertia")
 
 
 def _noise_beside_exact(setting: Setting) -> float | None:
@@ -24,20 +25,28 @@ def _tell_noise(value: float, setting: Setting) -> str:
 
 def _fixed_error(setting: Setting) -> float | None:
     """Return the largest relative error of the nominal model, if it is the same in several repetitions."""
-    if setting.mismatch.spread > 0.0 or setting.repetitions == 1:
+    if setting.mismatch.varies or setting.repetitions == 1:
         return None
-    factors = [abs(float(getattr(setting.mismatch, name)) - 1.0) for name in _FACTORS]
-    return max(abs(setting.mismatch.payload) / setting.mass, *factors)
+    return max(
+        abs(setting.mismatch.payload) / setting.mass, *(abs(value - 1.0) for value in _factors(setting).values())
+    )
 
 
 def _tell_fixed(value: float, setting: Setting) -> str:
-    wrong = [name for name in _FACTORS if getattr(setting.mismatch, name) != 1.0]
+    wrong = [name for name, value in _factors(setting).items() if value != 1.0]
     wrong += ["payload"] if setting.mismatch.payload else []
     return (
         f"the {setting.repetitions} repetitions vary noise alone: mismatch.{', mismatch.'.join(wrong)} "
         f"{'is' if len(wrong) == 1 else 'are'} the same in all (mismatch.spread: 0), so that their intervals say "
         "nothing of other wrong models"
     )
+
+
+def _factors(setting: Setting) -> dict[str, float]:
+    """Return the fixed factors of the nominal model, by their keys in `mismatch`."""
+    mismatch = setting.mismatch
+    of_links = {f"link.{name}.{term}": getattr(link, term) for name, link in mismatch.link.items() for term in _OF_LINK}
+    return {name: getattr(mismatch, name) for name in _FACTORS} | of_links
 
 
 EXACT_VELOCITY = SettingRule("exact_velocity", _noise_beside_exact, _tell_noise)

@@ -226,7 +226,13 @@ def counts_by_sign(one: Asked) -> tuple[int, int]:
 def noise_alone(configs: Iterable[Mapping[str, Any]]) -> bool:
     """Return whether the repetitions of runs draw nothing but noise: nothing of the arm is drawn from the seed."""
     mismatches = [config.get("mismatch", {}) for config in configs]
-    return all(not mismatch.get("spread") and "kind" not in mismatch for mismatch in mismatches)
+    return not any("kind" in mismatch or _draws(mismatch) for mismatch in mismatches)
+
+
+def _draws(mismatch: Mapping[str, Any]) -> bool:
+    """Return whether a built-in mismatch has a spread, of all links or of one."""
+    of_links = [value for link in mismatch.get("link", {}).values() for key, value in link.items() if "spread" in key]
+    return any([mismatch.get("spread"), *of_links])
 
 
 def letter(place: int) -> str:

@@ -15,6 +15,7 @@ from runner.config.run import RunConfig
 from runner.controllers.controller import Loop
 from runner.controllers.torque_law import TorqueLaw
 from runner.plugins.guard import Guarded, find_fault, place, unguarded
+from runner.robots.drawn import DrawnModel, by_run, over_runs
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
@@ -26,7 +27,7 @@ from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, both, equal, less, round_to_even, select
 from runner.symbolic.maths import Array
 from runner.symbolic.program import Expressed, Program, program
-from runner.symbolic.structure import CannotCompileError, Values, any_number
+from runner.symbolic.structure import CannotCompileError, any_number, constants_in, values_of
 from runner.symbolic.vectors import as_array
 
 _OURS = ("runner", "abc", "typing", "builtins")
@@ -94,11 +95,13 @@ class Commands:
         return program(f"commands {self.pattern}", what, express, 1, self.are_ours)
 
     @cached_property
-    def values(self) -> Sequence[float]:
-        """Values of the code's parameters."""
-        values = Values()
-        self.scalars(values.number)
-        return values.values
+    def values(self) -> FloatArray:
+        """Values of the code's parameters, shape (k,)."""
+        return values_of(self.scalars)
+
+    def drawn_values(self, drawn: "Commands") -> FloatArray:
+        """Return the parameters of this code for loops with drawn nominal models, shape (runs, k)."""
+        return values_of(drawn.scalars, constants_in(self.scalars))
 
     @property
     def are_ours(self) -> bool:
@@ -172,7 +175,7 @@ class Commands:
         """Return the initial state of runs at rest, shape (runs, entries).
 
         Args:
-            q: Joint positions, shape (runs, nq), in rad.
+            q: Joint positions, shape (runs, nq), in rad; the runs are those of drawn nominal models, if any.
             errors: First errors of the positions that each loop measures, shape (runs, nq), in rad.
         """
         parts = [q, np.zeros_like(q)]
@@ -181,10 +184,27 @@ class Commands:
             self.noise.round(measured)
             parts += first_state(self.noise.velocity, measured)
             if len(loop.law.start(measured[0])):
-                parts.append(np.array([loop.law.start(own) for own in measured]))
+                drawn = any(isinstance(model, DrawnModel) for model in loop.law.models)
+                starts = loop.law.start(over_runs(measured)) if drawn else None
+                own = [loop.law.start(each) for each in measured] if starts is None else by_run(starts)
+                parts.append(np.broadcast_to(own, (len(q), np.shape(own)[-1])))
             if loop.every > 1:
                 parts.append(np.zeros((len(q), loop.joints.stop - loop.joints.start)))
         return np.concatenate(parts, axis=1)
+
+
+class DrawnRow(NamedTuple):
+    """One of several nominal models that are drawn together.
+
+    Attributes:
+        commands: The control loops with all of these models.
+        values: Parameters of the code with each model, shape (runs, k); see Commands.drawn_values.
+        row: Index of the model.
+    """
+
+    commands: Commands
+    values: FloatArray
+    row: int
 
 
 class Rows(NamedTuple):
@@ -225,14 +245,17 @@ class CompiledLoops:
         commands: The loops.
         ticks: Number of ticks.
         errors: Errors of the positions at the ticks of each loop, shape (n, nq), in rad.
+        drawn: Drawn nominal model; None if the nominal model is that of the loops.
 
     Attributes:
         rows: Signals of the run.
     """
 
-    def __init__(self, commands: Commands, ticks: int, errors: Sequence[FloatArray]) -> None:
+    def __init__(
+        self, commands: Commands, ticks: int, errors: Sequence[FloatArray], drawn: DrawnRow | None = None
+    ) -> None:
         program, nq = commands.program(), len(commands.limits)
-        self._commands, self._errors, self._messages = commands, errors, program.errors
+        self._commands, self._errors, self._messages, self._drawn = commands, errors, program.errors, drawn
         self._frame, self._guarded = program.frame(ticks), commands.guarded
         self.rows = Rows.of(self._frame.rows[:, :, 0], nq)
         self._fault, self._command = self.rows.fault, self.rows.command
@@ -244,8 +267,10 @@ class CompiledLoops:
         commands, frame, errors = self._commands, self._frame, self._errors
         wrong = commands.measured_wrong(errors, len(times))
         frame.given[:, :, 0] = np.hstack([commands.shared(times, desired, joints), wrong])
-        frame.state[:, 0] = commands.start(q[None], [each[:1] for each in errors])[0]
-        frame.pars[:, 0] = commands.values
+        own = self._drawn or DrawnRow(commands, commands.values[None], 0)
+        first = [np.repeat(each[:1], len(own.values), axis=0) for each in errors]
+        frame.state[:, 0] = own.commands.start(np.tile(q, (len(own.values), 1)), first)[own.row]
+        frame.pars[:, 0] = own.values[own.row]
         self._times = times
 
     def update(self, k: int, q: FloatArray, dq: FloatArray) -> None:

@@ -1,7 +1,7 @@
 """Closed loops compiled as a whole: many runs at a time, and their derivatives by several parameters at once."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,11 +12,11 @@ from runner.base.arrays import FloatArray
 from runner.plants.compiled_motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
 from runner.plants.decoupled import Motion
 from runner.simulation.compiled.commands import Commands, CommandScalars, Rows, expressed_commands
-from runner.symbolic.arm import NoConstantFolding
+from runner.symbolic.arm import Folding
 from runner.symbolic.code import ACTING, GIVEN, PARS, ROWS, STATE, Slots
 from runner.symbolic.expression import places
 from runner.symbolic.program import LANES, Expressed, Frame, Program, program
-from runner.symbolic.structure import Values
+from runner.symbolic.structure import constants_in, values_of
 from runner.symbolic.tangent import with_tangents
 
 _FOLDED = (0.0, 1.0, -1.0)
@@ -81,17 +81,22 @@ class LoopProgram:
 
     @cached_property
     def values(self) -> FloatArray:
-        """Values of the code's parameters."""
-        values = Values()
-        self._scalars(values.number)
-        return np.array(values.values)
+        """Values of the code's parameters, shape (k,)."""
+        return values_of(self._scalars)
 
     @cached_property
     def numbers(self) -> FloatArray:
         """All numbers, in the order of the parameters, including those equal to 0, 1 or -1."""
-        values = Values()
-        self._scalars(NoConstantFolding(values.number))
-        return np.array(values.values)
+        return values_of(lambda number: self._scalars(Folding(number, number)))
+
+    @cached_property
+    def constants(self) -> list[float | None]:
+        """Constants of the code; see constants_in."""
+        return constants_in(self._scalars)
+
+    def drawn_values(self, drawn: Commands) -> FloatArray:
+        """Return the parameters of this code for loops with drawn nominal models, shape (runs, k)."""
+        return values_of(replace(self, commands=drawn)._scalars, self.constants)
 
     def _scalars(self, number: Callable[[float], Any]) -> tuple[CommandScalars, MotionScalars]:
         return self.commands.scalars(number), motion_scalars(self.motion, self.step, self.tick, number)
@@ -236,7 +241,7 @@ def _frame(
             constant = next(known)
             return at.number(value) if np.isnan(constant) else constant
 
-        expressed = loop_program.express(at, NoConstantFolding(number))
+        expressed = loop_program.express(at, Folding(number, number))
         return with_tangents(expressed, varies)
 
     def varies(space: str, index: int) -> bool:

@@ -36,6 +36,8 @@ def test_exact_velocities_beside_noisy_positions(checked_config, overrides, valu
         (("mismatch.gravity=0.9", "mismatch.length=1.01", "repetitions=2"), 0.1),
         (("mismatch.payload=0.5", "repetitions=2"), 0.25),  # on links of 2 kg
         (("mismatch.mass=1.2", "repetitions=1"), None),
+        (("mismatch.link.link2.inertia=1.3", "repetitions=2"), 0.3),
+        (("mismatch.link.link2={mass: 1.2, inertia_spread: 0.1}", "repetitions=2"), None),
         (("mismatch.mass=1.2", "mismatch.spread=0.1", "repetitions=20"), None),
         (("repetitions=20",), None),
         (("mismatch.mass=1.2", "repetitions=20", "caveats.fixed_mismatch.error=0.3"), None),

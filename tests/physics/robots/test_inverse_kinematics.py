@@ -211,6 +211,6 @@ def test_a_posture_is_found_once_for_all_arms_of_the_same_kinematics(monkeypatch
 
 def believed_longer(model):
     stage = Stage("arm", model, XARM7_URDF, slice(0, model.nq), XARM7_HOME, None)
-    longer = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.001, gravity=1.0, payload=0.0, spread=0.0)
+    longer = MismatchConfig(mass=1.0, centre_of_mass=1.0, length=1.001, gravity=1.0, payload=0.0, spread=0.0, link={})
     robot = Robot(XARM7_URDF, model, (stage,), "flange")
     return build(longer, robot, np.random.default_rng(0)).model

@@ -20,6 +20,7 @@ SAGGING = (
     "controller.singularity_damping=0",
 )
 NO_DIFFERENCE = {"mass": 1.0, "centre_of_mass": 1.0, "length": 1.0, "gravity": 1.0, "payload": 0.0, "spread": 0.0}
+NO_DIFFERENCE |= {"link": {}}
 
 
 def nominal_of(robot, seed=0, **terms):
@@ -92,18 +93,42 @@ def test_a_payload_that_is_not_known_of_leaves_the_arm_without_it(checked_config
     np.testing.assert_allclose(unaware.gravity_torque(q), bare.model.gravity_torque(q), atol=1e-12)
 
 
+@pytest.mark.parametrize("factors", [(1.3, 1.0, 1.0), (1.0, 1.2, 1.0), (1.0, 1.0, 2.0), (0.8, 0.7, 1.5)], ids=str)
+def test_one_link_believed_wrong_changes_its_own_share_of_inertia_and_weight(sag, factors):
+    mass, centre, inertia = factors
+    link = f"mismatch.link.link2={{mass: {mass}, centre_of_mass: {centre}, inertia: {inertia}}}"
+    error, q, model = sag(link)
+    M, G = link_by_link(model, q, mass=[1.0, mass, 1.0], centre=[1.0, centre, 1.0], inertia=[1.0, inertia, 1.0])
+    np.testing.assert_allclose(error, predicted_sag(model, q, M, G), atol=1e-8)
+    assert (np.abs(error).max() > 1e-3) == (mass * centre != 1.0)
+
+
+def test_inertia_about_the_centre_of_mass_changes_the_mass_matrix_and_no_weight(checked_config, macro):
+    arm = nominal_of(checked_config("robot=macro").arm, link={"link3": {"inertia": 1.7}}).model
+    q, ones = np.array([0.3, -0.5, 1.0]), np.ones(3)
+    M, G = link_by_link(macro, q, ones, ones, [1.0, 1.0, 1.7])
+    np.testing.assert_allclose(arm.mass_matrix(q), M, atol=1e-13)
+    np.testing.assert_allclose(arm.gravity_torque(q), macro.gravity_torque(q), atol=1e-13)
+    np.testing.assert_allclose(G, macro.gravity_torque(q), atol=1e-13)
+
+
+def link_by_link(model, q, mass, centre, inertia):
+    """M and G as sums of J^T M J over the links, with factors on mass, lever and inertia about the centre of mass."""
+    M, G = np.zeros((model.nq, model.nq)), np.zeros(model.nq)
+    data = model.pin_model.createData()
+    pin.computeJointJacobians(model.pin_model, data, q)
+    for joint, (m, c, i) in enumerate(zip(mass, centre, inertia, strict=True), start=1):
+        body, R = model.pin_model.inertias[joint], data.oMi[joint].rotation
+        J = pin.getJointJacobian(model.pin_model, data, joint, pin.LOCAL_WORLD_ALIGNED)
+        at_centre = J[:3] - pin.skew(R @ (c * body.lever)) @ J[3:]
+        M += m * (body.mass * at_centre.T @ at_centre + i * J[3:].T @ R @ body.inertia @ R.T @ J[3:])
+        G -= m * body.mass * at_centre.T @ model.gravity
+    return M, G
+
+
 def test_a_centre_of_mass_believed_wrong_shifts_the_weight_along_the_link(sag, checked_config):
     error, q, model = sag("mismatch.centre_of_mass=1.1")
-    M, G = np.zeros((3, 3)), np.zeros(3)
-    data = model.pin_model.createData()
-    for joint in range(1, 4):  # link by link: J^T M J with the levers stretched
-        pin.computeJointJacobians(model.pin_model, data, q)
-        body = model.pin_model.inertias[joint]
-        J = pin.getJointJacobian(model.pin_model, data, joint, pin.LOCAL_WORLD_ALIGNED)
-        R = data.oMi[joint].rotation
-        at_centre = J[:3] - pin.skew(R @ (1.1 * body.lever)) @ J[3:]
-        M += body.mass * at_centre.T @ at_centre + J[3:].T @ R @ body.inertia @ R.T @ J[3:]
-        G -= body.mass * at_centre.T @ model.gravity
+    M, G = link_by_link(model, q, np.ones(3), np.full(3, 1.1), np.ones(3))
     np.testing.assert_allclose(error, predicted_sag(model, q, M, G), atol=1e-8)
     assert np.abs(error).max() > 1e-3
 
@@ -223,13 +248,19 @@ def test_beliefs_leave_the_noise_alone(checked_config):
         (("mismatch.spread=1",), "mismatch.spread: must be below 1; found 1"),
         (("mismatch.lenght=1.1",), "mismatch.lenght: unknown key (did you mean length?)"),
         (("mismatch=some",), "mismatch: no 'some' (did you mean sampled?); known: none, sampled"),
+        (("mismatch.link.link2.mass=0",), "mismatch.link.link2.mass: must be above 0; found 0"),
+        (("mismatch.link.link2.mas=1",), "mismatch.link.link2.mas: unknown key (did you mean mass?)"),
+        (
+            ("mismatch.link.lin2.mass=1.1",),
+            "mismatch.link.lin2: no such moving link (did you mean link2?); moving links: link1, link2, link3",
+        ),
         (
             ("mismatch.payload=-2", "robot.payload.mass=1.5"),
             "mismatch.payload: -2 kg is less than nothing of the true payload, robot.payload.mass with 1.5 kg; "
             "allowed: -1.5 or more",
         ),
     ],
-    ids=["mass", "length", "gravity", "spread", "key", "group", "payload"],
+    ids=["mass", "length", "gravity", "spread", "key", "group", "link_mass", "link_key", "link", "payload"],
 )
 def test_beliefs_that_cannot_be(cli, overrides, message):
     ending = cli("robot=macro", *overrides)

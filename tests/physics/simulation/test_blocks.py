@@ -42,9 +42,10 @@ def record(result):
         ("trajectory=quintic", "duration=0.5", "noise.position=0.05"),  # caveats of several joints and repetitions
         FAILING,
         ("trajectory=quintic", "duration=0.1", "mismatch.spread=0.1"),
+        ("trajectory=quintic", "duration=0.1", "mismatch.link.link2.inertia_spread=0.9", "controller=adaptive"),
         ("robot=combined", "controller=macro_mini", "duration=0.1"),
     ],
-    ids=["caveats", "failures", "beliefs", "combined"],
+    ids=["caveats", "failures", "beliefs", "link", "combined"],
 )
 @pytest.mark.parametrize(("ticks", "threads"), [(1, 3), (250, 1), (250, 2), (900, 5)])
 def test_blocks_and_threads_change_nothing(overrides, ticks, threads):

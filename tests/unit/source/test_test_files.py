@@ -74,6 +74,7 @@ SHARED = {
     "schema/units": "contract/config/test_units_of_keys.py",
     "simulation/assembly": "physics/simulation/test_simulation.py",
     "simulation/closed_loop": "physics/simulation/test_simulation.py",
+    "simulation/drawn_loops": "physics/robots/test_drawn.py",
     "simulation/compiled/loop_program": "physics/symbolic/test_tick.py",
     "simulation/compiled/commands": "physics/symbolic/test_law.py",
     "simulation/compiled/maths": "physics/symbolic/test_law.py",
