@@ -36,8 +36,10 @@ their true values. `letters` sets names as the source does, and `indices` gives 
     indices: {i: [1, 2, 3]}
     letters: {"R[i]": "attach(R, tl: 0, br: i)", dq: dot(q)}    # in Typst mathematics
 
-`math` contains a definition in Typst. If no expression has the value of an equation, `math` shows it and
-`code: xarm7.left_inverse` names the function that evaluates it. The verdict is never stored: `verdict.py` computes it.
+If a source has a text that a machine can read, `read: thesis_appendix.read_1` names the function that returns
+`elements` from it. `math` contains a definition in Typst. If no expression has the value of an equation, `math` shows
+it and `code: xarm7.left_inverse` names the function that evaluates it. The verdict is never stored: `verdict.py`
+computes it.
 """
 
 import re
@@ -50,7 +52,7 @@ from typing import Annotated, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from runner.audit.evaluation import Numbered, Values
-from runner.audit.sources import Source, Where, source_of
+from runner.audit.sources import Source, Where, source_of, truth_of
 from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.expressions.grammar import ExpressionError
@@ -88,11 +90,13 @@ class Form(StrictModel):
 
     Attributes:
         elements: Right side of each equation, by its left side.
+        read: Function of equations/truths that returns the elements, read from the source's own text.
         math: The equation in Typst mathematics, if it defines a name, or if no expression has its value.
         code: Function of equations/truths that returns what `math` says at the samples.
     """
 
     elements: dict[str, Written] = Field(default_factory=dict)
+    read: str = ""
     math: str = ""
     code: str = ""
 
@@ -101,8 +105,11 @@ class Form(StrictModel):
         if self.elements and (self.math or self.code):
             raise ValueError(f"has elements and {'math' if self.math else 'code'}; what is shown is evaluated")
         for name in self.elements:
-            left_side(name)
-        if not (self.elements or self.math):
+            try:
+                left_side(name)
+            except ExpressionError as error:
+                raise ValueError(f"'{name}' is no left side of an equation: {error}") from error
+        if not (self.elements or self.read or self.math):
             raise ValueError("has neither elements nor math: nothing to show")
         return self
 
@@ -140,7 +147,8 @@ class Entry(StrictModel):
         tip: Frame that a truth of the model is about, where it is another than the file's.
         unit: Unit of its error. Errors in "rad" are angles: they are taken the short way round.
         tolerance: Largest error, in its unit, that rounding may cause.
-        finding: What is wrong and what it does, in words; Text of a report.
+        finding: What is wrong and what it does, in words; Text of a report. `{largest}` and `{typical}` are the errors
+            of the form as printed, `{size}` is the largest true value.
         rollout: Function of equations/rollouts that runs the wrong form beside the right one, or "".
         letters: Names as the source writes them in this equation.
         indices: Numbers that a letter in square brackets stands for; the equation holds for each of them.
@@ -166,6 +174,15 @@ class Entry(StrictModel):
     def right(self) -> Form:
         """The form that is meant to be right."""
         return self.corrected or self.repair or self.printed
+
+    def as_read(self, source: Source) -> "Entry":
+        """Return the same with the elements of forms that a function reads."""
+        changed = {
+            name: form.model_copy(update={"elements": truth_of(source, form.read)()})
+            for name in ("printed", "repair", "corrected")
+            if (form := getattr(self, name)) is not None and form.read
+        }
+        return self.model_copy(update=changed)
 
     def equations(self, form: Form) -> Iterator[tuple[str, Numbered]]:
         """Yield the left and right sides of a form's equations, for each number that a letter stands for."""
@@ -238,24 +255,23 @@ def right_elements(part: Part) -> dict[str, Numbered]:
     return {at_places(name, right.numbers): right for name, right in found}
 
 
-def form_values(part: Part, entry: Entry, form: Form, symbols: Mapping[str, FloatArray]) -> Values:
-    """Return the values of a form's equations by name, with those of its file's other equations in their right form.
+def form_values(entry: Entry, form: Form, symbols: Mapping[str, FloatArray], others: Mapping[str, Numbered]) -> Values:
+    """Return the values of a form's equations by name.
 
     Args:
-        part: The file.
         entry: The equation.
         form: One of its forms; a name that it defines counts before a symbol.
         symbols: Values of each symbol at the samples.
+        others: The other equations of its file in their right form; see `right_elements`.
     """
     own = {at_places(name, right.numbers): right for name, right in entry.equations(form)}
-    others = {name: values for name, values in symbols.items() if name not in own}
-    return Values(others, {**right_elements(part), **own})
+    return Values({name: values for name, values in symbols.items() if name not in own}, {**others, **own})
 
 
 def values_at(where: Where, name: str, symbols: Mapping[str, FloatArray], *, corrected: bool = False) -> Values:
     """Return the same for the equation of a source with this id, as printed or corrected."""
     part, entry = next((part, entry) for part, entry in entries(where) if entry.id == name)
-    return form_values(part, entry, entry.right if corrected else entry.printed, symbols)
+    return form_values(entry, entry.right if corrected else entry.printed, symbols, right_elements(part))
 
 
 @lru_cache(maxsize=64)

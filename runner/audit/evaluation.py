@@ -185,6 +185,8 @@ class _Evaluation:
                 found = np.asarray(function(*_alike(values) if isinstance(function, np.ufunc) else values))
         except (ArithmeticError, ValueError) as error:
             self._refuse(node, f"has no value: {error}")
+        if np.isfinite(found).all():
+            return found
         lost = ~_finite(found)
         for value in values:
             lost &= _finite(value)  # an inverse that does not exist has been counted

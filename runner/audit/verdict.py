@@ -1,5 +1,6 @@
 """Verdicts on audit entries: printed, repaired and corrected forms compared with the truth."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -13,14 +14,17 @@ from runner.audit.model_truths import AuditedArm, audited_arm, sample
 from runner.audit.sources import Source, truth_of
 from runner.audit.truth import Elements, Symbols, Truth
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError, RunnerError
+from runner.base.data_file import line_of
+from runner.base.errors import ConfigError, RunnerError, nearest
 from runner.base.expressions.parser import parse
 from runner.base.expressions.tree import Name, at_places
 from runner.base.expressions.tree import symbols as symbols_in
 from runner.base.expressions.typesetting import Letters
+from runner.base.quantities import quantity
 
 SAMPLES = 1000
 Verdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
+_FILL = re.compile(r"\{(\w+)\}")
 _Sides = tuple[str, Mapping[str, int], list[FloatArray]]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
 
@@ -37,11 +41,13 @@ class Measured:
         largest: Largest error over the samples and elements.
         typical: Median over the samples of the largest error of an element.
         elements: Largest error of each element, by name.
+        size: Largest true value.
     """
 
     largest: float
     typical: float
     elements: Mapping[str, float]
+    size: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -103,10 +109,12 @@ class Judge:
             AuditError: If the entry contradicts itself, or names what does not exist; tells file and entry.
         """
         try:
-            return self._judge(entry)
+            return self._judge(entry.as_read(self._part.source))
         except RunnerError as error:
             what = "; ".join(error.problems) if isinstance(error, ConfigError) else error
-            raise AuditError(f"{self._part.path}: {entry.id}: {what}") from error
+            raise AuditError(
+                f"{self._part.path}, line {line_of(self._part.path, f'id: {entry.id}')}: {entry.id}: {what}"
+            ) from error
 
     def _judge(self, entry: Entry) -> Judged:
         unread = not entry.printed.readable or bool(entry.repair and entry.printed.math and not entry.printed.code)
@@ -114,9 +122,11 @@ class Judge:
             return self._judged(entry, "unreadable", None)
         if not (unread or entry.truth):
             return self._judged(entry, "definition", None)
-        if entry.repair and not unread and self._measure(entry, entry.printed).worst <= entry.tolerance:
+        printed = None if unread else self._measure(entry, entry.printed)
+        if entry.repair and printed and printed.worst <= entry.tolerance:
             raise AuditError("is repaired, but holds as it stands")
-        measured = self._measure(entry, entry.repair or entry.printed)
+        entry = entry.model_copy(update={"finding": _filled(entry, printed)})
+        measured = self._measure(entry, entry.repair or entry.printed) if entry.repair or printed is None else printed
         if measured.worst <= entry.tolerance:
             return self._judged(entry, "correct after repair" if entry.repair else "correct", measured)
         if min(measured.first.largest, measured.second.largest) <= entry.tolerance:
@@ -148,7 +158,7 @@ class Judge:
         if form.code:
             found: Elements = truth_of(self._part.source, form.code)(self.symbols)
             return [(name, {}, [values]) for name, values in found.items()]
-        values, sides = form_values(self._part, entry, form, self.symbols), []
+        values, sides = form_values(entry, form, self.symbols, self._right), []
         for left, right in entry.equations(form):
             sides.append((left, right.numbers, values.sides(at_places(left, right.numbers), right)))
         # Those that others use are steps on the way.
@@ -156,13 +166,15 @@ class Judge:
 
     def _compare(self, entry: Entry, sides: list[_Sides], truth: Elements) -> Measured:
         sizes: dict[str, FloatArray] = {}
+        true_size = 0.0
         for name, numbers, values in sides:
             true, placed = self._left(name, numbers, truth), at_places(name, numbers)
             size = np.max([error(each, true, entry.unit) for each in values], axis=0)
+            true_size = max(true_size, float(np.abs(true).max()))
             sizes[placed] = np.maximum(size, sizes.get(placed, 0.0))
         worst = np.max(list(sizes.values()), axis=0)
         largest = {name: float(size.max()) for name, size in sizes.items()}
-        return Measured(float(worst.max()), float(np.median(worst)), largest)
+        return Measured(float(worst.max()), float(np.median(worst)), largest, true_size)
 
     def _left(self, name: str, numbers: Mapping[str, int], truth: Elements) -> FloatArray:
         """Return the true values of a left side."""
@@ -190,6 +202,20 @@ class _Both(NamedTuple):
     @property
     def worst(self) -> float:
         return max(each.largest for each in self)
+
+
+def _filled(entry: Entry, printed: _Both | None) -> str:
+    """Return the finding of an entry with the values that were measured."""
+    measured = printed.first if printed else Measured(0.0, 0.0, {})
+    values = {"largest": measured.largest, "typical": measured.typical, "size": measured.size}
+
+    def value(match: re.Match[str]) -> str:
+        if printed is None or match[1] not in values:
+            told = f"finding: no value '{match[1]}'{nearest(match[1], tuple(values))}"
+            raise AuditError(f"{told}; allowed, if the printed form can be evaluated: {', '.join(values)}")
+        return quantity(values[match[1]], entry.unit)
+
+    return _FILL.sub(value, entry.finding)
 
 
 @lru_cache(maxsize=8)

@@ -37,6 +37,12 @@ def read_data(path: Path, model: type[T]) -> T:
         raise RunnerError(f"{path}: {'; '.join(lines)}") from error
 
 
+def line_of(path: Path, text: str) -> int:
+    """Return the number of the line of a data file that ends in a text."""
+    before, _, _ = read_text(path, STORED.size).partition(f"{text}\n")
+    return before.count("\n") + 1
+
+
 def _entry(content: Any, location: tuple[int | str, ...]) -> str:
     """Return the location of a problem in a file, with the name or number of list entries."""
     words, inside = [], content

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
+from itertools import accumulate
 from types import MappingProxyType
 
 from runner.audit.entry import Entry, Form, left_side
@@ -17,6 +18,7 @@ from runner.reporting.equation import EquationForm
 
 _SYMBOLS = 40  # symbols of a form that is shown whole
 _OTHER = 0.5  # share of symbols that differ from which on an expression is another, and not one with a fault
+_LONGEST = 5000  # characters of a text that is compared sign by sign
 _FAULTS = 6  # differing parts up to which it is one with faults
 
 _Elements = Mapping[str, Node]
@@ -95,7 +97,7 @@ def forms_of(entry: Entry, likeness: Likeness, letters: Letters = MappingProxyTy
                 numbers = [f"{each} = {', '.join(map(str, found))}" for each, found in entry.indices.items()]
                 made = replace(made, lines=[*made.lines[:-1], [*made.lines[-1], *numbers]])
             mended = entry.repair is not None and beside is not None and form is not entry.corrected
-            empty = not (made.lines or like)
+            empty = not (made.lines or like) and len(_text(form)) < _LONGEST
             found.append(_unread(label, form, beside, note) if mended and empty else made)
     return found
 
@@ -232,8 +234,9 @@ def _begun(groups: _Shown) -> _Shown:
 
 
 def _short(groups: _Shown) -> _Shown:
-    """Return what is shown of a form, or nothing where it is still too long to be read."""
-    return groups if sum(size(part) for _, part in groups) <= 2 * _SYMBOLS else []
+    """Return what is shown of a form: as many of its equations as can be read, or none."""
+    sizes = accumulate(size(part) for _, part in groups)
+    return [group for group, total in zip(groups, sizes, strict=True) if total <= 2 * _SYMBOLS]
 
 
 def gather_elements(elements: Mapping[str, Node]) -> _Shown:

@@ -1,10 +1,14 @@
 """Entries of audited equations: bad files name entry and key; ids and findings are valid."""
 
+import re
+
 import pytest
 
-from runner.audit.entry import Entry, entries, parts
+from runner.audit.entry import Entry, entries, left_side, parts
 from runner.audit.sources import sources
 from runner.base.errors import RunnerError
+from runner.base.expressions.parser import parse
+from runner.base.expressions.typesetting import typeset
 from runner.reporting.markup import spans
 
 GOOD = {"id": "a", "number": "1", "place": "p", "title": "t", "printed": {"math": "x"}}
@@ -16,6 +20,8 @@ GOOD = {"id": "a", "number": "1", "place": "p", "title": "t", "printed": {"math"
         ({}, "neither elements nor math"),
         ({"code": "xarm7.right_inverse"}, "neither elements nor math"),
         ({"elements": {"a": "1"}, "code": "xarm7.right_inverse"}, "has elements and code"),
+        ({"elements": {"a": "1"}, "math": "a = 1"}, "has elements and math; what is shown is evaluated"),
+        ({"elements": {"a +": "1"}}, "it ends too early"),
     ],
 )
 def test_a_form_is_evaluated_in_one_way(form, message):
@@ -47,12 +53,39 @@ def test_ids_are_unique_and_name_the_source(source):
     assert all(name.startswith(f"{source}-") for name in ids)
 
 
+MEASURE = re.compile(r"\d\s?(?:[mcµ]?m|kg|N|rad|degrees?|°|s|Hz|%)\b")
+
+
 @pytest.mark.parametrize("source", sources())
-def test_the_mathematics_of_every_finding_is_valid(source):
+def test_no_measure_is_typed_in_words(source):
+    """`{largest}`, `{typical}` and `{size}` are filled in; what a source prints is mathematics."""
+    found = [
+        (entry.id, span.text)
+        for _, entry in entries(source)
+        for text in (entry.finding, entry.repair.why if entry.repair else "")
+        for span in spans(text)
+        if not span.math and MEASURE.search(span.text)
+    ]
+    assert found == []
+
+
+@pytest.mark.parametrize("text", ["off by 0.35 m", "7.5 cm", "3N", "10 degrees", "0.1 kg are"])
+def test_a_typed_measure_is_found(text):
+    assert MEASURE.search(text)
+
+
+@pytest.mark.parametrize("source", sources())
+def test_the_mathematics_of_every_entry_is_valid(source):
     from runner.reporting import formulas
 
     texts = [text for _, entry in entries(source) for text in (entry.finding, entry.repair.why if entry.repair else "")]
     inline = [span.text for text in texts for span in spans(text) if span.math]
-    forms = [form for _, entry in entries(source) for form in (entry.printed, entry.repair, entry.corrected) if form]
-    images = formulas.mathml(inline + [form.math for form in forms if form.math], displayed=False)
+    shown = []
+    for part, entry in entries(source):
+        letters = {**part.letters, **entry.letters}
+        for form in (form for form in (entry.printed, entry.repair, entry.corrected) if form):
+            shown += [form.math] if form.math else []
+            nodes = [parse(text).root for text in form.elements.values()] if form.readable else []
+            shown += [typeset(node, letters=letters) for node in (*map(left_side, form.elements), *nodes)]
+    images = formulas.mathml(list(dict.fromkeys(inline + shown)), displayed=False)
     assert [text for text, image in images.items() if image is None] == []

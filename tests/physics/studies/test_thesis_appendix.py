@@ -7,8 +7,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from runner.audit.entry import entries
-from runner.studies.thesis.equations.appendix import Harmonic, canonical, evaluate, motion, parse, read_appendix
+from runner.audit.entry import entries, form_values
+from runner.audit.evaluation import evaluate_all
+from runner.studies.thesis.equations.appendix import Harmonic, canonical, parse, read_appendix
 from runner.studies.thesis.equations.truths import thesis_appendix
 from runner.studies.thesis.equations.truths.thesis import symbols
 from runner.studies.thesis.equations.truths.thesis_appendix import appendix_damages, damages, true_series
@@ -23,6 +24,25 @@ DAMAGED = (7, 2, 2, 1, 1, 106)
 def term(text):
     (row,) = parse([text]).terms
     return row
+
+
+def evaluate(terms, q, dq, ddq):
+    """Return the torques, (T, 6) in N m, that terms add up to: torque (1 to 6), factor, harmonic, coefficient."""
+    torques = np.zeros_like(q)
+    for torque, factor, harmonic, coefficient in terms:
+        phase = q @ np.array(harmonic.multiples, dtype=float)
+        value = coefficient * (np.sin(phase) if harmonic.function == "sin" else np.cos(phase))
+        torques[:, torque - 1] += value * motion(factor, dq, ddq)
+    return torques
+
+
+def motion(factor, dq, ddq):
+    """Return the value of a group's factor, such as "qv1*qv2", shape (T,)."""
+    value = np.ones(len(dq))
+    for name in re.findall(r"q[va]\d(?:\^2)?", factor):
+        joint = int(name[2]) - 1
+        value = value * (dq[:, joint] if name[1] == "v" else ddq[:, joint]) ** (2 if name.endswith("^2") else 1)
+    return value
 
 
 def factors(text):
@@ -200,16 +220,22 @@ def test_a_term_printed_twice_is_right_once():
 
 
 @pytest.mark.parametrize("torque", range(1, 7))
-def test_the_numbers_of_the_finding(torque):
-    entry = next(entry for _, entry in entries("thesis") if entry.id == f"thesis-appendix-{torque}")
-    values = symbols(1000, np.random.default_rng(0))
+def test_the_torques_as_read_and_mended(torque):
+    part, entry = next((part, entry) for part, entry in entries("thesis") if entry.id == f"thesis-appendix-{torque}")
+    whole = entry.as_read(part.source)
+    assert len(whole.printed.elements) == GROUPS[torque - 1] + 1
+    values = symbols(50, np.random.default_rng(0))
     true = TRUTH.first(values)[f"tau_{torque}"]
-    read = getattr(thesis_appendix, f"read_{torque}")(values)[f"tau_{torque}"]
-    error = np.abs(read - true)
-    numbers = [TERMS[torque - 1], GROUPS[torque - 1], TERMS[torque - 1] - DAMAGED[torque - 1] + (torque == 4)]
-    scale = 1e3 if "mN m" in entry.finding else 1.0
-    numbers += [f"{scale * error.max():.2g}", f"{scale * np.median(error):.1g}", f"{np.abs(true).max():.2g}"]
-    assert re.findall(r"\d+(?:\.\d+)?(?:e-\d+)?", entry.finding) == list(map(str, numbers))
-    assert error.max() > entry.tolerance * 1e5
-    mended = getattr(thesis_appendix, f"mended_{torque}")(values)[f"tau_{torque}"]
+    read, mended = (form_values(whole, form, values, {})[f"tau_{torque}"] for form in (whole.printed, whole.repair))
+    assert np.abs(read - true).max() > entry.tolerance * 1e5
     np.testing.assert_allclose(mended, true, atol=1e-12)
+
+
+@pytest.mark.parametrize("torque", range(1, 7))
+def test_expressions_have_every_term(torque):
+    """As read, they add up to what the terms add up to, evaluated one by one."""
+    values = symbols(20, np.random.default_rng(1))
+    terms = [(term.torque, term.factor, term.harmonic, float(term.coefficient)) for term in read_appendix().terms]
+    expected = evaluate(terms, *COMBINED.audited.motion(values))[:, torque - 1]
+    texts = getattr(thesis_appendix, f"read_{torque}")()
+    np.testing.assert_allclose(evaluate_all(texts, values)[f"tau_{torque}"], expected, atol=1e-12)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.base.data_file import read_data
+from runner.base.data_file import line_of, read_data
 from runner.base.errors import RunnerError
 from runner.schema.model import StrictModel
 
@@ -59,3 +59,9 @@ def test_what_cannot_be_read_is_refused(tmp_path):
     assert "cannot read" in refused(tmp_path, "title: [", File)
     with pytest.raises(RunnerError, match="cannot read"):
         read_data(tmp_path / "none.yaml", File)
+
+
+def test_the_line_of_an_entry_is_found(tmp_path):
+    path = tmp_path / "a.yaml"
+    path.write_text("entries:\n- id: ab\n- id: a\n")
+    assert (line_of(path, "id: a"), line_of(path, "id: ab")) == (3, 2)

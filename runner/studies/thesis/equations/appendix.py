@@ -6,15 +6,10 @@ damaged; it is parsed as it is, and every repair is recorded.
 """
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
-
-import numpy as np
-
-from runner.base.arrays import FloatArray
 
 JOINTS = 6
 
@@ -72,27 +67,6 @@ class Appendix:
 
     terms: tuple[Term, ...]
     repairs: tuple[Repair, ...]
-
-
-def evaluate(
-    terms: Iterable[tuple[int, str, Harmonic, float]], q: FloatArray, dq: FloatArray, ddq: FloatArray
-) -> FloatArray:
-    """Return the torques, (T, 6) in N m, that terms add up to: torque (1 to 6), factor, harmonic, coefficient."""
-    torques = np.zeros_like(q)
-    for torque, factor, harmonic, coefficient in terms:
-        phase = q @ np.array(harmonic.multiples, dtype=float)
-        value = coefficient * (np.sin(phase) if harmonic.function == "sin" else np.cos(phase))
-        torques[:, torque - 1] += value * motion(factor, dq, ddq)
-    return torques
-
-
-def motion(factor: str, dq: FloatArray, ddq: FloatArray) -> FloatArray:
-    """Return the value of a group's factor, such as "qv1*qv2", shape (T,)."""
-    value = np.ones(len(dq))
-    for name in re.findall(r"q[va]\d(?:\^2)?", factor):
-        joint = int(name[2]) - 1
-        value = value * (dq[:, joint] if name[1] == "v" else ddq[:, joint]) ** (2 if name.endswith("^2") else 1)
-    return value
 
 
 @cache

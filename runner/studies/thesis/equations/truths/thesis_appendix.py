@@ -5,6 +5,8 @@ an acceleration. The model evaluates them on a sufficiently fine grid. A discret
 coefficients, the true values of the printed terms.
 """
 
+import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -12,16 +14,16 @@ from itertools import combinations_with_replacement, product
 
 import numpy as np
 
-from runner.audit.truth import Elements, Symbols, Way
 from runner.base.arrays import FloatArray
 from runner.robots.model import RobotModel
-from runner.studies.thesis.equations.appendix import JOINTS, Appendix, Harmonic, Term, evaluate, read_appendix
+from runner.studies.thesis.equations.appendix import JOINTS, Appendix, Harmonic, Term, read_appendix
 from runner.studies.thesis.equations.truths.thesis_arms import COMBINED
 
 _POINTS = 5  # along each joint position: a harmonic of at most twice the angle needs 2 * 2 + 1
 _TOLERANCE = 1e-9  # of a coefficient; the smallest that is not zero is 1/32000
 _DENOMINATOR = 1_000_000  # more than the largest of a true coefficient
 _TORQUES = range(1, JOINTS + 1)
+_WRITTEN = re.compile(r"([+-]) (\d+(?:/\d+)?)(.*)")
 
 Series = dict[tuple[int, str], dict[Harmonic, float]]
 """True coefficients by torque (1 to 6), factor of the group, and harmonic."""
@@ -135,33 +137,67 @@ def appendix_damages() -> tuple[Damage, ...]:
     return tuple(damages(read_appendix(), true_series()))
 
 
-# The six torques.
+# The six torques as expressions: `h_12` is what dq1 dq2 is multiplied with, `a_1` what ddq1 is, `g` is gravity.
 
 
-def _as_read(torque: int) -> Way:
+def _as_read(torque: int) -> Callable[[], dict[str, str]]:
     """Return a torque by its terms as they have been read."""
-    return lambda s: _torque(torque, list(map(_summand, read_appendix().terms)), s)
+    return lambda: _equations(torque, [(term.factor, _text(term)) for term in _terms(torque)])
 
 
-def _mended(torque: int) -> Way:
+def _mended(torque: int) -> Callable[[], dict[str, str]]:
     """Return a torque by its terms with the damaged ones mended, and the lost ones put in."""
 
-    def form(s: Symbols) -> Elements:
-        spoilt = {id(damage.read) for damage in appendix_damages()}
-        whole = [_summand(term) for term in read_appendix().terms if id(term) not in spoilt]
-        put_in = [(d.torque, d.factor, d.harmonic, float(d.true)) for d in appendix_damages() if d.harmonic]
-        return _torque(torque, whole + put_in, s)
+    def equations() -> dict[str, str]:
+        found = [each for each in appendix_damages() if each.torque == torque]
+        mended = {id(each.read): _true_text(each) for each in found}
+        whole = [(term.factor, mended.get(id(term), _text(term))) for term in _terms(torque)]
+        return _equations(torque, whole + [(each.factor, _true_text(each)) for each in found if each.read is None])
 
-    return form
-
-
-def _summand(term: Term) -> tuple[int, str, Harmonic, float]:
-    return term.torque, term.factor, term.harmonic, float(term.coefficient)
+    return equations
 
 
-def _torque(torque: int, terms: list[tuple[int, str, Harmonic, float]], s: Symbols) -> Elements:
-    row = [term for term in terms if term[0] == torque]
-    return {f"tau_{torque}": evaluate(row, *COMBINED.audited.motion(s))[:, torque - 1]}
+def _terms(torque: int) -> list[Term]:
+    return [term for term in read_appendix().terms if term.torque == torque]
+
+
+def _equations(torque: int, terms: list[tuple[str, str]]) -> dict[str, str]:
+    groups: dict[str, list[str]] = {}
+    for factor, text in terms:
+        groups.setdefault(factor, []).append(text)
+    sums = {_name(factor): " ".join(texts).strip().removeprefix("+ ") for factor, texts in groups.items()}
+    return sums | {f"tau_{torque}": " + ".join(_name(factor) + _motion(factor) for factor in groups)}
+
+
+def _name(factor: str) -> str:
+    joints = re.findall(r"q[va](\d)", factor)
+    if not joints:
+        return "g"
+    return f"a_{joints[0]}" if factor.startswith("qa") else f"h_{joints[0]}{joints[-1]}"
+
+
+def _motion(factor: str) -> str:
+    return "" if factor == "gravity" else "*" + factor.replace("qv", "dq").replace("qa", "ddq")
+
+
+def _text(term: Term) -> str:
+    """Return a term as it stands, with its sign before it and product signs that are lost or stray put right."""
+    body = re.sub(r"([-+])\*q", r"\1q", re.sub(r"(\d)q", r"\1*q", term.text.lstrip("+-")))
+    return f"{'-' if term.text.startswith('-') else '+'} {body}"
+
+
+def _true_text(damage: Damage) -> str:
+    """Return what must stand in a damaged place; nothing where no term does."""
+    if damage.harmonic is None:
+        return ""
+    signed = [(count, f"q{joint}") for joint, count in enumerate(damage.harmonic.multiples, start=1) if count]
+    angle = " ".join(f"{'-' if n < 0 else '+'} {f'{abs(n)}*' if abs(n) > 1 else ''}{q}" for n, q in signed)
+    value, function = damage.true, f"*{damage.harmonic.function}({angle.removeprefix('+ ')})" if signed else ""
+    if damage.read is not None and damage.kind == "coefficient":
+        match = _WRITTEN.fullmatch(_text(damage.read))
+        sign, coefficient, function = match.groups() if match else ("+", "1", function)
+        value *= damage.read.coefficient / Fraction(f"{sign}{coefficient}")  # -1 if its argument has the other sign
+    return f"{'-' if value < 0 else '+'} {abs(value)}{function}"
 
 
 read_1, read_2, read_3, read_4, read_5, read_6 = (_as_read(torque) for torque in _TORQUES)
