@@ -42,6 +42,7 @@ HEADER = ("difference", "interval", "n", "effect", "p")
 """Columns between the names of what is compared and the word."""
 
 _SMALLEST = 1e-3  # p-value that is told
+_EQUAL = 1e-9  # largest difference of a pair, relative to the larger median, that is rounding
 _SHARES = (0.05, SHARE)  # differences, relative to the larger median, for which pairs are counted
 _MOST_TURNS, _MOST_SENTENCES = 4, 6
 
@@ -109,6 +110,12 @@ class Answer(Asked):
         return max(share, ROUNDING)
 
     @property
+    def equal(self) -> bool:
+        """Whether all pairs are equal up to rounding."""
+        known = [abs(median) for median in self.comparison.medians if np.isfinite(median)]
+        return bool(np.abs(self.comparison.differences).max() <= max(ROUNDING, _EQUAL * max(known, default=0.0)))
+
+    @property
     def sign(self) -> int:
         """-1 where the second may be called smaller, 1 where larger, 0 where neither may be said."""
         error, size = self.comparison.error or 0.0, abs(self.comparison.difference)
@@ -170,6 +177,8 @@ class Answer(Asked):
         sizes = [quantity(one, self.unit, 2) if np.isfinite(one) else "never" for one in self.comparison.medians]
         first, second = (f"{name} ({size})" for name, size in zip(self.full_names, sizes, strict=True))
         head = f"{capital(title(self.metric))}:"
+        if self.equal:
+            return f"{head} {first} and {second} are equal up to rounding ({self.comparison.n} pairs)."
         if self.sign:
             share = f"{self.share} " if self.share else ""
             return f"{head} {share}{self.word} with {second} than with {first}, {self._evidence()}.{turns}"
@@ -233,6 +242,8 @@ class Answer(Asked):
         """The cells of a short table: both medians and the difference in one unit, and whether it is sure."""
         found = self.comparison
         first, second, difference = self._alike([*found.medians, found.difference])
+        if self.equal:
+            return [first, second, "0", "equal up to rounding"]
         share = f" ({'-' if found.difference < 0 else '+'}{self.share})" if self.share and found.difference else ""
         return [first, second, f"{difference}{share}", "yes" if self.sign else self.word]
 

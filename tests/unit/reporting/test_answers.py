@@ -52,6 +52,13 @@ def test_what_the_plants_step_leaves_is_no_answer_and_is_told():
     assert "not known" not in one(0.5 * APART, error=0.4).sentence()
 
 
+def test_pairs_that_are_equal_up_to_rounding_say_so():
+    (answer,) = judge([asked(1e-14 * np.arange(-4.0, 4.0))], [])
+    assert answer.sentence() == "Rms tracking error: A (1 m) and B (1 m) are equal up to rounding (8 pairs)."
+    assert answer.short_cells == ["1 m", "1 m", "0", "equal up to rounding"]
+    assert not one(1e-3 * APART).equal
+
+
 def test_rounding_of_nothing_is_no_answer():
     assert one(0.9 * ROUNDING * np.ones(N), size=0.0).word == "no more than rounding"
     assert one(1.1 * ROUNDING * np.ones(N), size=0.0).word == "larger"
