@@ -133,7 +133,7 @@ def test_a_robot_of_the_folder_by_its_config(paper):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("model.position", "model.positon", r"1.yaml, line \d+: paper-5: no truth 'model.positon' \(did you mean model.po"),
+        ("model.position", "model.positon", r"1.yaml, line \d+: paper-5: no truth 'model.positon' \(did you mean mod"),
         ("tip: lower", "tip: lowr", r"1.yaml, line \d+: paper-5: robot.tip: no frame 'lowr' \(did you mean lower\?\)"),
         ("robot: two.urdf", "robot: two_.urdf", r"1.yaml, line \d+: paper-3: robot.urdf: no file 'two_.urdf'"),
         ("robot: two.urdf", "robot: macr", r"1.yaml, line \d+: paper-3: no robot 'macr' \(did you mean macro\?\); ro"),
