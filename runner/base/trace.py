@@ -68,7 +68,8 @@ class Trace:
             the last is zero.
         stage_names: Names of the stages.
         desired: Desired tip position, velocity and acceleration, shape (T, 3, 3), in m, m/s and m/s^2.
-        limits: Torque limit of each joint, shape (nq,), in N m; infinite without a limit.
+        limits: Torque limit of each joint, shape (nq,), in N m; infinite without a limit. Shape (T, nq) if a limit
+            depends on the speed.
         joint_names: Names of the joints.
         joint_units: Unit of the position of each joint: rad for revolute joints, m for prismatic joints. The speed of a
             prismatic joint is in m/s and its torque is a force, in N.
@@ -127,6 +128,7 @@ class Trace:
             tau=self.tau[..., ticks, :],
             end_points=self.end_points[..., ticks, :],
             desired=self.desired[..., ticks, :, :],
+            limits=self.limits[..., ticks, :] if self.limits.ndim == self.q.ndim else self.limits,
             tick_seconds=self.tick_seconds[: len(t) - 1],
             q_command=None if self.q_command is None else self.q_command[..., ticks, :],
             contact=None if self.contact is None else self.contact.during(ticks),

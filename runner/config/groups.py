@@ -8,7 +8,8 @@ from runner.config.judgement import CaveatsConfig, SpecConfig
 from runner.config.limits import LimitsConfig, SweepConfig
 from runner.config.parsing import Parts, Problems, group_of, parse, parse_kind, parse_robot
 from runner.config.robot import OneArmConfig
-from runner.config.settings import PresetConfig, RunSettings, TorqueLimitsConfig
+from runner.config.settings import PresetConfig, RunSettings
+from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch import NotchConfig

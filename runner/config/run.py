@@ -14,6 +14,7 @@ from runner.controllers import ControllerConfig, Loop
 from runner.controllers.disturbance_observer import DisturbanceObserverConfig
 from runner.controllers.notch import NotchConfig
 from runner.plants import PLANTS, PlantConfig
+from runner.plants.motor_limits import TorqueLimits
 from runner.plugins.features import Commands
 from runner.plugins.registry import KindConfig, Kinds
 from runner.robots.mismatch import MISMATCHES, NONE, MismatchConfig
@@ -44,7 +45,7 @@ class RunConfig:
         path: The desired motion of the tip.
         environment: Config of the environment of the tip, by the model of its kind.
         noise: Noise and steps of each joint's encoder, or the config of user-supplied encoders.
-        torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite where there is none.
+        torque_limits: Torque limits of all joints.
         wrist_sensor: Config of the force/torque sensor, by the model of its kind.
         joint_torque_sensor: Errors of each joint's torque sensor, or the config of user-supplied sensors; None for no
             sensors.
@@ -72,7 +73,7 @@ class RunConfig:
     path: Trajectory
     environment: KindConfig
     noise: KindConfig
-    torque_limits: FloatArray
+    torque_limits: TorqueLimits
     wrist_sensor: KindConfig
     joint_torque_sensor: KindConfig | None
     endpoint_sensor: EndpointSensorConfig

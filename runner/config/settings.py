@@ -1,16 +1,11 @@
-"""Config keys at the root of a run, values of a preset, and torque limits."""
+"""Config keys at the root of a run, and values of a preset."""
 
 from typing import Annotated, Literal
 
-import numpy as np
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveFloat, PositiveInt
 
-from runner.base.arrays import FloatArray
-from runner.config.arms import RobotOutline
-from runner.robots.robot import by_joint
 from runner.schema.model import StrictModel
-from runner.schema.units import Acceleration, JointTorque, Seconds
-from runner.schema.values import TorquePerStage
+from runner.schema.units import Acceleration, Seconds
 
 
 class RunSettings(StrictModel):
@@ -51,22 +46,3 @@ class PresetConfig(StrictModel):
     mini_reference_velocity: Literal["zero", "full"]
     wrist_rotation: Literal["real", "parallel"]
     dynamics: Literal["coupled", "decoupled"]
-
-
-class TorqueLimitsConfig(StrictModel):
-    """Limits of the joint torques.
-
-    Attributes:
-        max: Largest magnitude of the torque, in N m; N for prismatic joints. One value for all joints, or a list with
-            one for each; by stage if the robot has several. None for no limit.
-    """
-
-    max: JointTorque[TorquePerStage | None]
-
-    def by_joint(self, arm: RobotOutline) -> FloatArray:
-        """Return the limit of each joint of a robot, shape (nq,), in N m: the effort in the URDF if it is smaller.
-
-        Raises:
-            ConfigError: for values that do not fit the robot's stages and joints.
-        """
-        return np.minimum(by_joint("torque_limits.max", self.max, arm.stage_joints), arm.effort_limits)

@@ -27,8 +27,8 @@ from runner.config.limits import check_memory
 from runner.config.parsing import Parts, Problems, require
 from runner.config.robot import RobotConfig
 from runner.config.run import RunConfig
-from runner.config.settings import TorqueLimitsConfig
 from runner.config.timing import Steps, Timing, count_steps, count_ticks
+from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
 from runner.plants import PLANTS, PlantConfig
 from runner.plants.kinds import options_of

@@ -59,7 +59,8 @@ def evaluate(traces: Trace, context: MetricContext) -> dict[str, FloatArray]:
                 overall = np.sqrt(_over(totals, joints) / (count * len(joints)))
                 result |= _over_joints(name, overall, np.sqrt(totals / count), joints)
             result |= _over_joints(fastest, speeds.max(axis=1, where=chosen, initial=0.0), speeds, joints)
-    share, shares = _saturation(size, peaks, traces.limits * _AT_LIMIT)
+    limits = traces.limits[..., None] if traces.limits.ndim == 2 else by_rows(traces.limits[:, :-1])
+    share, shares = _saturation(size, peaks, limits * _AT_LIMIT)
     result |= _over_joints("saturation_fraction", share, shares, np.arange(len(prismatic)))
     result["energy"] = _over(work, np.arange(len(prismatic)))
     for effort, chosen in (("control_effort", ~prismatic), ("force_effort", prismatic)):
@@ -74,12 +75,12 @@ def _saturation(size: FloatArray, peaks: FloatArray, limits: FloatArray) -> tupl
     Args:
         size: Absolute torques, shape (runs, nq, ticks), in N m.
         peaks: Largest absolute torque of each joint, shape (runs, nq), in N m.
-        limits: Smallest absolute torque that counts as at the limit, shape (runs, nq), in N m.
+        limits: Smallest absolute torque that counts as at the limit, shape (runs, nq, 1) or (runs, nq, ticks), in N m.
     """
     share, shares = np.zeros(len(peaks)), np.zeros_like(peaks)
-    some = np.flatnonzero((peaks >= limits).any(axis=1))
+    some = np.flatnonzero((peaks >= limits.min(axis=2)).any(axis=1))
     if len(some):
-        saturated = size[some] >= limits[some][:, :, None]
+        saturated = size[some] >= limits[some]
         share[some] = np.count_nonzero(saturated.any(axis=1), axis=1) / size.shape[2]
         shares[some] = np.count_nonzero(saturated, axis=2) / size.shape[2]
     return share, shares

@@ -5,6 +5,7 @@ from pydantic import NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import lapack, pin
+from runner.plants.motor_limits import TorqueLimits
 from runner.plants.plant import Plant, PlantWrapper
 from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel
@@ -142,7 +143,7 @@ class JointServo(PlantWrapper):
         model: The servo's nominal model, for M, V and G.
         config: Config of the servo.
         home: Configuration at which the damping is set, shape (nq,), in rad.
-        limits: Torque limits, shape (nq,), in N m; infinite without a limit.
+        limits: Torque limits of all joints.
         ticks_per_command: Servo periods from one command to the next.
         delay: Delay of a command, in servo periods.
 
@@ -156,7 +157,7 @@ class JointServo(PlantWrapper):
         model: RobotModel,
         config: ServoConfig,
         home: FloatArray,
-        limits: FloatArray,
+        limits: TorqueLimits,
         ticks_per_command: int,
         delay: int = 0,
     ) -> None:
@@ -181,5 +182,5 @@ class JointServo(PlantWrapper):
         """Pull the joints towards their commanded positions for one servo period; see PositionPlant."""
         self._set_points.advance(command)
         tau = self._law.torques(self.q, self.dq, self._set_points.position, self._set_points.velocity)
-        np.clip(tau, -self._limits, self._limits, out=self.tau)
+        np.clip(tau, *self._limits.bounds(self.dq), out=self.tau)
         self.plant.advance(self.tau + self.load)

@@ -68,18 +68,18 @@ def _stored_trace(run: Run, config: RunConfig) -> Trace:
     def joints(stem: str) -> FloatArray:
         return np.asarray(frame[[f"{stem}{joint + 1}" for joint in range(model.nq)]].to_numpy())
 
-    q, t = joints("q"), np.asarray(frame["t"].to_numpy())
+    q, dq, tau, t = joints("q"), joints("dq"), joints("tau"), np.asarray(frame["t"].to_numpy())
     points = end_points(config.arm, q, config.ignore_base_rotation)
     points[-1] = tip("tip")
     desired = np.stack([tip(stem) for stem in ("desired", "desired_velocity", "desired_acceleration")], axis=1)
     return Trace(
         t=t,
         q=q,
-        dq=joints("dq"),
-        tau=joints("tau"),
+        dq=dq,
+        tau=tau,
         end_points=points,
         desired=desired,
-        limits=config.torque_limits,
+        limits=config.torque_limits.applied(tau, dq),
         tick_seconds=np.zeros(len(t) - 1),
         **describe(config.arm, config.ignore_base_rotation),
     )

@@ -144,6 +144,7 @@ TorquePerStage = Annotated[float | list[float] | dict[str, float | list[float]],
 OptionalPerStage = float | list[float | None] | dict[str, float | list[float | None] | None] | None
 SpringPerStage = Annotated[OptionalPerStage, _optional("rigid joints")]
 MotorPerStage = Annotated[OptionalPerStage, _optional("a joint whose motor has none")]
+SpeedPerStage = Annotated[OptionalPerStage, _optional("a limit that is the same at every speed")]
 NotchPerStage = Annotated[OptionalPerStage, _optional("joints without a notch")]
 
 

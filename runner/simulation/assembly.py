@@ -148,11 +148,11 @@ def build_loops(config: RunConfig, nominal: Robot) -> tuple[Loop, ...]:
     loops = config.loops
     if nominal is not config.arm:
         loops = CONTROLLERS.build_for(config.controller, nominal, isinstance(config.path, TipOfJoints))
-    loops = tell_limits(loops, config.torque_limits)
+    loops = tell_limits(loops, config.torque_limits.max)
     if config.notch is not None:
         loops = add_notch(nominal, loops, config.notch.by_joint(config.arm), config.notch.width)
     observer, timing = config.disturbance_observer, config.timing
-    return add_observers(observer, nominal, loops, config.torque_limits, timing.tick, timing.late)
+    return add_observers(observer, nominal, loops, config.torque_limits.max, timing.tick, timing.late)
 
 
 def _find_commands(config: RunConfig, loops: tuple[Loop, ...]) -> Commands | None:

@@ -228,10 +228,18 @@ class BatchSimulator:
             tau=rows.command[own][:, acted],
             end_points=rows.end_points[:, own, : len(t)],
             desired=desired[: len(t)],
-            limits=np.array([runs[place].loop_program.commands.limits for place in places]),
+            limits=np.array([_limits(runs[place], rows.command[place], rows.dq[place], acted) for place in places]),
             tick_seconds=np.full(len(t) - 1, seconds),
             **self.memory.recall(describe, config.arm, config.ignore_base_rotation),
         )
+
+
+def _limits(run: RunSpec, command: FloatArray, dq: FloatArray, acted: NDArray[np.intp] | slice) -> FloatArray:
+    """Return the limits of the acting torques of a run; see Trace.limits."""
+    commands = run.loop_program.commands
+    held = [(loop.joints, loop.every) for loop in commands.loops]
+    limits = commands.limits.applied(command, dq, held)
+    return limits[acted] if commands.limits.depend_on_speed else limits
 
 
 def _inputs(runs: Sequence[RunSpec], errors: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:

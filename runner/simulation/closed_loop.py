@@ -7,6 +7,7 @@ from runner.controllers import Loop
 from runner.environments.external_wrench import Interaction
 from runner.plants import Plant
 from runner.plants.flexible_joints import MotorSide
+from runner.plants.motor_limits import TorqueLimits
 from runner.plugins.features import Commands
 from runner.robots.robot import Robot
 from runner.simulation.compiled import commands as code
@@ -22,7 +23,7 @@ class ClosedLoop:
         plant: The simulated robot, driven by the loops.
         loops: The control loops; together they command every joint once.
         trajectory: The desired motion of the tip.
-        limits: Torque limit of each joint, shape (nq,), in N m; infinite without a limit.
+        limits: Torque limits of all joints.
         tick: Time between two ticks of the fastest loop, in s; every loop's period is a multiple of it.
         ticks: Number of ticks.
         commands: Quantity that the loops command: joint torques, or joint positions for a position plant.
@@ -40,7 +41,7 @@ class ClosedLoop:
     plant: Plant
     loops: tuple[Loop, ...]
     trajectory: Trajectory
-    limits: FloatArray
+    limits: TorqueLimits
     tick: float
     ticks: int
     commands: Commands

@@ -107,6 +107,8 @@ def _run(closed: ClosedLoop, laws: ControlLoops, contact: Contact | None, record
             clock[k] = now()
             kept_q[k] = q = plant.q
             kept_dq[k] = dq = plant.dq
+            if closed.motor_side is not None:
+                recorder.speeds[k] = closed.motor_side.plant.dtheta
             if bends:
                 end_points[:, k] = plant.end_points()
             if contact is not None:
@@ -197,23 +199,26 @@ class _Command:
         self._measure, self._tip, self._times, self._desired = encoders.measure, tip, times, desired
         self._motors, self._joints = closed.motor_side, loop.joints
         self._held: FloatArray = commands[loop.joints]  # a view: values written here are the command
-        self._highest: FloatArray = closed.limits[loop.joints]
-        self._lowest: FloatArray = -self._highest
+        self._limits = closed.limits.of(loop.joints)
+        self._lowest, self._highest = -self._limits.max, self._limits.max
         self._clipped = closed.commands == "torque" and bool(np.isfinite(self._highest).any())
 
     def update(self, k: int, q: FloatArray, dq: FloatArray) -> None:
         """Compute the command of tick k from the true state, shapes (nq,)."""
-        tick, desired = k // self.every, self._desired[k]
+        tick, desired, true_dq = k // self.every, self._desired[k], dq
         q, dq = self._measure(tick, q, dq)
         if self._tip is not None:
             desired = self._tip.correct(tick, q, dq, desired)
         asked = self._law(self._times[k], q, dq, desired)
         if self._motors is not None:
-            asked = asked + self._motors.damping()[self._joints]
+            asked, true_dq = asked + self._motors.damping()[self._joints], self._motors.plant.dtheta
         if self._clipped:
-            np.minimum(asked, self._highest, out=asked)
-            np.maximum(asked, self._lowest, out=asked)
-        self._held[:] = asked
+            if self._limits.depend_on_speed:
+                self._lowest, self._highest = self._limits.bounds(true_dq[self._joints])
+            np.minimum(asked, self._highest, out=self._held)
+            np.maximum(self._held, self._lowest, out=self._held)
+        else:
+            self._held[:] = asked
 
 
 def _reset(closed: ClosedLoop, loop: Loop) -> Law:

@@ -67,6 +67,7 @@ class Recorder:
         timing: Command that acts in each tick.
         rows: Rows of states, commands and end points.
         torques: Torques of a plant that follows positions, shape (T, nq), in N m; None for a plant that takes torques.
+        speeds: Speeds of the motors in each tick, shape (T, nq), in rad/s.
         clock: Time at which each tick began, shape (T,), in ns.
         asked: Duration of the control loops in each tick, shape (T,), in ns.
         now: Clock of these times, in ns.
@@ -79,6 +80,7 @@ class Recorder:
         self.times: FloatArray = np.arange(ticks, dtype=np.float64) * closed.tick
         self.desired: FloatArray = np.zeros((ticks, 3, 3))
         self.torques = np.zeros_like(rows.command) if closed.commands == "position" else None
+        self.speeds = rows.dq if closed.motor_side is None else np.zeros_like(rows.dq)
         self.rows.q[0] = closed.q_start
         self.clock, self.asked = (np.zeros(ticks, dtype=np.int64) for _ in range(2))
         self.contact: ContactSignals | None = None
@@ -121,12 +123,20 @@ class Recorder:
             contact=self.contact,
             end_points=rows.end_points,
             desired=self.desired,
-            limits=closed.limits,
+            limits=self._applied_limits(),
             tick_seconds=np.diff(self.clock) * 1e-9,
             law_seconds=np.asarray(self.asked * 1e-9),
             **describe(closed.robot, closed.ignore_base_rotation),
         )
         return trace if failure is None else trace.ended(failure)
+
+    def _applied_limits(self) -> FloatArray:
+        closed, rows = self._closed, self.rows
+        if self.torques is not None:
+            return closed.limits.applied(self.torques, rows.dq)
+        held = [(loop.joints, closed.every(loop)) for loop in closed.loops]
+        limits = closed.limits.applied(rows.command, self.speeds, held)
+        return self.timing.throughout(limits) if closed.limits.depend_on_speed else limits
 
 
 class RobotFields(TypedDict):

@@ -27,7 +27,7 @@ _TABLE = """
     calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
         tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
     config: arms calibration cross_checks desired_motion flexibility groups input_shaper parsing
-        robot=config.robot run settings timing validation
+        robot=config.robot run settings timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
         disturbance_observer=controllers.disturbance_observer kinds=controllers.kinds notch=controllers.notch
         torque_filter torque_law
@@ -45,7 +45,7 @@ _TABLE = """
     plants: __init__=plants.__init__ bullet bullet_servers compiled_friction
         compiled_motion=compiled.motion
         computation=plants.computation decoupled flexible_config
-        flexible_joints=plants.flexible_joints friction friction_law kinds=plants.kinds kinematic mujoco
+        flexible_joints=plants.flexible_joints friction friction_law kinds=plants.kinds kinematic motor_limits mujoco
         plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched
     plugins: features guard metric_units registry
     robots: __init__=robots.__init__ chain description drawn

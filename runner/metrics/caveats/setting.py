@@ -33,7 +33,8 @@ class Setting:
         joint_names: Names of the joints.
         joint_units: Unit of the position of each joint, rad or m.
         position_limits: Lower and upper position limits, shape (2, nq), in rad; infinite without a limit.
-        torque_limits: Torque limit of each joint, shape (nq,), in N m; infinite without a limit.
+        torque_limits: Torque limit of each joint at rest, shape (nq,), in N m; infinite without a limit.
+        speed_limits_torque: True if a torque limit depends on the speed.
         plant: Kind of the plant.
         torques: True if controllers command torques instead of joint positions.
         ticks_per_torque: Number of ticks for which the torque of each joint is constant, shape (nq,).
@@ -57,6 +58,7 @@ class Setting:
     joint_units: Sequence[str]
     position_limits: FloatArray
     torque_limits: FloatArray
+    speed_limits_torque: bool
     plant: str
     torques: bool
     ticks_per_torque: NDArray[np.intp]
@@ -100,7 +102,8 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         joint_names=model.joint_names,
         joint_units=units,
         position_limits=position_limits,
-        torque_limits=config.torque_limits,
+        torque_limits=config.torque_limits.max,
+        speed_limits_torque=config.torque_limits.depend_on_speed,
         plant=config.plant.kind,
         torques=config.commands == "torque",
         ticks_per_torque=ticks,

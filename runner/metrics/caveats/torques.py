@@ -16,10 +16,7 @@ def _saturated(signals: Signals, setting: Setting) -> FloatArray:
 
 
 def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
-    name, limit = (
-        called(joint, setting),
-        f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}",
-    )
+    name, limit = called(joint, setting), _limit(joint, setting)
     if setting.plant == _IDEAL:
         return (
             f"{name} would need its torque limit, {limit}, or more in {percent(value)} of the ticks; the plant "
@@ -37,22 +34,27 @@ def _chatter(signals: Signals, setting: Setting) -> FloatArray:
         return signals.saturation
     share: FloatArray = np.zeros_like(signals.saturation)
     tau = np.ascontiguousarray(signals.tau.swapaxes(-1, -2)[..., often, :])  # one row for each joint is faster
-    leap = 2.0 * _AT_LIMIT * signals.limits[..., often, None]  # largest possible change of a torque
+    if setting.speed_limits_torque:
+        limits = signals.limits.swapaxes(-1, -2)[..., often, : tau.shape[-1]]
+        leap = np.maximum(_AT_LIMIT * (limits[..., 1:] + limits[..., :-1]), 1e-300)  # no change is not a jump
+    else:
+        leap = 2.0 * _AT_LIMIT * signals.limits[..., often, None]  # largest possible change of a torque
     jumps = (np.abs(tau[..., 1:] - tau[..., :-1]) >= leap).sum(axis=-1)
     share[..., often] = jumps * setting.ticks_per_torque[often] / tau.shape[-1]
     return np.minimum(share, 1.0)
 
 
 def _tell_chatter(value: float, joint: int, setting: Setting) -> str:
-    limit = f"{setting.torque_limits[joint]:.4g} {_unit(joint, setting)}"
+    name, limit = called(joint, setting), _limit(joint, setting)
     return (
-        f"{called(joint, setting)} chatters: its torque jumps from one limit, {limit}, to the opposite one "
+        f"{name} chatters: its torque jumps from one limit, {limit}, to the opposite one "
         f"at {percent(value)} of its ticks"
     )
 
 
-def _unit(joint: int, setting: Setting) -> str:
-    return "N m" if setting.joint_units[joint] == "rad" else "N"
+def _limit(joint: int, setting: Setting) -> str:
+    unit = "N m" if setting.joint_units[joint] == "rad" else "N"
+    return f"{setting.torque_limits[joint]:.4g} {unit}{' at rest' if setting.speed_limits_torque else ''}"
 
 
 SATURATION = TraceRule("saturation", _saturated, _tell_saturated)

@@ -1,7 +1,7 @@
 """Compiled control loops of a tick: measurement, control law and torque limit; their choice, and their runs."""
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
@@ -14,6 +14,7 @@ from runner.base.errors import SimulationError
 from runner.config.run import RunConfig
 from runner.controllers.controller import Loop
 from runner.controllers.torque_law import TorqueLaw
+from runner.plants.motor_limits import TorqueLimits, torque_bounds
 from runner.plugins.guard import Guarded, find_fault, place, unguarded
 from runner.robots.drawn import DrawnModel, by_run, over_runs
 from runner.robots.robot import Robot
@@ -61,7 +62,7 @@ class Commands:
         ignore_base_rotation: True if mounted stages keep their orientation at home.
         loops: The loops.
         noise: Noise, bias and resolution of the encoders.
-        limits: Torque limit of each joint, shape (nq,), in N m; infinite without a limit.
+        limits: Torque limits of all joints.
         guarded: True if torques that are not finite end the run as a failure of the law.
     """
 
@@ -69,7 +70,7 @@ class Commands:
     ignore_base_rotation: bool
     loops: tuple[LoopCode, ...]
     noise: EncoderNoise
-    limits: FloatArray
+    limits: TorqueLimits
     guarded: bool = False
 
     @cached_property
@@ -77,7 +78,8 @@ class Commands:
         """A string that is the same for two sets of loops with the same code."""
         loops = [(law_cache_key(loop.law), loop.joints, loop.every > 1, loop.follows_joints) for loop in self.loops]
         points = point_scalars(self.robot, self.ignore_base_rotation, any_number)
-        return repr((loops, points, self._rounded.tolist(), self.noise.velocity))
+        limits = [self.limits.joints_with_speed, *self._rounded.tolist()]
+        return repr((loops, points, limits, self.noise.velocity))
 
     def program(self) -> Program:
         """Return the compiled code of a tick, for a plant that is not compiled.
@@ -91,7 +93,7 @@ class Commands:
             _, kept, errors = expressed_commands(self, self.scalars(at.number), at)
             return Expressed([kept], [], at.widths, errors)
 
-        what = f"the control law of {len(self.limits)} joints"
+        what = f"the control law of {len(self.limits.max)} joints"
         return program(f"commands {self.pattern}", what, express, 1, self.are_ours)
 
     @cached_property
@@ -122,7 +124,7 @@ class Commands:
     def scalars(self, number: Callable[[float], Any]) -> "CommandScalars":
         """Return the numbers of the loops as scalars, converted by `number`."""
         return CommandScalars(
-            [number(limit) for limit in self.limits.tolist()],
+            [number(limit) for limit in self.limits.max.tolist()],
             {joint: number(self.noise.resolution[joint]) for joint in np.flatnonzero(self._rounded).tolist()},
             [law_scalars(loop.law, loop.period, number) for loop in self.loops],
             point_scalars(self.robot, self.ignore_base_rotation, number),
@@ -130,6 +132,7 @@ class Commands:
                 [number(gain) for gain in gains(self.noise.velocity, self.noise.velocity_bandwidth, loop.period)]
                 for loop in self.loops
             ],
+            {joint: number(self.limits.no_load_speed[joint]) for joint in self.limits.joints_with_speed},
         )
 
     def fault(self, torque: FloatArray, time: float) -> SimulationError | None:
@@ -154,7 +157,7 @@ class Commands:
         own = [times, *(ticks % loop.every == 0 for loop in self.loops)]
         parts = [np.broadcast_to(np.stack(own, axis=-1, dtype=float), (*lead, len(own))), desired.reshape(*lead, 9)]
         if self.follow_joints and joints is not None:
-            parts.append(joints.reshape(*lead, 3 * len(self.limits)))
+            parts.append(joints.reshape(*lead, 3 * len(self.limits.max)))
         return np.concatenate(parts, axis=-1)
 
     def measured_wrong(self, errors: Sequence[FloatArray], ticks: int) -> FloatArray:
@@ -254,7 +257,7 @@ class CompiledLoops:
     def __init__(
         self, commands: Commands, ticks: int, errors: Sequence[FloatArray], drawn: DrawnRow | None = None
     ) -> None:
-        program, nq = commands.program(), len(commands.limits)
+        program, nq = commands.program(), len(commands.limits.max)
         self._commands, self._errors, self._messages, self._drawn = commands, errors, program.errors, drawn
         self._frame, self._guarded = program.frame(ticks), commands.guarded
         self.rows = Rows.of(self._frame.rows[:, :, 0], nq)
@@ -298,10 +301,11 @@ def find_commands(config: RunConfig, loops: Sequence[Loop]) -> Commands | None:
     laws = [unguarded(loop.controller) for loop in loops]
     if not evaluator() or not all(isinstance(law, TorqueLaw) and law.compilable for law in laws):
         return None
-    if len(limits) > MOST_JOINTS:
-        _tell(f"the arm has {len(limits)} joints, and code is made for {MOST_JOINTS} or fewer: laws are not compiled")
+    nq = len(limits.max)
+    if nq > MOST_JOINTS:
+        _tell(f"the arm has {nq} joints, and code is made for {MOST_JOINTS} or fewer: laws are not compiled")
         return None
-    joints = range(len(limits))
+    joints = range(nq)
     codes = [
         LoopCode(
             law, slice(*loop.joints.indices(len(joints))), round(loop.period / tick), loop.period, loop.follows_joints
@@ -346,6 +350,7 @@ class CommandScalars(NamedTuple):
         laws: Numbers of each loop's law.
         points: Numbers of the stages' end points.
         velocity: Gains of each loop's velocity estimate.
+        no_load_speeds: No-load speed, by joint, in rad/s; only for joints with one.
     """
 
     limits: Sequence[Value]
@@ -353,6 +358,7 @@ class CommandScalars(NamedTuple):
     laws: Sequence[LawScalars]
     points: tuple[PointScalars, ...]
     velocity: Sequence[Sequence[Value]]
+    no_load_speeds: Mapping[int, Value]
 
 
 def expressed_commands(commands: Commands, numbers: CommandScalars, at: Slots) -> tuple[list[Value], Block, list[str]]:
@@ -364,7 +370,7 @@ def expressed_commands(commands: Commands, numbers: CommandScalars, at: Slots) -
     Raises:
         CannotCompileError: if a law uses an operation that expressions do not support.
     """
-    nq, loops = len(commands.limits), range(len(commands.loops))
+    nq, loops = len(commands.limits.max), range(len(commands.loops))
     (time,), due = at.take(GIVEN, 1)[1], at.take(GIVEN, len(loops))[1]
     tip = as_array(at.take(GIVEN, 9)[1]).reshape(3, 3)
     joints = as_array(at.take(GIVEN, 3 * nq)[1]).reshape(3, nq) if commands.follow_joints else tip
@@ -427,7 +433,8 @@ def _asked(
     first, memory = at.take(STATE, len(loop.law.start(np.zeros(len(measured)))))
     asked, goes_on, backend = expressed_torque(loop.law, own, given.time, measured, velocity, given.reference, memory)
     changes += _at(STATE, first, _in_own_ticks(loop, given, memory, goes_on))
-    torques = [_clip(value, limit) for value, limit in zip(asked, numbers.limits[loop.joints], strict=True)]
+    commanded = zip(range(count)[loop.joints], asked, strict=True)
+    torques = [_clip(torque, *_bounds(numbers, joint, given.dq)) for joint, torque in commanded]
     if loop.every > 1:
         first, held = at.take(STATE, len(torques))
         torques = _in_own_ticks(loop, given, held, torques)
@@ -446,7 +453,19 @@ def _at(space: str, first: int, values: Sequence[Any]) -> list[tuple[str, int, A
     return [(space, first + index, value) for index, value in enumerate(values)]
 
 
-def _clip(torque: Value, limit: Value) -> Value:
-    """Return a torque within a limit; NaN stays."""
-    below = select(less(limit, torque), limit, torque)
-    return select(less(below, -limit), -limit, below)
+def _bounds(numbers: CommandScalars, joint: int, dq: Sequence[Value]) -> tuple[Value, Value]:
+    """Return the lowest and the highest torque of a joint."""
+    limit = numbers.limits[joint]
+    if joint not in numbers.no_load_speeds:
+        return -limit, limit
+    return torque_bounds(_maximum, limit, numbers.no_load_speeds[joint], dq[joint])
+
+
+def _maximum(a: Value, b: Value) -> Value:
+    return select(less(a, b), b, a)
+
+
+def _clip(torque: Value, lowest: Value, highest: Value) -> Value:
+    """Return a torque within bounds; NaN stays."""
+    below = select(less(highest, torque), highest, torque)
+    return select(less(below, lowest), lowest, below)

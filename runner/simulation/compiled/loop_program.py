@@ -61,7 +61,7 @@ class LoopProgram:
 
         return program(
             self.pattern,
-            f"a control tick of {len(self.commands.limits)} joints",
+            f"a control tick of {len(self.commands.limits.max)} joints",
             express,
             lanes,
             self.commands.are_ours,
@@ -135,7 +135,7 @@ def run_all(
     count, ticks = len(start), shared.shape[-2]
     code = loop_program.program(1 if count == 1 else LANES)
     frame = code.frame(ticks, loop_program.delay, loop_program.steps)
-    nq, stages = len(loop_program.commands.limits), len(loop_program.motion.robot.stages)
+    nq, stages = len(loop_program.commands.limits.max), len(loop_program.motion.robot.stages)
     found = Rows.new(np.empty, (count, ticks), nq, stages)
     wide, long = shared.shape[-1], start.shape[1]
     for first in range(0, count, code.lanes):
@@ -211,7 +211,7 @@ def tangents(loop_program: LoopProgram, setting: Setting, slopes: Sequence[Setti
         frame.call()
         rows = frame.rows[:, frame.rows.shape[1] // 2 :, : len(own)]
         parts.append(rows.transpose(2, 0, 1).copy())
-    return Rows.of(np.concatenate(parts), len(loop_program.commands.limits))
+    return Rows.of(np.concatenate(parts), len(loop_program.commands.limits.max))
 
 
 def _frame(
@@ -250,7 +250,7 @@ def _frame(
         return space != PARS or bool(varied[index])
 
     pattern = f"tangents {loop_program.pattern} {folded.tolist()} {varied.tolist()} {noisy}"
-    joints = len(loop_program.commands.limits)
+    joints = len(loop_program.commands.limits.max)
     code = program(pattern, f"the derivatives of {joints} joints", express, LANES, loop_program.commands.are_ours)
     assert code.widths[PARS] == 2 * len(varied)  # noqa: S101 - the numbers are requested in the same order
     assert code.widths[STATE] % 2 == code.widths[ROWS] % 2 == 0  # noqa: S101

@@ -72,7 +72,7 @@ def test_without_noise_one_stage_may_have_some():
 
 def test_limits_reach_the_joints_of_their_stage(closed_loop):
     loop = closed_loop(*COMBINED, "torque_limits.max.macro=[40,30,20]", "trajectory=quintic")
-    assert loop.limits.tolist() == [40.0, 30.0, 20.0, 5.0, 5.0, 5.0]
+    assert loop.limits.max.tolist() == [40.0, 30.0, 20.0, 5.0, 5.0, 5.0]
 
 
 def test_the_tick_is_the_fastest_stage_s(checked_config):

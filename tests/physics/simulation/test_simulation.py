@@ -10,6 +10,7 @@ import pytest
 
 from runner.controllers import Loop
 from runner.plants import Plant
+from runner.plants.motor_limits import TorqueLimits
 from runner.sensing import EncoderNoise, JointEncoders
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import ClosedLoop, simulate
@@ -68,7 +69,7 @@ def loop_of(closed_loop):
             compiled=None,
             tick=period,
             ticks=ticks,
-            limits=np.zeros(3) + limits,
+            limits=TorqueLimits.constant(np.zeros(3) + limits),
         )
 
     return make

@@ -13,6 +13,7 @@ from runner.controllers import Loop
 from runner.controllers.kinds import guard_law
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants import compiled_motion
+from runner.plants.motor_limits import TorqueLimits
 from runner.plugins.guard import unguarded
 from runner.sensing import EncoderNoise
 from runner.simulation.compiled import commands as loops
@@ -207,7 +208,7 @@ def found(controller, joints=3):
     robot = SimpleNamespace(model=law.models[0], stages=(None,))
     exact = EncoderNoise(*np.zeros((3, joints)), "none", "exact")
     loop = Loop("whole", slice(0, joints), 0.01, controller)
-    timing, limits = SimpleNamespace(tick=0.01), np.full(joints, np.inf)
+    timing, limits = SimpleNamespace(tick=0.01), TorqueLimits.constant(np.full(joints, np.inf))
     config = SimpleNamespace(
         arm=robot, ignore_base_rotation=False, timing=timing, encoder_noise=exact, torque_limits=limits
     )

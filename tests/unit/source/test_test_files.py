@@ -46,6 +46,7 @@ SHARED = {
     "config/robot": "contract/config/test_stage_defaults.py",
     "config/run": "contract/config/test_validation.py",
     "config/settings": "contract/config/test_validation.py",
+    "config/torque_limits": "unit/config/test_joints.py",
     "controllers/joint_space/joint_law": "physics/controllers/test_joint_laws.py",
     "controllers/joint_space/motor_pd": "physics/controllers/test_joint_laws.py",
     "controllers/kinds": "physics/controllers/test_controller_kinds.py",
