@@ -190,7 +190,7 @@ def test_an_own_robot_runs(cli, tmp_path, place):
     assert "warning" not in ending.err
     assert 'mass value="2.0"' in (ending.folder / "robot.urdf").read_text()
     again = compose(["robot=mine", "torque_limits=thesis"], [own])
-    assert validate(again).torque_limits.tolist() == [50.0, 50.0, 20.0]
+    assert validate(again).torque_limits.max.tolist() == [50.0, 50.0, 20.0]
 
 
 def test_an_own_robot_without_urdf_names_the_places_searched(cli, tmp_path):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from support.physics import critically_damped
 
+from runner.plants.motor_limits import TorqueLimits
 from runner.plants.rk4 import Rk4
 from runner.plants.servo import JointServo, ServoConfig
 
@@ -23,7 +24,7 @@ def servo(macro):
             gravity_compensation=gravity_compensation,
             interpolate=interpolate,
         )
-        plant = JointServo(Rk4(macro, PERIOD, 1), macro, config, Q, np.full(3, limit), 1)
+        plant = JointServo(Rk4(macro, PERIOD, 1), macro, config, Q, TorqueLimits.constant(np.full(3, limit)), 1)
         plant.reset(Q, np.zeros(3))
         return plant
 

@@ -119,7 +119,7 @@ def test_the_xarm7_stays_within_its_limits(moved, checked_config):
 
 
 def test_the_xarm7_has_its_efforts_where_no_limit_is_asked_for(checked_config):
-    assert checked_config("robot=xarm7_mini").torque_limits[:7].tolist() == [50, 50, 30, 30, 30, 20, 20]
+    assert checked_config("robot=xarm7_mini").torque_limits.max[:7].tolist() == [50, 50, 30, 30, 30, 20, 20]
 
 
 # The chains

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from runner.plants.motor_limits import TorqueLimits
 from runner.sensing import EncoderNoise
 from runner.simulation.compiled.commands import Commands, CompiledLoops, LoopCode
 from runner.symbolic.engine import evaluator
@@ -26,7 +27,7 @@ def torques(law, every, postures):
     loop = LoopCode(law, slice(0, 3), every, 0.01 * every)
     reference = np.zeros((ticks, 3, 3))
     reference[:, 0] = law.models[0].tip_position(BENT + 0.02)
-    commands = Commands(robot, False, (loop,), exact, np.full(3, np.inf))
+    commands = Commands(robot, False, (loop,), exact, TorqueLimits.constant(np.full(3, np.inf)))
     run = CompiledLoops(commands, ticks, [np.zeros((-(-ticks // every), 3))])
     run.start(0.01 * np.arange(ticks), reference, None, postures[0])
     for tick, q in enumerate(postures):

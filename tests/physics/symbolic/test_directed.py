@@ -8,6 +8,7 @@ from support.friction import friction_law
 
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants.decoupled import ArmMotion, Motion
+from runner.plants.motor_limits import TorqueLimits
 from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
 from runner.sensing import EncoderNoise
@@ -41,7 +42,7 @@ def wheel(one_stage):
         robot, none = one_stage(URDF, model), np.zeros(1)
         loop = LoopCode(Held([model], False, HeldNumbers(torque)), slice(0, 1), 1, TICK)
         noise = EncoderNoise(none, none, none, "none", "exact")
-        commands = Commands(robot, False, (loop,), noise, np.array([limit]))
+        commands = Commands(robot, False, (loop,), noise, TorqueLimits.constant(np.array([limit])))
         motion = Motion(robot, (ArmMotion(URDF, model, slice(0, 1), friction_law()),), False)
         return LoopProgram(commands, motion, TICK, TICK, 1, 0)
 

@@ -72,7 +72,9 @@ def compiled_torques(law, measured):
     n = law.models[0].nq
     robot = SimpleNamespace(model=law.models[0], stages=(None,))
     exact = EncoderNoise(*np.zeros((3, n)), "none", "exact")
-    commands = Commands(robot, False, (LoopCode(law, slice(0, n), 1, 0.01),), exact, np.full(n, np.inf))
+    commands = Commands(
+        robot, False, (LoopCode(law, slice(0, n), 1, 0.01),), exact, TorqueLimits.constant(np.full(n, np.inf))
+    )
     references = np.array([reference for _, _, reference in measured])
     run = CompiledLoops(commands, len(measured), [np.zeros((len(measured), n))])
     run.start(0.01 * np.arange(len(measured)), references, None, measured[0][0])
