@@ -1,7 +1,7 @@
 """Displayed forms of an audited equation, shortened, with differences marked and the elements it resembles."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import replace
 from itertools import accumulate
 from types import MappingProxyType
@@ -13,7 +13,7 @@ from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
 from runner.base.expressions.tree import Call, Name, Node, Sum, holds, parts, shorten_expression, size
 from runner.base.expressions.typesetting import Letters, linear, typeset
-from runner.reporting.audit.marks import LONG, cut, marked_formulas, pieces
+from runner.reporting.audit.marks import LONG, cut, pieces
 from runner.reporting.equation import EquationForm
 
 _SYMBOLS = 40  # symbols of a form that is shown whole
@@ -83,7 +83,7 @@ def forms_of(entry: Entry, likeness: Likeness, letters: Letters = MappingProxyTy
         if form.math and form is entry.repair and form.math == entry.printed.math:
             found.append(EquationForm(label, note=note))
         elif form.math:
-            found.append(EquationForm(label, [[_math(forms, place)]], note=note))
+            found.append(EquationForm(label, [[form.math]], note=note))
         elif elements is None:
             found.append(_unread(f"{label}, as the text has it", form, beside, note))
         elif form is entry.repair and read[0] is None and not (entry.printed.math or entry.corrected):
@@ -100,14 +100,6 @@ def forms_of(entry: Entry, likeness: Likeness, letters: Letters = MappingProxyTy
             empty = not (made.lines or like) and len(_text(form)) < _LONGEST
             found.append(_unread(label, form, beside, note) if mended and empty else made)
     return found
-
-
-def _math(forms: Sequence[Form], place: int) -> str:
-    """Return a formula with what it does not share with the next one marked, the last with the one before."""
-    first = min(place, len(forms) - 2)
-    if first < 0 or not (forms[first].math and forms[first + 1].math):
-        return forms[place].math
-    return marked_formulas(forms[first].math, forms[first + 1].math)[place - first]
 
 
 def _label(entry: Entry, form: Form) -> str:

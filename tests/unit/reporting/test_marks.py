@@ -1,27 +1,15 @@
-"""Marks on parts of a formula that the other form lacks."""
+"""Marks on parts of a text that the other text lacks."""
 
-import pytest
-
-from runner.reporting import formulas
-from runner.reporting.audit.marks import marked_formulas
+from runner.reporting.audit.marks import LONG, cut, pieces
 
 
-@pytest.mark.parametrize(
-    ("first", "second", "left", "right"),
-    [
-        ("i, d_i = 2, theta_2, 0", "i, d_i = 2, theta_2 - 90 degree, 0", 0, ["differs(- 90 degree)"]),
-        ("M_p = r F", "M_q = r times F", ["differs(M_p)"], ["differs(M_q)", "differs(times)"]),
-        ("J = mat(a, b; Z_1, Z_2)", "J = mat(a, b; Z_0, Z_2)", ["differs(Z_1)"], ["differs(Z_0)"]),
-        ("x = a b", "x = a b", 0, 0),
-        ('p = "with (a b" c', 'p = "with (a b" d', ["differs(c)"], ["differs(d)"]),
-    ],
-)
-def test_what_the_other_formula_lacks_is_marked(first, second, left, right):
-    for found, expected in zip(marked_formulas(first, second), (left, right), strict=True):
-        assert found.count("differs(") == len(expected or ())
-        assert all(each in found for each in expected or ())
-        assert formulas.mathml([found], displayed=False)[found] is not None
+def test_what_the_other_text_lacks_is_marked():
+    assert pieces("a = b", "a = c") == [(False, "a = "), (True, "b")]
+    assert pieces("a b", "a c b") == [(False, "a "), (True, "\u200a"), (False, "b")]
 
 
-def test_formulas_that_share_nothing_have_no_mark():
-    assert marked_formulas("a = b c", "p q r") == ("a = b c", "p q r")
+def test_long_stretches_in_common_are_cut():
+    found = pieces("x" * LONG + "b", "x" * LONG + "c")
+    assert found[-1] == (True, "b")
+    assert len(found[0][1]) < LONG / 2
+    assert cut("x" * (LONG + 1)) == [(False, "x" * LONG + " …")]
