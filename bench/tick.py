@@ -26,11 +26,20 @@ with quiet_stderr():
 TICKS = 2000
 _SCENE = ("trajectory=quintic", "noise=thesis")
 _MACRO = ("robot=macro", "trajectory.duration=19")
+_FRICTION = (
+    "plant.friction.viscous=1",
+    "plant.friction.coulomb=1",
+    "plant.friction.asymmetry=0.3",
+    "plant.friction.static=2",
+    "plant.friction.stribeck_speed=0.05",
+    "plant.friction.sigmoid={level: 1, steepness: 8, shift: 0.03}",
+)
 _CASES = {
     "bullet, 10 substeps": (*_MACRO, "plant=bullet", "plant.step=0.001"),
     "bullet, 1 substep": (*_MACRO, "plant=bullet", "plant.step=0.01"),
     "impedance, 10 substeps": (*_MACRO, "plant=bullet", "plant.step=0.001", "controller=impedance"),
     "rk4, 1 step": (*_MACRO, "plant=rk4", "plant.step=0.01"),
+    "rk4, friction": (*_MACRO, "plant=rk4", "plant.step=0.01", *_FRICTION),
     "armature, 10 substeps": (*_MACRO, "plant=bullet", "plant.step=0.001", "robot.armature=0.5"),
     "armature, 1 substep": (*_MACRO, "plant=bullet", "plant.step=0.01", "robot.armature=0.5"),
     "combined, 4 substeps": ("robot=combined", "trajectory.duration=1", "plant=bullet", "plant.step=0.00025"),
@@ -49,7 +58,7 @@ def main() -> bool:
     times = measure({name: Block(work, TICKS) for name, work in blocks.items()})
 
     F10, F1 = times["F: bullet, 10 substeps"], times["F: bullet, 1 substep"]
-    bullet10, bullet1, impedance10, rk4, armature10, armature1, combined = (times[name] for name in _CASES)
+    bullet10, bullet1, impedance10, rk4, rubbing, armature10, armature1, combined = (times[name] for name in _CASES)
     F6 = times["F: combined, 4 substeps"]
     print(
         f"CPU time of a control tick, 3 joints (combined: 6), median of the quieter {ROUNDS // 2} of {ROUNDS} rounds "
@@ -63,6 +72,7 @@ def main() -> bool:
         _judge("with armature / without, 10", ratio(armature10, bullet10), 4.0),
         _judge("with armature / without, 1", ratio(armature1, bullet1), 2.5),
         _judge("rk4 / F, 10 substeps", ratio(rk4, F10), 0.9),
+        _judge("rk4 with friction / without", ratio(rubbing, rk4), 1.5),
         _judge("bullet, 1 substep - F (us)", median(a - b for a, b in zip(bullet1, F1, strict=True)), 12.0),
         _judge("combined: all but F / F", ratio(combined, F6) - 1.0, 2.0),
     ]

@@ -13,6 +13,7 @@ from runner.base.errors import ConfigError
 from runner.schema.values import FrictionConfig, expand
 
 _STEEPEST = 700.0  # exp of it is a double
+_EXPONENTS = {"exponential": 1, "gauss": 2}
 _ARRAYS = "viscous", "coulomb", "asymmetry", "stiction", "stribeck_speed", "sigmoid"
 
 
@@ -34,7 +35,7 @@ class JointFriction:
         stiction: s - c, shape (n,), in N m; s is the static level.
         stribeck_speed: v_s, shape (n,), in rad/s; 0 if w is 0 in motion.
         sigmoid: phi_1, phi_2 and phi_3, shape (3, n), in N m, s/rad and rad/s.
-        exponent: e.
+        exponent: e, 1 or 2.
     """
 
     viscous: FloatArray
@@ -118,7 +119,8 @@ def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> J
     def array(name: str, value: Any) -> FloatArray:
         return np.array(expand(f"{key}.{name}", value, joints))
 
-    coulomb, asymmetry = array("coulomb", config.coulomb), array("asymmetry", config.asymmetry)
+    coulomb = array("coulomb", config.coulomb)
+    asymmetry = array("asymmetry", 0.0 if config.asymmetry is None else config.asymmetry)
     static = coulomb if config.static is None else array("static", config.static)
     if isinstance(config.static, dict):
         static = np.where([joint in config.static for joint in joints], static, coulomb)
@@ -142,4 +144,6 @@ def joint_friction(key: str, config: FrictionConfig, joints: Sequence[str]) -> J
     if problems:
         raise ConfigError(problems)
     viscous, speeds = array("viscous", config.viscous), array("stribeck_speed", speed)
-    return JointFriction(viscous, coulomb, asymmetry, static - coulomb, speeds, sigmoid, config.stribeck_exponent)
+    return JointFriction(
+        viscous, coulomb, asymmetry, static - coulomb, speeds, sigmoid, _EXPONENTS[config.stribeck_curve]
+    )

@@ -161,6 +161,9 @@ FiniteByJoint = Annotated[float | list[float] | dict[str, float], _by_joint(_fin
 NonNegativeByJoint = Annotated[
     float | list[float] | dict[str, float], _by_joint(lambda value: _number(value, zero_allowed=True))
 ]
+OptionalFiniteByJoint = Annotated[
+    float | list[float] | dict[str, float] | None, _by_joint(lambda value: None if value is None else _finite(value))
+]
 OptionalNonNegativeByJoint = Annotated[
     float | list[float] | dict[str, float] | None,
     _by_joint(lambda value: None if value is None else _number(value, zero_allowed=True)),
@@ -192,20 +195,20 @@ class FrictionConfig(StrictModel):
         viscous: Torque per speed, in N m s/rad; N s/m for prismatic joints.
         coulomb: Torque against any motion, in N m; N for prismatic joints. Joints at rest move only above it.
         asymmetry: Torque that is added to coulomb and static upwards and subtracted downwards, in N m; N for prismatic
-            joints.
+            joints. None for 0.
         static: Torque above which joints at rest move, in N m; N for prismatic joints. None for coulomb.
         stribeck_speed: Speed over which friction falls from static to coulomb, in rad/s; m/s for prismatic joints. None
             if it falls as soon as a joint moves.
-        stribeck_exponent: Exponent of the speed in this fall: 1 is exponential, 2 a Gauss curve.
+        stribeck_curve: Shape of this fall: an exponential or a Gauss curve.
         sigmoid: Smooth friction.
     """
 
     viscous: JointDamping[NonNegativeByJoint]
     coulomb: JointTorque[NonNegativeByJoint]
-    asymmetry: JointTorque[FiniteByJoint]
+    asymmetry: JointTorque[OptionalFiniteByJoint]
     static: JointTorque[OptionalNonNegativeByJoint]
     stribeck_speed: JointSpeed[OptionalPositiveByJoint]
-    stribeck_exponent: Literal[1, 2]
+    stribeck_curve: Literal["exponential", "gauss"]
     sigmoid: SigmoidConfig
 
 

@@ -12,11 +12,13 @@ WHEEL = """
 <joint name="q1" type="revolute"><parent link="base"/><child link="wheel"/><axis xyz="0 0 1"/>
   <limit lower="-1e9" upper="1e9" effort="1e9" velocity="1e9"/></joint></robot>
 """
-NONE = {"viscous": 0.0, "coulomb": 0.0, "asymmetry": 0.0, "static": None, "stribeck_speed": None}
+NONE = {"viscous": 0.0, "coulomb": 0.0, "asymmetry": None, "static": None, "stribeck_speed": None}
 
 
-def friction_law(joints: int = 1, level=0.0, steepness=0.0, shift=0.0, stribeck_exponent=2, **values) -> JointFriction:
+def friction_law(
+    joints: int = 1, level=0.0, steepness=0.0, shift=0.0, stribeck_curve="gauss", **values
+) -> JointFriction:
     """Return the friction of joints q1, q2, ...; the sigmoid's keys are given without its name."""
     sigmoid = SigmoidConfig(level=level, steepness=steepness, shift=shift)
-    config = FrictionConfig(**{**NONE, **values}, stribeck_exponent=stribeck_exponent, sigmoid=sigmoid)
+    config = FrictionConfig(**{**NONE, **values}, stribeck_curve=stribeck_curve, sigmoid=sigmoid)
     return joint_friction("plant.friction", config, [f"q{joint + 1}" for joint in range(joints)])

@@ -45,7 +45,7 @@ def _law(coulomb: float = 0.0, asymmetry: float = 0.0, **more: float) -> JointFr
         asymmetry=asymmetry,
         static=static,
         stribeck_speed=speed,
-        stribeck_exponent=2,
+        stribeck_curve="gauss",
         sigmoid=sigmoid,
     )
     return joint_friction("plant.friction", config, ["q1"])

@@ -23,8 +23,16 @@ SHORT = (*QUIET, "noise=thesis")
 TIED = ("robot=macro", "controller=computed_torque", "disturbance_observer=momentum", "trajectory=quintic", *SHORT)
 REDUNDANT = ("robot=xarm7", *TIED[1:])
 BY_JOINT = ("torque_limits.max=[40,45,50]", "plant.friction.viscous=[0.2,0,0.1]", "robot.payload.mass=0.5")
-TEN = (
+RUBBING = (
+    "plant.friction.coulomb=[1,0,1]",
+    "plant.friction.static=[2,1,1]",
+    "plant.friction.stribeck_speed=0.2",
+    "plant.friction.asymmetry=[0.3,0,-0.2]",
+    "plant.friction.sigmoid={level: 1, steepness: 8, shift: 0.03}",
+)
+CASES = (
     (*TIED, *BY_JOINT),
+    (*TIED, *RUBBING),
     (*REDUNDANT, "mismatch.mass=1.1", "controller.integral_gain=500", "torque_limits=thesis"),
     ("robot=combined", "controller=macro_mini", "disturbance_observer=momentum", "trajectory=quintic", *SHORT),
     ("robot=combined", "controller=whole_body", "trajectory=quintic", *SHORT),
@@ -145,8 +153,8 @@ def test_every_number_that_acts_is_told(analysed):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("overrides", TEN)
-def test_ten_configs_agree_with_runs_composed_again(analysed, overrides):
+@pytest.mark.parametrize("overrides", CASES)
+def test_configs_agree_with_runs_composed_again(analysed, overrides):
     found = analysed(*overrides)
     check_derivatives(found, overrides)
     check_completeness(found, overrides)

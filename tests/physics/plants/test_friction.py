@@ -218,7 +218,7 @@ def test_each_joint_of_a_staged_robot_has_its_own_friction(simulated, dynamics):
             "plant.friction.sigmoid.shift: -1 of q1 times plant.friction.sigmoid.steepness, 1000, must be within 700",
         ),
         ("plant.friction.stribeck_speed=0", "plant.friction.stribeck_speed: must be above 0"),
-        ("plant.friction.stribeck_exponent=3", "plant.friction.stribeck_exponent: "),
+        ("plant.friction.stribeck_curve=gaus", "plant.friction.stribeck_curve: "),
         (
             "plant.friction.coulomb={q2: 1, q4: 1}",
             "plant.friction.coulomb: unknown joint 'q4'. Allowed: q1, q2, q3.",

@@ -71,9 +71,9 @@ def test_extreme_shifts_leave_the_sigmoid_finite():
         )
 
 
-@pytest.mark.parametrize("exponent", [1, 2])
-def test_dry_friction_falls_from_the_static_level_along_stribecks_curve(exponent):
-    law = friction_law(2, **{**STRIBECK, "stribeck_speed": {"q1": 0.05}}, stribeck_exponent=exponent)
+@pytest.mark.parametrize(("curve", "exponent"), [("exponential", 1), ("gauss", 2)])
+def test_dry_friction_falls_from_the_static_level_along_stribecks_curve(curve, exponent):
+    law = friction_law(2, **{**STRIBECK, "stribeck_speed": {"q1": 0.05}}, stribeck_curve=curve)
     held = np.array([False, False])
     for v in (-0.1, 0.05):
         level = law.at(np.full(2, v), held)[1]
@@ -95,9 +95,9 @@ def test_stick_slip_on_a_pulled_spring_has_the_exact_period(wheel):
     assert period_of(t, q) == pytest.approx(exact, rel=0.01)
 
 
-@pytest.mark.parametrize("exponent", [1, 2])
-def test_stick_slip_along_stribecks_curve_has_the_exact_period(exponent):
-    t, q = pulled(rough(1e-3, **STRIBECK, stribeck_exponent=exponent), 1e-3, 4.0)
+@pytest.mark.parametrize(("curve", "exponent"), [("exponential", 1), ("gauss", 2)])
+def test_stick_slip_along_stribecks_curve_has_the_exact_period(curve, exponent):
+    t, q = pulled(rough(1e-3, **STRIBECK, stribeck_curve=curve), 1e-3, 4.0)
     exact = exact_period(lambda v: 1.0 + np.exp(-((max(v, 0.0) / 0.05) ** exponent)), 2.0)
     assert period_of(t, q) == pytest.approx(exact, rel=0.01)
 
@@ -144,7 +144,7 @@ def test_a_constant_torque_ends_at_the_speed_where_friction_equals_it(wheel, sig
 
 KINDS = [
     {**STRIBECK, "stribeck_speed": 0.5},
-    {**STRIBECK, "stribeck_speed": 0.5, "stribeck_exponent": 1},
+    {**STRIBECK, "stribeck_speed": 0.5, "stribeck_curve": "exponential"},
     {"coulomb": 1.0, "asymmetry": -0.7},
     {"level": 1.5, "steepness": 4.0, "shift": 0.1},
 ]
@@ -187,7 +187,7 @@ def test_no_kind_of_friction_drives_a_joint(macro, seed):
         asymmetry=(coulomb * draw.uniform(-1.0, 1.0, 3)).tolist(),
         static=static.tolist(),
         stribeck_speed=float(10.0 ** draw.uniform(-3, 1)),
-        stribeck_exponent=int(draw.integers(1, 3)),
+        stribeck_curve=["exponential", "gauss"][draw.integers(0, 2)],
         level=(draw.exponential(5.0, 3) * draw.integers(0, 2, 3)).tolist(),
         steepness=draw.exponential(20.0, 3).tolist(),
         shift=draw.normal(0.0, 0.1, 3).tolist(),

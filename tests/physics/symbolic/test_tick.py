@@ -54,7 +54,7 @@ RUNS = [
         "plant.friction.coulomb=1",
         "plant.friction.static={mini_q1: 2}",
         "plant.friction.stribeck_speed=0.1",
-        "plant.friction.stribeck_exponent=1",
+        "plant.friction.stribeck_curve=exponential",
     ),
     ("robot=combined", "controller=whole_body", "plant.dynamics=decoupled", *NOISY),
     ("robot=combined", "controller=whole_body", "plant.dynamics=decoupled", "plant.wrist_rotation=parallel"),
