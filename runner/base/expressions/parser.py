@@ -13,6 +13,7 @@ import ast
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NoReturn
 
 from runner.base.errors import nearest
@@ -60,6 +61,7 @@ class Expression:
     root: Node
 
 
+@lru_cache(maxsize=512)
 def parse(text: str) -> Expression:
     """Return the parsed expression.
 

@@ -15,6 +15,7 @@ def rollout(request):
     return run_rollout(*request.param)
 
 
+@pytest.mark.costs(2)
 def test_the_right_formula_does_much_better_than_the_wrong_one(rollout):
     _, run = rollout
     right = np.nanmax(run.curves["corrected"])

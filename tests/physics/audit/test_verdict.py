@@ -125,7 +125,7 @@ def spoilt(form, name):
     return form.model_copy(update={"elements": elements, "read": ""})
 
 
-@pytest.mark.costs(2)
+@pytest.mark.costs(6)
 @pytest.mark.parametrize("source", sources())
 def test_a_verdict_follows_from_the_text_that_is_shown(source):
     """The equations of right forms count, six of a form at least, and so do printed ones that are wrong."""
