@@ -103,7 +103,17 @@ class Commands:
 
     def drawn_values(self, drawn: "Commands") -> FloatArray:
         """Return the parameters of this code for loops with drawn nominal models, shape (runs, k)."""
-        return values_of(drawn.scalars, constants_in(self.scalars))
+        return drawn.by_run(values_of(drawn.scalars, constants_in(self.scalars)))
+
+    def by_run(self, values: FloatArray) -> FloatArray:
+        """Return values of loops with drawn nominal models for each of their runs; the draws may change none of them.
+
+        Args:
+            values: The values, shape (k,) or (runs, k).
+        """
+        models = (model for loop in self.loops for model in loop.law.models)
+        runs = next(len(model.rows) for model in models if isinstance(model, DrawnModel))
+        return np.broadcast_to(values, (runs, values.shape[-1]))
 
     @property
     def are_ours(self) -> bool:

@@ -96,7 +96,7 @@ class LoopProgram:
 
     def drawn_values(self, drawn: Commands) -> FloatArray:
         """Return the parameters of this code for loops with drawn nominal models, shape (runs, k)."""
-        return values_of(replace(self, commands=drawn)._scalars, self.constants)
+        return drawn.by_run(values_of(replace(self, commands=drawn)._scalars, self.constants))
 
     def _scalars(self, number: Callable[[float], Any]) -> tuple[CommandScalars, MotionScalars]:
         return self.commands.scalars(number), motion_scalars(self.motion, self.step, self.tick, number)

@@ -140,3 +140,13 @@ def test_a_spread_of_one_link_draws_for_that_link_alone(macro, term):
     assert abs(own.mean()) < 4.0 * 0.4 / np.sqrt(3.0 * 500)
     factors[:, 2, place] = 1.0
     assert (factors == 1.0).all()
+
+
+@pytest.mark.parametrize("plant", ["rk4", "mujoco"])
+def test_draws_that_change_no_number_change_no_run(checked_config, plant):
+    """The links of the Macro are point masses: factors on their inertia change nothing."""
+    task = ("robot=macro", f"plant={plant}", "trajectory=quintic", "duration=0.05")
+    drawn = simulate_run(checked_config(*task, "mismatch.link.link3.inertia_spread=0.2", "repetitions=40"))
+    plain = simulate_run(checked_config(*task))
+    for name, metric in drawn.metrics.items():
+        assert metric.min == metric.max == plain.metrics[name].median
