@@ -11,6 +11,7 @@ from runner.plants.motor_limits import TorqueLimits
 from runner.plugins.features import Commands
 from runner.robots.robot import Robot
 from runner.simulation.compiled import commands as code
+from runner.simulation.compiled.loops import DrawnRow
 from runner.trajectories import Trajectory
 
 
@@ -52,7 +53,7 @@ class ClosedLoop:
     nominal: Robot
     motor_side: MotorSide | None = None
     compiled: code.Commands | None = None
-    drawn: code.DrawnRow | None = None
+    drawn: DrawnRow | None = None
 
     def close(self) -> None:
         """Release the resources of the plant."""

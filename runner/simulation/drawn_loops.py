@@ -10,7 +10,8 @@ from runner.robots.mismatch import build_drawn
 from runner.sensing.streams import MISMATCH, generators
 from runner.simulation.assembly import build_loops
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.compiled.commands import Commands, DrawnRow, find_commands
+from runner.simulation.compiled.commands import Commands, find_commands
+from runner.simulation.compiled.loops import DrawnRow
 
 
 def draws_together(config: RunConfig) -> bool:

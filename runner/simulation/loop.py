@@ -13,7 +13,7 @@ from runner.controllers import Controller, Loop, PositionController
 from runner.plants import PositionPlant
 from runner.sensing import Encoders, JointEncoders, TorqueSensors, WristSensor
 from runner.simulation.closed_loop import ClosedLoop
-from runner.simulation.compiled.commands import CompiledLoops, Rows
+from runner.simulation.compiled.loops import CompiledLoops, Rows
 from runner.simulation.contact import Contact
 from runner.simulation.recorder import CHECK_EVERY, CommandTiming, Recorder, constant_delay
 from runner.simulation.sensors import JointTorques, MeasuredTip

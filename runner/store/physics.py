@@ -56,7 +56,7 @@ _TABLE = """
         kinds=sensing.kinds streams velocity wrench
     simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop
         contact=loop.contact drawn_loops loop=simulation recorder results run=job sensors
-    simulation/compiled: commands law loop_program maths=compiled.maths
+    simulation/compiled: commands law loop_program loops maths=compiled.maths
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         program regressor structure tangent vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ blend circle from_file goal impulses

@@ -15,7 +15,7 @@ from runner.base.errors import RunnerError, unknown
 from runner.base.trace import Trace
 from runner.metrics import MetricContext
 from runner.metrics.positioning import STEADY_WINDOW
-from runner.simulation.compiled.commands import Rows
+from runner.simulation.compiled.loops import Rows
 from runner.trajectories.shaped import Shifted
 
 WITHOUT = {

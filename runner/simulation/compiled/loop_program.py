@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.plants.compiled_motion import MotionScalars, expressed_motion, motion_pattern, motion_scalars
 from runner.plants.decoupled import Motion
-from runner.simulation.compiled.commands import Commands, CommandScalars, Rows, expressed_commands
+from runner.simulation.compiled.commands import Commands, CommandScalars, expressed_commands
+from runner.simulation.compiled.loops import Rows
 from runner.symbolic.arm import Folding
 from runner.symbolic.code import ACTING, GIVEN, PARS, ROWS, STATE, Slots
 from runner.symbolic.expression import places

@@ -17,7 +17,7 @@ from support.patience import PATIENCE
 
 from runner import store
 from runner.base.errors import ConfigError, RunnerError, StoreError
-from runner.simulation.compiled.commands import CompiledLoops
+from runner.simulation.compiled.loops import CompiledLoops
 from runner.simulation.loop import InterpretedLoops
 from runner.sweeps import work
 from runner.sweeps.deadline import TimeLimitError

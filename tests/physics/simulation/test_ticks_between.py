@@ -7,7 +7,8 @@ import pytest
 
 from runner.plants.motor_limits import TorqueLimits
 from runner.sensing import EncoderNoise
-from runner.simulation.compiled.commands import Commands, CompiledLoops, LoopCode
+from runner.simulation.compiled.commands import Commands, LoopCode
+from runner.simulation.compiled.loops import CompiledLoops
 from runner.symbolic.engine import evaluator
 
 pytestmark = pytest.mark.skipif(not evaluator(), reason="laws are compiled by llvmlite")

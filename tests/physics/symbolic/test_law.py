@@ -17,8 +17,9 @@ from runner.plants.motor_limits import TorqueLimits
 from runner.plugins.guard import unguarded
 from runner.sensing import EncoderNoise
 from runner.simulation.compiled import commands as loops
-from runner.simulation.compiled.commands import Commands, CompiledLoops, LoopCode
+from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.simulation.compiled.law import law_cache_key
+from runner.simulation.compiled.loops import CompiledLoops
 from runner.symbolic import program
 from runner.symbolic.structure import CannotCompileError
 

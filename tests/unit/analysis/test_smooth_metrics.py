@@ -7,7 +7,7 @@ import pytest
 
 from runner.analysis.sensitivity.smooth_metrics import WITHOUT, derivatives
 from runner.metrics import MetricContext, evaluate
-from runner.simulation.compiled.commands import Rows
+from runner.simulation.compiled.loops import Rows
 from runner.trajectories.motion import quintic_motion
 
 STEP, ROWS, PARAMETERS = 1e-6, 400, 2

@@ -78,6 +78,7 @@ SHARED = {
     "simulation/drawn_loops": "physics/robots/test_drawn.py",
     "simulation/compiled/loop_program": "physics/symbolic/test_tick.py",
     "simulation/compiled/commands": "physics/symbolic/test_law.py",
+    "simulation/compiled/loops": "physics/symbolic/test_law.py",
     "simulation/compiled/maths": "physics/symbolic/test_law.py",
     "simulation/contact": "physics/plants/test_servo_contact_stability.py",
     "simulation/loop": "physics/simulation/test_simulation.py",
