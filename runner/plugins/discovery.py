@@ -13,12 +13,15 @@ import os
 import sys
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 from runner.base.errors import ConfigError, RunnerError, describe_part_error, nearest, unknown
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
 
 GROUPS = (
     "calibration", "controller", "environment", "joint_torque_sensor", "metric", "mismatch", "noise", "plant",
@@ -92,7 +95,7 @@ def named_part(line: str) -> str:
     return f"{group}={os.path.relpath(module) if _is_file(module) else module}{function}"
 
 
-def added_parts(group: str) -> tuple[EntryPoint, ...]:
+def added_parts(group: str) -> "tuple[EntryPoint, ...]":
     """Return the parts of a group from outside this package.
 
     The entry points of installed packages are cached by `sys.path`, because reading them takes milliseconds.
@@ -106,7 +109,7 @@ def has_users_parts() -> bool:
     return any(not point.value.startswith("runner.") for group in GROUPS for point in added_parts(group))
 
 
-def functions_in_use(group: str) -> tuple[EntryPoint, ...]:
+def functions_in_use(group: str) -> "tuple[EntryPoint, ...]":
     """Return the parts of a group that are one function."""
     return tuple(point for point in added_parts(group) if point.attr)
 
@@ -143,7 +146,7 @@ def source_files(module: str) -> list[Path]:
     return [Path(spec.origin)] if spec.origin else []
 
 
-def entry_point(line: str) -> EntryPoint:
+def entry_point(line: str) -> "EntryPoint":
     """Return a part given as GROUP=MODULE; the folder of a file is added to `sys.path`."""
     group, _, place = line.partition("=")
     module, function = _split(place)
@@ -153,6 +156,8 @@ def entry_point(line: str) -> EntryPoint:
             sys.path.append(folder)  # last, so that its modules do not hide installed ones
         module = Path(module).stem
     name = function[1:] or module.rpartition(".")[2]
+    from importlib.metadata import EntryPoint
+
     return EntryPoint(name=name, value=f"{module}{function}", group=f"runner.{group}")
 
 
@@ -166,7 +171,9 @@ def digests() -> dict[str, str]:
 
 
 @lru_cache(maxsize=16)
-def _installed(_path: tuple[str, ...]) -> Mapping[str, Sequence[EntryPoint]]:
+def _installed(_path: tuple[str, ...]) -> "Mapping[str, Sequence[EntryPoint]]":
+    from importlib.metadata import entry_points  # slow, which completion of words does without
+
     found = entry_points()
     return {group: tuple(found.select(group=f"runner.{group}")) for group in GROUPS}
 
@@ -192,7 +199,7 @@ def _check_found(text: str, name: str, module: str) -> None:
         raise RunnerError(f"--plugin {text}: Python has another module {name}, {spec.origin}; rename yours")
 
 
-def _check_function(text: str, point: EntryPoint) -> None:
+def _check_function(text: str, point: "EntryPoint") -> None:
     group = point.group.removeprefix("runner.")
     if group != "controller":
         raise RunnerError(f"--plugin {text}: only a controller can be a function; give {group}=MODULE")

@@ -2,7 +2,7 @@
 
 import pytest
 
-TASK = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=6", "hydra.sweeper.workers=0")
+TASK = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=8", "hydra.sweeper.workers=0")
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +91,7 @@ def test_by_is_for_one_sweep(cli, folder):
 def test_where_limits_the_cells(cli, folder):
     both = ("--by", "controller", "--metrics", "rms_torque", "--all")
     ending = cli("compare", folder, *both, "--where", "gravity=9.81")
-    assert "2 cells; repetitions in each: 6; by controller" in ending.out
+    assert "2 cells; repetitions in each: 8; by controller" in ending.out
     assert len(rows(ending.out, "rms_torque")) == 1
     assert "--where gravity: no value. Allowed: KEY=VALUE." in cli("compare", folder, *both, "--where", "gravity").err
 

@@ -89,7 +89,7 @@ def test_at_the_bound_the_radius_is_one_and_soft_servos_have_none(contact):
 def swings(plant, share, bound):
     """Force of the wall over a run, in the last third and the one before, with torques as large as asked for."""
     config, closed = made(f"plant={plant}", f"environment.stiffness={share * bound:.6g}", "duration=0.9")
-    closed.plant._limits[:] = np.inf
+    closed.plant._limits.max[:] = np.inf
     wrist = make_wrist_sensor(closed, config.wrist_sensor, 0, 0)
     trace = simulate(closed, make_encoders(closed, config.noise, 0, 0), wrist)
     closed.close()
