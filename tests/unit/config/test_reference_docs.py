@@ -5,10 +5,11 @@ from typing import Annotated, Literal
 import pytest
 from pydantic import Field, NonNegativeInt, PositiveFloat
 
+from runner.config.json_schema import meanings
 from runner.schema.values import TorquePerStage
 from runner.sensing import NoiseConfig
 from tools.docs.allowed_values import describe
-from tools.docs.reference import PAGE, meanings, reference_text
+from tools.docs.reference import PAGE, reference_text
 
 
 @pytest.mark.costs(3)
