@@ -50,14 +50,25 @@ class Code:
     text: str
 
 
+NoticeKind = Literal["finding", "warning", "failure", "stands", "falls", "turns", "why"]
+
+
 @dataclass(frozen=True)
 class Notice:
-    """A paragraph set apart: a failed run, a limit of the comparison, a finding that contradicts the source."""
+    """A paragraph set apart: a failed run, a limit of the comparison, a finding that contradicts the source.
+
+    Attributes:
+        kind: The word before the title.
+        title: One sentence.
+        text: More sentences; empty for none.
+        answer: Whether it answers the question that is the title of its chapter.
+    """
 
     block: ClassVar[str] = "notice"
-    kind: Literal["finding", "warning", "failure"]
+    kind: NoticeKind
     title: str
     text: str
+    answer: bool = False
 
 
 @dataclass(frozen=True)
@@ -313,6 +324,11 @@ class Section:
     blocks: Sequence[Block] = ()
     sections: Sequence["Section"] = ()
 
+    @property
+    def answers(self) -> Sequence[Notice]:
+        """The notices that answer the question that is its title."""
+        return [block for block in self.blocks if isinstance(block, Notice) and block.answer]
+
 
 @dataclass(frozen=True)
 class Cover:
@@ -356,3 +372,8 @@ class Document:
     key_numbers: Sequence[tuple[str, str, str]] = ()
     figures_float: bool = True
     shown: int | None = None
+
+    @property
+    def answers(self) -> Sequence[Notice]:
+        """The answers of the first chapter; the report opens with this chapter if there are any."""
+        return self.sections[0].answers if self.sections else ()

@@ -81,7 +81,7 @@ def _unused(study: Study, runs: Mapping[str, Run]) -> Iterator[str]:
     yield from (pattern for pattern in patterns if not any(fnmatchcase(name, pattern) for name in names))
 
 
-_BOX = re.compile(r"^::: finding (.*?)^:::$", re.MULTILINE | re.DOTALL)
+_BOX = re.compile(r"^::: \w+ (.*?)^:::$", re.MULTILINE | re.DOTALL)
 _MATHEMATICS = re.compile(r"\$[^$]*\$")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?: [a-zA-Z%]+)?")
 _PARTS = re.compile(r"[/,] ?")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from runner.base.quantities import above_rounding, number, quantity
-from runner.reporting.document import Document, Notice
+from runner.reporting.document import Document, Notice, NoticeKind
 from runner.reporting.outline import chapters
 
 ROUNDING = 1e-9  # m, rad, N or a share: far below what any of our runs can tell, far above what arithmetic loses
@@ -150,7 +150,11 @@ class Finding(Notice):
         return all(condition.holds for condition in self.conditions)
 
 
-def finding(title: str, text: str, *holds: Condition) -> Finding:
+ANSWERS: tuple[NoticeKind, ...] = ("stands", "falls", "turns", "why")
+"""Kinds of answers: the source is right, is wrong, is right only under other conditions, and the reason."""
+
+
+def finding(title: str, text: str, *holds: Condition, kind: NoticeKind = "finding") -> Finding:
     """Return a conclusion that says so itself when it is no longer true.
 
     There is one branch of prose: sentences that are chosen by the numbers contradict each other sooner or later.
@@ -159,17 +163,19 @@ def finding(title: str, text: str, *holds: Condition) -> Finding:
         title: What was found, in a line.
         text: The sentences; inline mathematics as in Text.
         holds: The conditions under which each of the sentences is true, with a margin.
+        kind: "finding", or one of ANSWERS.
 
     Raises:
         ValueError: if there is no condition.
     """
     if not holds:
         raise ValueError(f"finding '{title}': needs one condition or more; what nothing can refute concludes nothing")
-    failed = [condition for condition in holds if not condition.holds]
+    failed, answer = [condition for condition in holds if not condition.holds], kind in ANSWERS
     if not failed:
-        return Finding("finding", title, text, holds, title, text)
+        return Finding(kind, title, text, answer, holds, title, text)
     reasons = " ".join(f"Not so: {condition.text} ({condition.measured})." for condition in failed)
-    return Finding("warning", f"No longer holds: {title}", f"{reasons} It was written: {text}", holds, title, text)
+    written = f"{reasons} It was written: {text}" if text else reasons
+    return Finding("warning", f"No longer holds: {title}", written, answer, holds, title, text)
 
 
 def check_caption(title: str, caption: str, conditions: Sequence[Condition]) -> list[Finding]:

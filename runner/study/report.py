@@ -166,6 +166,7 @@ def study_document(
     code: str,
     cover: Cover | None = None,
     bibtex: str = "",
+    profile: Sequence[Section] = (),
 ) -> Document:
     """Return the report on a study.
 
@@ -181,9 +182,12 @@ def study_document(
         code: What is to be said of the study's own code; nothing where it has none.
         cover: The picture of the first screen.
         bibtex: BibTeX entry of the source; empty where there is none.
+        profile: What its profile makes otherwise than the whole study.
     """
     missing = [_missing(runs.missing)] if isinstance(runs, Results) and runs.missing else []
-    sections = [*missing, *chapters, caveats_section(runs, expected), _where_from(runs, calibrations, code)]
+    first = 1 if chapters and chapters[0].answers else 0  # the answers come before what is said of the runs
+    made = [*chapters[:first], *profile, *missing, *chapters[first:]]
+    sections = [*made, caveats_section(runs, expected), _where_from(runs, calibrations, code)]
     date = max((str(run.provenance["date"]) for run in runs.values()), default="")
     listed = [checklist.section(sections)] if checklist else []
     everything = [*sections, *listed, citing_section(title, subtitle, bibtex, runs)]

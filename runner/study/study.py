@@ -170,7 +170,7 @@ class Study:
         """
         from runner.study.report import load_checklist, study_document
 
-        made = study_document(
+        return study_document(
             title=self.manifest.title,
             subtitle=self.manifest.source,
             abstract=self.manifest.abstract,
@@ -182,8 +182,8 @@ class Study:
             code=self._code.about(),
             cover=self._cover(runs),
             bibtex=self.manifest.bibtex,
+            profile=list(self._by_profile(runs)),
         )
-        return replace(made, sections=[*self._by_profile(runs), *made.sections])
 
     def _by_profile(self, runs: Mapping[str, Run]) -> "Iterator[Section]":
         """Yield what the profile makes otherwise than the whole study; nothing where that is nothing."""

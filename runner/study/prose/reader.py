@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from runner.base.errors import nearest
-from runner.reporting.document import Block, Section, Text
-from runner.study.measured import Condition, Finding, finding
+from runner.reporting.document import Block, NoticeKind, Section, Text
+from runner.study.measured import ANSWERS, Condition, Finding, finding
 from runner.study.prose.expressions import ProseError, Values
 from runner.study.prose.paragraphs import Heading, Paragraphs, Piece, filled
 
-_CONTAINERS = ("finding",)
+_CONTAINERS = ("finding", *ANSWERS)
 _FENCE = ":::"
 _HOLDS = re.compile(r"\s*holds:(.*)")
 
@@ -46,8 +46,9 @@ class Reading:
 
 @dataclass
 class _Container:
-    """A box that is being read: where it begins in the file and among the lines read, title, lines, conditions."""
+    """A box that is being read: kind, where it begins in file and among the lines read, title, lines, conditions."""
 
+    kind: NoticeKind
     line: int
     count: int
     title: str
@@ -66,6 +67,9 @@ def read_chapter(file: str, text: str, names: Mapping[str, Any], handed: tuple[t
         The error is {{ turns }}, that of both arms at once {{ both }}.
         holds: turns > 10 * both
         :::
+
+    The boxes `stands`, `falls`, `turns` and `why` answer the question that is the title of the chapter. Their title may
+    be all that they say.
 
     Args:
         file: Name of the file, for messages.
@@ -116,12 +120,13 @@ def _pieces(file: str, text: str, values: Values, stated: list[Stated]) -> Itera
 
 def _opened(file: str, line: str, number: int, count: int) -> _Container:
     kind, _, title = line.removeprefix(_FENCE).strip().partition(" ")
-    if kind not in _CONTAINERS:
+    known = next((each for each in _CONTAINERS if each == kind), None)
+    if known is None:
         boxes = ", ".join(_CONTAINERS)
         raise ProseError(file, number, f"no box '{kind}'{nearest(kind, _CONTAINERS)}; boxes: {boxes}")
     if not title:
         raise ProseError(file, number, f"a box without a title; write `::: {kind} TITLE`")
-    return _Container(number, count, title.strip())
+    return _Container(known, number, count, title.strip())
 
 
 def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs) -> Finding:
@@ -129,10 +134,11 @@ def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs)
     if not conditions:
         raise ProseError(file, box.line, "a finding without a condition; write `holds: EXPRESSION` for each sentence")
     blocks = list(paragraphs.blocks("\n".join(box.lines), box.count + 1))
-    if not blocks or not all(isinstance(block, Text) for block in blocks):
+    answered = box.kind in ANSWERS and not blocks
+    if not answered and not (blocks and all(isinstance(block, Text) for block in blocks)):
         raise ProseError(file, box.line, "a finding holds sentences alone; blocks stand before or behind it")
     text = " ".join(block.text for block in blocks if isinstance(block, Text))
-    return finding(filled(box.title, values, file), text, *conditions)
+    return finding(filled(box.title, values, file), text, *conditions, kind=box.kind)
 
 
 def conditions_of(

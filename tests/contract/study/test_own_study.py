@@ -5,12 +5,15 @@ import sys
 from pathlib import Path
 
 import pytest
+from support.pdf_text import pages
 
 from runner.base.errors import RunnerError
 from runner.base.paths import example_study_dir
 from runner.cli.main import dispatch
+from runner.reporting import html, pdf
 from runner.reporting.document import Table
 from runner.study.check import problems
+from runner.study.measured import findings
 from runner.study.names import find_study, study_names, write_new
 from runner.study.study import load_study
 from runner.sweeps.job import run
@@ -75,6 +78,27 @@ def test_the_study_that_is_written_first_is_small_and_stands(tmp_path, capsys):
     assert {"report.html", "report.pdf", "conclusions.json"} <= {path.name for path in report.iterdir()}
     assert dispatch(["study", "check", str(folder), outputs]) == 0
     assert "nothing is wrong" in capsys.readouterr().out
+
+
+def test_answers_of_the_first_chapter_open_the_report(tmp_path, made):
+    answer = CHAPTER.replace("# One", "# Does it err?").replace("::: finding It errs\n", "::: stands It does.\n")
+    files = {"study__yaml": ABOUT.replace("[one.md]", "[answers.md, one.md]"), "answers__md": answer}
+    study = load_study(str(a_study(tmp_path / "paper", **files)))
+    assert [*problems(study, made, {})] == []
+    plain, opened = (load_study(str(a_study(tmp_path / "paper", **own))).document(made, {}) for own in ({}, files))
+    assert (plain.answers, [each.title for each in opened.answers]) == ([], ["It does."])
+    assert all(finding[1].claim != "It does." for finding in findings(plain))
+    assert [number for number, each in findings(opened) if each.claim == "It does."] == ["1"]
+    page = html.render(opened)
+    places = [
+        page.index(text) for text in ("Does it err?</h2>", "It does.", ">A</p>", "Errors.", "</header>", "One</h2>")
+    ]
+    assert places == sorted(places)
+    assert page.count("It does.") == 1
+    text = " ".join(" ".join(pages(pdf.render(opened))).split())
+    places = [text.index(words) for words in ("Does it err?", "It does.", "Errors.", "Contents", "2 One")]
+    assert places == sorted(places)
+    assert text.count("It does.") == 1
 
 
 def test_the_first_study_is_not_written_over_something(tmp_path):

@@ -48,3 +48,4 @@ def test_numbers_typed_in_a_finding_are_told():
     text = CHAPTER.replace("Words.", "It takes 5 s and {{ a }}\nof claim 3, $2 x$, 0.1 kg and\n7.").replace("a", "a")
     found = [*typed_numbers("one.md", text, {"0.1 kg"})]
     assert [line.split(" a number")[0] for line in found] == ["one.md:7: 5 s:", "one.md:9: 7:"]
+    assert [*typed_numbers("one.md", text.replace("::: finding", "::: stands"), {"0.1 kg"})] == found

@@ -67,10 +67,28 @@ def test_a_finding_has_its_conditions():
     assert "time: has no value" in without.text
 
 
+@pytest.mark.parametrize("kind", ["stands", "falls", "turns", "why"])
+def test_an_answer_may_be_its_title_only_and_says_when_it_no_longer_holds(kind):
+    box = f"::: {kind} Turns err by {{{{ turns }}}}.\nholds: turns > 10 * both\n:::"
+    chapter = read(box)
+    (found,) = chapter.answers
+    assert (found.kind, found.title, found.text) == (kind, "Turns err by 50 mm.", "")
+    (fallen,) = read(box.replace("> 10", "< 10")).answers
+    assert (fallen.kind, fallen.title) == ("warning", "No longer holds: Turns err by 50 mm.")
+    assert (
+        fallen.text == "Not so: error in turns < 10 times error of both (error in turns: 50 mm; error of both: 1 µm)."
+    )
+    assert read(box.replace(f"::: {kind}", "::: finding").replace("holds", "So.\nholds")).answers == []
+
+
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
-        ("::: fnding A\nSo.\n:::", 3, r"no box 'fnding' \(did you mean finding\?\); boxes: finding"),
+        ("::: fnding A\nSo.\n:::", 3, r"no box 'fnding' \(did you mean finding\?\); boxes: finding, stands, falls"),
+        ("::: stand A\n:::", 3, r"no box 'stand' \(did you mean stands\?\)"),
+        ("::: why\n:::", 3, "a box without a title; write `::: why TITLE`"),
+        ("::: why A\n:::", 3, "a finding without a condition"),
+        ("::: finding A\nholds: turns > both\n:::", 3, "a finding holds sentences alone"),
         ("::: finding\nSo.\n:::", 3, "a box without a title; write `::: finding TITLE`"),
         ("So.\n\n::: finding A\nSo.", 5, "a box that is not closed"),
         ("::: finding A\n::: finding B\n:::", 4, "a box in a box; close that of line 3"),
