@@ -30,8 +30,8 @@ def conf_dir() -> Path:
 
 
 def ships(path: Path) -> bool:
-    """Return True if a file is a built-in config, which has more rights than external files."""
-    return conf_dir() in path.resolve().parents
+    """Return True if a file is built-in, or of a built-in study. A built-in config has more rights than others."""
+    return not {conf_dir(), studies_dir()}.isdisjoint(path.resolve().parents)
 
 
 def robots_dir() -> Path:
@@ -45,8 +45,8 @@ def studies_dir() -> Path:
 
 
 def studies_with(file: str) -> list[str]:
-    """Return the sorted names of the built-in studies that have a file, such as "claims.yaml"."""
-    return sorted(folder.name for folder in studies_dir().iterdir() if (folder / file).is_file())
+    """Return the sorted names of the built-in studies that have a file or folder, such as "claims.yaml"."""
+    return sorted(path.parents[file.count("/")].name for path in studies_dir().glob(f"*/{file}"))
 
 
 def examples_dir() -> Path:

@@ -29,11 +29,6 @@ class Location:
     folder: Path
     package: str | None = None
 
-    @property
-    def ours(self) -> bool:
-        """Whether it is one of ours, whose configs are those of the runner, but for robots that it brings."""
-        return self.folder.parent == studies_dir()
-
 
 def study_names() -> tuple[str, ...]:
     """Return the names of the installed studies, sorted."""

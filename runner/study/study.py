@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.paths import check_inside
+from runner.base.paths import check_inside, ships
 from runner.plugins.discovery import use_plugins
 from runner.reporting.published_claims import CLAIMS, load_claims
 from runner.store import Calibration, Run
@@ -62,7 +62,6 @@ class Study:
                 check_inside(path, [location.folder])
         self.manifest = read_manifest(location.folder)
         self.installed = location.package is not None
-        self._ours = location.ours
         self.profile = profile or self.manifest.default_profile
         self._profile = self._chosen(self.profile)
         self._code = Code(location.folder, location.package, allow_code)
@@ -83,12 +82,13 @@ class Study:
 
     @property
     def config_dirs(self) -> tuple[Path, ...]:
-        """Folders of configs: its own, but for ours without robots, and those of parts that were given."""
+        """Folders of configs: its own and those of parts that were given."""
         return (*self._own_dirs, *dict.fromkeys(folder for part in self._given for folder in part.config_dirs))
 
     @property
     def _own_dirs(self) -> tuple[Path, ...]:
-        return () if self._ours and not (self.folder / "robot").is_dir() else (self.folder,)
+        """Its folder, which a command names; the experiments of a built-in study are found without."""
+        return () if ships(self.folder / RUNS) and not (self.folder / "robot").is_dir() else (self.folder,)
 
     def options(self, overrides: Sequence[str]) -> tuple[str, ...]:
         """Return what a command that makes one of its runs has before the overrides."""

@@ -17,11 +17,13 @@ from pathlib import Path
 import runner
 from runner.cli.main import dispatch
 from runner.base.paths import conf_dir, robots_dir, templates_dir
+from runner.config.compose.files import group_options
 site = Path(sys.prefix)
 for folder in (Path(runner.__file__).parent, conf_dir(), robots_dir(), templates_dir()):
     assert folder.is_relative_to(site), folder
 assert (Path(runner.__file__).parent / "py.typed").is_file()
 assert (templates_dir() / "report.html.j2").is_file()
+assert "thesis/figure_3_5" in group_options("experiment")
 assert dispatch(["list", "baselines"]) == 0
 assert dispatch(["list", "claims"]) == 0
 sys.exit(dispatch(["robot=macro", "duration=0.05"]))

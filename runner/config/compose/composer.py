@@ -24,7 +24,7 @@ from omegaconf import DictConfig, OmegaConf
 from runner.base.dotted_keys import check_references
 from runner.base.engines import default_plant
 from runner.base.errors import ConfigError
-from runner.base.paths import conf_dir
+from runner.base.paths import conf_dir, studies_dir, studies_with
 from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
 from runner.config.compose.files import groups, user_overrides
@@ -105,7 +105,8 @@ class Composer:
     def _of_options(self, options: Sequence[Override], root: str, mode: RunMode) -> DictConfig:
         # The last option of a group counts. The order of the groups has no effect.
         lines = tuple(str(each.input_line) for each in sorted(options, key=lambda each: each.key_or_group))
-        files = _files(conf_dir(), *self.config_dirs)
+        studies = [studies_dir() / name / "experiment" for name in studies_with("experiment")]
+        files = _files(conf_dir(), *studies, *self.config_dirs)
         load = _load_options if files is not None else _load_options.__wrapped__
         others = files, default_plant(), in_use()
         config: DictConfig = pickle.loads(load(self.config_dirs, lines, root, mode, *others))  # noqa: S301

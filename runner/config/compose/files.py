@@ -13,7 +13,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from runner.base.errors import ConfigError, nearest
-from runner.base.paths import STUDY_FILE, conf_dir
+from runner.base.paths import STUDY_FILE, conf_dir, studies_dir, studies_with
 from runner.base.sanitize import quoted
 from runner.plugins.discovery import functions_in_use
 
@@ -44,7 +44,8 @@ def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str
         function the first line of its docstring.
     """
     found: dict[str, str] = {}
-    for folder in (conf_dir(), *config_dirs):
+    studies = [studies_dir() / name for name in studies_with(_GROUP)] if group == _GROUP else []
+    for folder in (conf_dir(), *studies, *config_dirs):
         files = described_files(folder / group)
         found |= {option_in(folder, group, name): description for name, description in files.items()}
     if group == "controller" and functions_in_use(group):
@@ -74,23 +75,24 @@ def _first_comment(path: Path) -> str:
 _GROUP = "experiment"
 
 
-def place_in(folder: Path, config_path: str) -> str:
-    """Return the path of a config in a folder: experiment/x for experiment/NAME/x of the study NAME."""
-    own = _own(folder)
-    if own and (config_path == own or config_path.startswith(f"{own}/")):
-        return f"{_GROUP}{config_path.removeprefix(own)}"
-    return config_path
+def place_in(folder: Path, config_path: str) -> Path:
+    """Return the path of a config in a folder; that of the experiment NAME/x is experiment/x in the study NAME.
+
+    The built-in studies belong to conf/.
+    """
+    group, _, name = config_path.partition("/")
+    study, _, rest = name.partition("/")
+    home = studies_dir() / study if folder == conf_dir() and study else folder
+    if group == _GROUP and study and option_in(home, group, rest) == name:
+        return home / group / rest
+    return folder / config_path
 
 
 def option_in(folder: Path, group: str, name: str) -> str:
     """Return the option name of a file in a folder: NAME/x for the experiment x of the study NAME."""
-    return f"{folder.resolve().name}/{name}" if group == _GROUP and _own(folder) else name
-
-
-def _own(folder: Path) -> str:
-    """Return the prefix of a study's experiments; "" for another folder, or one that has a folder of that prefix."""
-    own = f"{_GROUP}/{folder.resolve().name}"
-    return own if (folder / STUDY_FILE).is_file() and not (folder / own).is_dir() else ""
+    own = folder.resolve().name
+    named = group == _GROUP and (folder / STUDY_FILE).is_file() and not (folder / group / own).is_dir()
+    return f"{own}/{name}" if named else name
 
 
 KEYS = ("outputs", "hydra.sweeper.workers", "hydra.sweeper.address")

@@ -135,10 +135,10 @@ class CheckedSource(ConfigSource):
         return ConfigResult(self.provider, self.full_path(), content, {"package": package})
 
     def _place(self, config_path: str) -> Path:
-        return Path(self.path) / place_in(Path(self.path), config_path)
+        return place_in(Path(self.path), config_path)
 
     def _file(self, config_path: str) -> Path:
-        return Path(self.path) / self._normalize_file_name(place_in(Path(self.path), config_path))
+        return self._place(self._normalize_file_name(config_path))
 
 
 @lru_cache(maxsize=512)

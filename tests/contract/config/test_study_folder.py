@@ -3,6 +3,7 @@
 import pytest
 
 from runner.base.errors import ConfigError
+from runner.base.paths import studies_dir
 from runner.config.compose.compose import compose
 from runner.config.compose.composer import Composer
 from runner.config.compose.files import group_options
@@ -25,6 +26,21 @@ def test_an_experiment_of_a_study_is_found_under_the_study_name(paper):
     assert Composer([paper]).load(["experiment=paper/one"]).robot.name == "macro"
     with pytest.raises(ConfigError, match=r"no 'paper/on' \(did you mean paper/one\?\)"):
         compose(["experiment=paper/on"], [paper])
+
+
+@pytest.mark.parametrize("name", ["benchmark/macro", "thesis/figure_3_5"])
+def test_experiments_of_built_in_studies_need_no_folder(name):
+    study = studies_dir() / name.partition("/")[0]
+    assert group_options("experiment")[name]
+    assert not {"macro", "figure_3_5"} & {*group_options("experiment")}
+    found = [compose([f"experiment={name}"], folders) for folders in ([], [study])]
+    assert found[0].choices["experiment"] == name
+    assert found[0].resolved == found[1].resolved
+    for refused in ("engines/macro", f"{name}/x", "benchmark", "benchmark/../thesis/figure_3_5"):
+        with pytest.raises(ConfigError, match="experiment"):
+            compose([f"experiment={refused}"])
+    with pytest.raises(ConfigError, match="robot: no 'kuka'"):
+        compose(["robot=kuka"])
 
 
 def test_of_another_folder_it_is_found_as_it_stands(paper):

@@ -5,7 +5,7 @@ import yaml
 
 from runner.base.bounded_yaml import CONFIG, Bounds, YamlError, check_yaml, read_yaml
 from runner.base.limits import Limit
-from runner.base.paths import conf_dir
+from runner.base.paths import conf_dir, studies_dir
 
 
 def bomb(levels):
@@ -22,7 +22,7 @@ def test_what_is_sound_is_read_as_the_safe_loader_reads_it():
 
 
 def test_every_file_of_ours_is_within_the_bounds():
-    for path in conf_dir().rglob("*.yaml"):
+    for path in (*conf_dir().rglob("*.yaml"), *studies_dir().glob("*/experiment/*.yaml")):
         check_yaml(path.read_text(), path)
 
 

@@ -5,12 +5,12 @@ import pytest
 from runner.base.bounded_yaml import YamlError, check_yaml
 from runner.base.dotted_keys import check_references
 from runner.base.errors import ConfigError
-from runner.base.paths import conf_dir
+from runner.base.paths import conf_dir, studies_dir
 from runner.config.compose.overrides import force
 
 
 def test_files_of_ours_refer_to_keys_alone():
-    for path in conf_dir().rglob("*.yaml"):
+    for path in (*conf_dir().rglob("*.yaml"), *studies_dir().glob("*/experiment/*.yaml")):
         text = path.read_text()
         if path == conf_dir() / "plant" / "default.yaml":
             text = text.replace("${default_plant:}", "")  # which plant that is, only the machine can tell

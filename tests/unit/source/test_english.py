@@ -40,7 +40,7 @@ MOST = {
     "SECURITY.md": 0,
     "CHANGELOG.md": 0,
     "docs": 22,
-    "conf": 4,
+    "conf": 2,
     "bench": 38,
     "tools": 80,
     "tests": 867,
