@@ -1,1 +1,1 @@
-"""Audit of printed equations: entries, truths, verdicts and rollouts."""
+"""Audit of printed equations: entries, reference derivations, verdicts and simulated consequences."""

@@ -9,14 +9,14 @@ from pydantic import Field
 
 from runner.audit.entry import Form, Part, entries, parts
 from runner.audit.sources import Where, source_of, sources
-from runner.audit.verdict import SAMPLES, VERDICTS, Judge, Judged, Verdict
+from runner.audit.verdict import SAMPLES, VERDICTS, Check, CheckedEquation, Verdict
 from runner.base import progress
 from runner.base.data_file import read_data
 from runner.base.sanitize import table_cell
 from runner.schema.model import StrictModel
 
 
-def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:
+def audit(where: Where, samples: int = SAMPLES) -> list[CheckedEquation]:
     """Return the verdict on every equation of a source, in the order of the text.
 
     Args:
@@ -27,58 +27,58 @@ def audit(where: Where, samples: int = SAMPLES) -> list[Judged]:
         RunnerError: If there is no such source, a file does not fit its format, or what it names does not exist.
         AuditError: If an entry contradicts itself.
     """
-    return list(_judged(parts(where), samples))
+    return list(_checked(parts(where), samples))
 
 
-def audit_all(samples: int = SAMPLES) -> dict[str, list[Judged]]:
+def audit_all(samples: int = SAMPLES) -> dict[str, list[CheckedEquation]]:
     """Return the same for every study of ours, by its name."""
     found = {source: parts(source) for source in sources()}
     progress.begin("auditing", sum(len(part.entries) for each in found.values() for part in each), "equations")
-    judged: dict[str, list[Judged]] = {source: [] for source in found}
+    checked: dict[str, list[CheckedEquation]] = {source: [] for source in found}
     for source, each in found.items():
-        for one in _judged(each, samples):
-            judged[source].append(one)
+        for one in _checked(each, samples):
+            checked[source].append(one)
             progress.step()
-    return judged
+    return checked
 
 
-def _judged(found: Iterable[Part], samples: int) -> Iterator[Judged]:
-    return (judged for part in found for judged in map(Judge(part, samples).judge, part.entries))
+def _checked(found: Iterable[Part], samples: int) -> Iterator[CheckedEquation]:
+    return (checked for part in found for checked in map(Check(part, samples).check, part.entries))
 
 
-def counts(judged: Iterable[Judged]) -> dict[Verdict, int]:
+def counts(checked: Iterable[CheckedEquation]) -> dict[Verdict, int]:
     """Return how many equations have each verdict."""
-    found = Counter(each.verdict for each in judged)
+    found = Counter(each.verdict for each in checked)
     return {verdict: found[verdict] for verdict in VERDICTS}
 
 
-def as_csv(judged: Sequence[Judged]) -> str:
+def as_csv(checked: Sequence[CheckedEquation]) -> str:
     """Return the verdicts as comma-separated values with a header; at least one."""
-    stream, rows = io.StringIO(), [_row(each) for each in judged]
+    stream, rows = io.StringIO(), [_row(each) for each in checked]
     table = csv.writer(stream, lineterminator="\n")
     table.writerows([list(rows[0]), *(map(table_cell, row.values()) for row in rows)])
     return stream.getvalue()
 
 
-def _row(judged: Judged) -> dict[str, str]:
-    entry, measured, second = judged.entry, judged.measured, judged.second
+def _row(checked: CheckedEquation) -> dict[str, str]:
+    entry, measured, second = checked.entry, checked.measured, checked.second
     return {
-        "source": judged.source,
+        "source": checked.source,
         "id": entry.id,
         "number": entry.number,
         "place": entry.place,
         "title": entry.title,
-        "verdict": judged.verdict,
+        "verdict": checked.verdict,
         "largest_error": f"{measured.largest:.6g}" if measured else "",
         "typical_error": f"{measured.typical:.6g}" if measured else "",
-        "largest_error_second_way": f"{second.largest:.6g}" if second else "",
-        "one_way": judged.ways[0],
-        "another_way": judged.ways[1],
+        "largest_error_second_derivation": f"{second.largest:.6g}" if second else "",
+        "first_derivation": checked.methods[0],
+        "second_derivation": checked.methods[1],
         "unit": entry.unit,
         "tolerance": f"{entry.tolerance:g}",
         "as_printed": _plain(entry.printed),
-        "repaired": _plain(entry.repair) if entry.repair else "",
-        "why_repaired": entry.repair.why if entry.repair else "",
+        "emended": _plain(entry.emendation) if entry.emendation else "",
+        "why_emended": entry.emendation.why if entry.emendation else "",
         "corrected": _plain(entry.corrected) if entry.corrected else "",
         "finding": entry.finding,
     }

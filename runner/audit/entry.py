@@ -2,7 +2,7 @@
 
 Entries are in YAML files, one for each part of a source (`equations/*.yaml` in a study's folder):
 
-    robot: macro                   # of conf/robot, or of the folder, or a URDF: what truths `model.*` are about
+    robot: macro                   # of conf/robot, or of the folder, or a URDF: what derivations `model.*` are about
     tip: q2                        # its frame that is meant, where that is not the config's
     joints: [theta1, theta2]       # what the joint positions are called, where that is not q1, q2, ...
     symbols: {l1: 0.5, s12: sin(theta1 + theta2)}  # what else is named; s1 = sin(theta1), c1 and so on are known
@@ -14,17 +14,17 @@ Entries are in YAML files, one for each part of a source (`equations/*.yaml` in 
         unit: "1"
         printed:
           elements: {A_13: "s6*(c5*(c4*(s1*s3 - c1*c2*c3) ..."}
-        repair:                    # only where the text is damaged: what was mended, and why it must have been so
+        emendation:                    # only where the text is damaged: what was emended, and why it must have been so
           why: A bracket is lost at the end of the line.
           elements: {A_13: ...}
         corrected:                 # only where it is wrong as printed
           elements: {A_13: ...}
-        truth: model.jacobian      # what it claims to equal, worked out twice; see `model_truths.py`
+        derivation: model.jacobian # what it claims to equal, by two independent derivations; see `model_derivations.py`
         tip: q3                    # frame of this one, where that is not the file's
         finding: ...               # what is wrong, in words
 
-If a model is not enough, `truth: xarm7.transform` names a Truth in `equations/truths/xarm7.py` of the folder.
-`symbols: xarm7.symbols` names a function of that module that draws the sample; `robot` is then omitted.
+If a model is not enough, `derivation: xarm7.transform` names the Derivations in `equations/derivations/xarm7.py` of the
+folder. `symbols: xarm7.symbols` names a function of that module that draws the sample; `robot` is then omitted.
 
 `elements` gives the right side of each equation by its left side, in the syntax of
 `runner/base/expressions/parser.py`; the report shows the same texts. Names can be vectors and matrices of the sample,
@@ -52,7 +52,7 @@ from typing import Annotated, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from runner.audit.evaluation import Numbered, Values
-from runner.audit.sources import Source, Where, source_of, truth_of
+from runner.audit.sources import Source, Where, derivation_of, source_of
 from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.expressions.grammar import ExpressionError
@@ -90,9 +90,9 @@ class Form(StrictModel):
 
     Attributes:
         elements: Right side of each equation, by its left side.
-        read: Function of equations/truths that returns the elements, read from the source's own text.
+        read: Function of equations/derivations that returns the elements, read from the source's own text.
         math: The equation in Typst mathematics, if it defines a name, or if no expression has its value.
-        code: Function of equations/truths that returns what `math` says at the samples.
+        code: Function of equations/derivations that returns what `math` says at the samples.
     """
 
     elements: dict[str, Written] = Field(default_factory=dict)
@@ -122,11 +122,11 @@ class Form(StrictModel):
             return False
 
 
-class Repair(Form):
-    """A form mended where the text, not the author, is at fault.
+class Emendation(Form):
+    """A form emended where the text, not the author, is at fault.
 
     Attributes:
-        why: What was mended, and how we know.
+        why: What was emended, and how we know.
     """
 
     why: str
@@ -141,15 +141,15 @@ class Entry(StrictModel):
         place: Section or page.
         title: What it is, in a few words.
         printed: As it stands.
-        repair: As it must have stood, where the text is damaged.
+        emendation: As it must have stood, where the text is damaged.
         corrected: The right form, where it is wrong as printed.
-        truth: What it claims to equal; "" where it only names things, or is unreadable.
-        tip: Frame that a truth of the model is about, where it is another than the file's.
+        derivation: Reference derivations of what it claims to equal; "" where it only names things, or is unreadable.
+        tip: Frame that a derivation from the model is about, where it is another than the file's.
         unit: Unit of its error. Errors in "rad" are angles: they are taken the short way round.
         tolerance: Largest error, in its unit, that rounding may cause.
         finding: What is wrong and what it does, in words; Text of a report. `{largest}` and `{typical}` are the errors
             of the form as printed, `{size}` is the largest true value.
-        rollout: Function of equations/rollouts that runs the wrong form beside the right one, or "".
+        consequence: Function of equations/consequences that simulates what the wrong form causes, or "".
         letters: Names as the source writes them in this equation.
         indices: Numbers that a letter in square brackets stands for; the equation holds for each of them.
     """
@@ -159,27 +159,27 @@ class Entry(StrictModel):
     place: str
     title: str
     printed: Form
-    repair: Repair | None = None
+    emendation: Emendation | None = None
     corrected: Form | None = None
-    truth: str = ""
+    derivation: str = ""
     tip: str = ""
     unit: str = "1"
     tolerance: float = Field(default=1e-9, gt=0)
     finding: str = ""
-    rollout: str = ""
+    consequence: str = ""
     letters: dict[str, str] = Field(default_factory=dict)
     indices: dict[str, list[int]] = Field(default_factory=dict)
 
     @property
     def right(self) -> Form:
         """The form that is meant to be right."""
-        return self.corrected or self.repair or self.printed
+        return self.corrected or self.emendation or self.printed
 
     def as_read(self, source: Source) -> "Entry":
         """Return the same with the elements of forms that a function reads."""
         changed = {
-            name: form.model_copy(update={"elements": truth_of(source, form.read)()})
-            for name in ("printed", "repair", "corrected")
+            name: form.model_copy(update={"elements": derivation_of(source, form.read)()})
+            for name in ("printed", "emendation", "corrected")
             if (form := getattr(self, name)) is not None and form.read
         }
         return self.model_copy(update=changed)
@@ -197,10 +197,10 @@ class Content(StrictModel):
     """What a data file says.
 
     Attributes:
-        robot: Name of the robot, or its URDF; "" where no truth is a model's.
+        robot: Name of the robot, or its URDF; "" where no derivation is a model's.
         tip: Its frame that is meant; "" is the config's tip.
         joints: Names of its joint positions; none are q1 to qn.
-        symbols: Function of equations/truths that draws the sample; or what is named beside the robot's motion.
+        symbols: Function of equations/derivations that draws the sample; or what is named beside the robot's motion.
         letters: Names as the source writes them, in Typst mathematics.
         entries: Its equations, in the order of the text.
     """

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from runner.audit.truth import along, rotation, translation
+from runner.audit.derivations import along, rotation, translation
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
 from runner.base.expressions.evaluator import Budget

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 from pydantic import Field
 
+from runner.audit.derivations import Elements, columns
 from runner.audit.entry import Written
 from runner.audit.evaluation import evaluate_all
-from runner.audit.model_truths import by_model, sample
-from runner.audit.truth import Elements, columns
+from runner.audit.model_derivations import by_model, sample
 from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
@@ -18,7 +18,7 @@ from runner.schema.model import StrictModel
 
 _EQUAL = 1e-9
 QUANTITIES = ("position", "jacobian", "mass-matrix", "gravity")
-"""What can be compared; see `model_truths.py` for the elements."""
+"""What can be compared; see `model_derivations.py` for the elements."""
 
 
 class _Formulas(StrictModel):
@@ -69,27 +69,27 @@ def compare(model: RobotModel, quantity: str, path: Path, samples: int) -> list[
     symbols = sample(model, joints, samples, np.random.default_rng(0))
     q = columns(symbols, joints)
     whole = by_model(model).named(quantity.replace("-", "_"), q, 0.0 * q, 0.0 * q)
-    truth = {name: values for name, values in whole.items() if values.ndim == 1}
-    names = list(truth)
+    true_values = {name: values for name, values in whole.items() if values.ndim == 1}
+    names = list(true_values)
     for name in content.elements:
-        if name not in truth:
+        if name not in true_values:
             told = f"{path}: {quantity} has no element '{name}'{nearest(name, names)}"
             raise RunnerError(f"{told}; elements: {names[0]} to {names[-1]}")
     try:
         values = evaluate_all(content.elements, evaluate_all(content.symbols, symbols))
     except RunnerError as error:
         raise RunnerError(f"{path}, {error}") from error
-    return [_difference(name, values[name], truth, q) for name in content.elements]
+    return [_difference(name, values[name], true_values, q) for name in content.elements]
 
 
-def _difference(name: str, values: FloatArray, truth: Elements, q: FloatArray) -> Difference:
-    error = np.abs(values - truth[name])
+def _difference(name: str, values: FloatArray, true_values: Elements, q: FloatArray) -> Difference:
+    error = np.abs(values - true_values[name])
     worst = int(error.argmax())
     instead = [
         word + other
         for sign, word in ((1, ""), (-1, "-"))
-        for other, true in truth.items()
+        for other, true in true_values.items()
         if error[worst] > _EQUAL and np.abs(sign * values - true).max() <= _EQUAL
     ]
-    at = float(error[worst]), float(np.median(error)), q[worst], float(values[worst]), float(truth[name][worst])
+    at = float(error[worst]), float(np.median(error)), q[worst], float(values[worst]), float(true_values[name][worst])
     return Difference(name, *at, "".join(instead[:1]))

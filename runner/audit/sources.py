@@ -1,8 +1,8 @@
 """Sources of printed equations: study folders with their entries and Python modules.
 
-A folder has `equations/*.yaml`. If it needs its own truths, it also has `equations/truths/*.py` and
-`equations/rollouts/*.py`. Built-in studies are folders of `runner/studies/`, known by name; any other folder is named
-by its path.
+A folder has `equations/*.yaml`. If it needs its own derivations, it also has `equations/derivations/*.py` and
+`equations/consequences/*.py`. Built-in studies are folders of `runner/studies/`, known by name. The path names any
+other folder.
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Source:
 
     Attributes:
         folder: The folder.
-        code: Whether Python of it may run; without it, its truths are those of a model.
+        code: Whether Python of it may run; without it, its derivations are those of a model.
     """
 
     folder: Path
@@ -65,19 +65,21 @@ def source_of(where: Where) -> Source:
     return source
 
 
-def truth_of(where: Where, name: str) -> Any:
-    """Return the function or Truth that "module.name" stands for, of a module of the study's `equations/truths`."""
-    return _resolve(source_of(where), "truths", name)
+def derivation_of(where: Where, name: str) -> Any:
+    """Return the object that "module.name" stands for, of a module of the study's `equations/derivations`."""
+    return _resolve(source_of(where), "derivations", name)
 
 
-def rollout_of(where: Where, name: str) -> Any:
-    """Return the function that "module.name" stands for, of a module of the study's `equations/rollouts`."""
-    return _resolve(source_of(where), "rollouts", name)
+def consequence_of(where: Where, name: str) -> Any:
+    """Return the function that "module.name" stands for, of a module of the study's `equations/consequences`."""
+    return _resolve(source_of(where), "consequences", name)
 
 
 def _resolve(source: Source, kind: str, name: str) -> Any:
     if not source.code:
-        raise RunnerError(f"'{name}' is Python of {source.folder}, which may not run; allowed: a truth of a model")
+        raise RunnerError(
+            f"'{name}' is Python of {source.folder}, which may not run; allowed: a derivation from a model"
+        )
     stem, _, attribute = name.partition(".")
     known = sorted(path.stem for path in (source.equations / kind).glob("[!_]*.py"))
     if stem not in known:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.audit.truth import derivative, rotation, turn
+from runner.audit.derivations import derivative, rotation, turn
 from runner.base.arrays import FloatArray
 from runner.robots.tree import end_of
 

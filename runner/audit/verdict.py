@@ -1,4 +1,4 @@
-"""Verdicts on audit entries: printed, repaired and corrected forms compared with the truth."""
+"""Verdicts on audit entries: printed, emended and corrected forms compared with both derivations."""
 
 import re
 from collections.abc import Mapping
@@ -8,11 +8,11 @@ from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
+from runner.audit.derivations import Derivations, Elements, Symbols
 from runner.audit.entry import Entry, Form, Part, form_values, left_side, right_elements
 from runner.audit.evaluation import Numbered, Values, evaluate, evaluate_all
-from runner.audit.model_truths import AuditedArm, audited_arm, sample
-from runner.audit.sources import Source, truth_of
-from runner.audit.truth import Elements, Symbols, Truth
+from runner.audit.model_derivations import AuditedArm, audited_arm, sample
+from runner.audit.sources import Source, derivation_of
 from runner.base.arrays import FloatArray
 from runner.base.data_file import line_of
 from runner.base.errors import ConfigError, RunnerError, nearest
@@ -23,7 +23,7 @@ from runner.base.expressions.typesetting import Letters
 from runner.base.quantities import quantity
 
 SAMPLES = 1000
-Verdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
+Verdict = Literal["correct", "correct after emendation", "wrong as printed", "unreadable", "definition"]
 _FILL = re.compile(r"\{(\w+)\}")
 _Sides = tuple[str, Mapping[str, int], list[FloatArray]]
 VERDICTS: tuple[Verdict, ...] = get_args(Verdict)
@@ -35,7 +35,7 @@ class AuditError(RunnerError):
 
 @dataclass(frozen=True)
 class Measured:
-    """How far a form is from the truth.
+    """How far a form is from the true values.
 
     Attributes:
         largest: Largest error over the samples and elements.
@@ -51,16 +51,16 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Judged:
+class CheckedEquation:
     """An entry with its verdict.
 
     Attributes:
         source: Name of the study.
         entry: The equation.
         verdict: What the samples say.
-        measured: Error of the form as printed (after repair where there is one); None where it has none.
-        second: The same against the second way to the truth.
-        ways: The two ways to what it claims to equal, in words; empty texts where it claims nothing.
+        measured: Error of the form as printed (after emendation where there is one); None where it has none.
+        second: The same against the second derivation.
+        methods: The methods of its two derivations; empty texts where it claims nothing.
         letters: Names as the source writes them, in Typst mathematics.
     """
 
@@ -69,11 +69,11 @@ class Judged:
     verdict: Verdict
     measured: Measured | None
     second: Measured | None
-    ways: tuple[str, str]
+    methods: tuple[str, str]
     letters: Letters = field(default_factory=dict)
 
 
-class Judge:
+class Check:
     """The verdicts on the entries of one part, all on the same samples.
 
     Args:
@@ -102,73 +102,77 @@ class Judge:
     def _arm(self) -> AuditedArm:
         return audited_arm(self._part.robot, self._part.tip, self._part.joints, self._part.source.folder)
 
-    def judge(self, entry: Entry) -> Judged:
+    def check(self, entry: Entry) -> CheckedEquation:
         """Return the verdict on an entry.
 
         Raises:
             AuditError: If the entry contradicts itself, or names what does not exist; tells file and entry.
         """
         try:
-            return self._judge(entry.as_read(self._part.source))
+            return self._check(entry.as_read(self._part.source))
         except RunnerError as error:
             what = "; ".join(error.problems) if isinstance(error, ConfigError) else error
             raise AuditError(
                 f"{self._part.path}, line {line_of(self._part.path, f'id: {entry.id}')}: {entry.id}: {what}"
             ) from error
 
-    def _judge(self, entry: Entry) -> Judged:
-        unread = not entry.printed.readable or bool(entry.repair and entry.printed.math and not entry.printed.code)
-        if unread and entry.repair is None:
-            return self._judged(entry, "unreadable", None)
-        if not (unread or entry.truth):
-            return self._judged(entry, "definition", None)
+    def _check(self, entry: Entry) -> CheckedEquation:
+        unread = not entry.printed.readable or bool(entry.emendation and entry.printed.math and not entry.printed.code)
+        if unread and entry.emendation is None:
+            return self._checked(entry, "unreadable", None)
+        if not (unread or entry.derivation):
+            return self._checked(entry, "definition", None)
         printed = None if unread else self._measure(entry, entry.printed)
-        if entry.repair and printed and printed.worst <= entry.tolerance:
-            raise AuditError("is repaired, but holds as it stands")
+        if entry.emendation and printed and printed.worst <= entry.tolerance:
+            raise AuditError("is emended, but holds as it stands")
         entry = entry.model_copy(update={"finding": _filled(entry, printed)})
-        measured = self._measure(entry, entry.repair or entry.printed) if entry.repair or printed is None else printed
+        measured = (
+            self._measure(entry, entry.emendation or entry.printed) if entry.emendation or printed is None else printed
+        )
         if measured.worst <= entry.tolerance:
-            return self._judged(entry, "correct after repair" if entry.repair else "correct", measured)
+            return self._checked(entry, "correct after emendation" if entry.emendation else "correct", measured)
         if min(measured.first.largest, measured.second.largest) <= entry.tolerance:
-            raise AuditError("the two ways to the truth disagree")
+            raise AuditError("its two derivations disagree")
         if entry.corrected is None:
             raise AuditError(f"is wrong by {measured.first.largest:.3g} {entry.unit} and has no correction")
         right = self._measure(entry, entry.corrected)
         if right.worst > entry.tolerance:
             raise AuditError(f"the correction is wrong by {right.first.largest:.3g} {entry.unit}")
-        return self._judged(entry, "wrong as printed", measured)
+        return self._checked(entry, "wrong as printed", measured)
 
-    def _judged(self, entry: Entry, verdict: Verdict, found: "_Both | None") -> Judged:
+    def _checked(self, entry: Entry, verdict: Verdict, found: "_Both | None") -> CheckedEquation:
         if entry.corrected is not None and verdict != "wrong as printed":
             raise AuditError(f"is corrected, but its verdict is '{verdict}'")
         first, second = (found.first, found.second) if found else (None, None)
-        ways = self.truth(entry).ways if entry.truth else ("", "")
-        return Judged(
-            self._part.source.name, entry, verdict, first, second, ways, {**self._part.letters, **entry.letters}
+        methods = self.derivations(entry).methods if entry.derivation else ("", "")
+        return CheckedEquation(
+            self._part.source.name, entry, verdict, first, second, methods, {**self._part.letters, **entry.letters}
         )
 
     def _measure(self, entry: Entry, form: Form) -> "_Both":
-        sides, truth = self._sides(entry, form), self.truth(entry)
-        for way, function in enumerate((truth.first, truth.second)):
-            if (entry.truth, entry.tip, way) not in self._found:
-                self._found[entry.truth, entry.tip, way] = function(self.symbols)
-        return _Both(*(self._compare(entry, sides, self._found[entry.truth, entry.tip, way]) for way in (0, 1)))
+        sides, derivations = self._sides(entry, form), self.derivations(entry)
+        for which, function in enumerate((derivations.first, derivations.second)):
+            if (entry.derivation, entry.tip, which) not in self._found:
+                self._found[entry.derivation, entry.tip, which] = function(self.symbols)
+        return _Both(
+            *(self._compare(entry, sides, self._found[entry.derivation, entry.tip, which]) for which in (0, 1))
+        )
 
     def _sides(self, entry: Entry, form: Form) -> list[_Sides]:
         if form.code:
-            found: Elements = truth_of(self._part.source, form.code)(self.symbols)
+            found: Elements = derivation_of(self._part.source, form.code)(self.symbols)
             return [(name, {}, [values]) for name, values in found.items()]
         values, sides = form_values(entry, form, self.symbols, self._right), []
         for left, right in entry.equations(form):
             sides.append((left, right.numbers, values.sides(at_places(left, right.numbers), right)))
-        # Those that others use are steps on the way.
+        # Those that others use are intermediate steps.
         return [each for each in sides if at_places(each[0], each[1]) not in values.used]
 
-    def _compare(self, entry: Entry, sides: list[_Sides], truth: Elements) -> Measured:
+    def _compare(self, entry: Entry, sides: list[_Sides], true_values: Elements) -> Measured:
         sizes: dict[str, FloatArray] = {}
         true_size = 0.0
         for name, numbers, values in sides:
-            true, placed = self._left(name, numbers, truth), at_places(name, numbers)
+            true, placed = self._left(name, numbers, true_values), at_places(name, numbers)
             size = np.max([error(each, true, entry.unit) for each in values], axis=0)
             true_size = max(true_size, float(np.abs(true).max()))
             sizes[placed] = np.maximum(size, sizes.get(placed, 0.0))
@@ -176,25 +180,25 @@ class Judge:
         largest = {name: float(size.max()) for name, size in sizes.items()}
         return Measured(float(worst.max()), float(np.median(worst)), largest, true_size)
 
-    def _left(self, name: str, numbers: Mapping[str, int], truth: Elements) -> FloatArray:
+    def _left(self, name: str, numbers: Mapping[str, int], true_values: Elements) -> FloatArray:
         """Return the true values of a left side."""
-        if (placed := at_places(name, numbers)) in truth:
-            return truth[placed]
+        if (placed := at_places(name, numbers)) in true_values:
+            return true_values[placed]
         node = left_side(name)
-        if isinstance(node, Name) or not any(at_places(each, numbers) in truth for each in symbols_in(node)):
-            raise AuditError(f"no truth for {placed}; there is {', '.join(truth)}")
-        return evaluate(parse(name), Values({**self.symbols, **truth}, self._right), numbers)
+        if isinstance(node, Name) or not any(at_places(each, numbers) in true_values for each in symbols_in(node)):
+            raise AuditError(f"no true value of {placed}; there is {', '.join(true_values)}")
+        return evaluate(parse(name), Values({**self.symbols, **true_values}, self._right), numbers)
 
-    def truth(self, entry: Entry) -> Truth:
+    def derivations(self, entry: Entry) -> Derivations:
         """Return what an entry claims to equal."""
-        if entry.truth.startswith("model."):
-            return self._arm.at(entry.tip).truth(entry.truth)
-        truth: Truth = truth_of(self._part.source, entry.truth)
-        return truth
+        if entry.derivation.startswith("model."):
+            return self._arm.at(entry.tip).derivations(entry.derivation)
+        found: Derivations = derivation_of(self._part.source, entry.derivation)
+        return found
 
 
 class _Both(NamedTuple):
-    """A form against both ways to the truth."""
+    """A form against both derivations."""
 
     first: Measured
     second: Measured
@@ -220,20 +224,20 @@ def _filled(entry: Entry, printed: _Both | None) -> str:
 
 @lru_cache(maxsize=8)
 def _draw(source: Source, name: str, samples: int) -> Symbols:
-    symbols: Symbols = truth_of(source, name)(samples, np.random.default_rng(0))
+    symbols: Symbols = derivation_of(source, name)(samples, np.random.default_rng(0))
     return symbols
 
 
-def error(found: FloatArray, truth: FloatArray, unit: str) -> FloatArray:
-    """Return how far an element is from the truth at each sample, shape (T,); infinite where it is no number.
+def error(found: FloatArray, true: FloatArray, unit: str) -> FloatArray:
+    """Return how far an element is from its true value at each sample, shape (T,); infinite where it is no number.
 
     Args:
         found: The element, shape (T,) or (T, ...): the largest difference of a matrix counts, and 0 is a matrix of 0.
-        truth: What it should be.
+        true: What it should be.
         unit: Its unit; a difference in "rad" is taken the short way round.
     """
-    numbers = found.reshape(len(found), *(1,) * (truth.ndim - 1)) if found.ndim == 1 else found
-    difference = numbers - truth
+    numbers = found.reshape(len(found), *(1,) * (true.ndim - 1)) if found.ndim == 1 else found
+    difference = numbers - true
     if unit == "rad":
         difference = (difference + np.pi) % (2 * np.pi) - np.pi
     size = np.abs(difference).reshape(len(difference), -1).max(axis=1)

@@ -40,7 +40,7 @@ def add_arguments(parser: Parser) -> None:
 
 def run(options: Namespace) -> int:
     """Compare the formulas of the files given; return 1 if one of them differs."""
-    from runner.audit.model_truths import audited_arm
+    from runner.audit.model_derivations import audited_arm
     from runner.audit.own_formulas import QUANTITIES, compare
 
     files = {name: getattr(options, name.replace("-", "_")) for name in QUANTITIES}

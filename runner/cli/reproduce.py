@@ -184,7 +184,7 @@ def _audit(folder: Path) -> _Reproduced:
     from runner.store.atomic import write_atomically
 
     print("auditing the equations ...", file=sys.stderr)
-    judged = audit_all()
-    table = as_csv([each for source in judged.values() for each in source])
+    checked = audit_all()
+    table = as_csv([each for source in checked.values() for each in source])
     write_atomically(folder / "equations.csv", table.encode())
-    return _Reproduced(audit_document(judged), {}, {})
+    return _Reproduced(audit_document(checked), {}, {})

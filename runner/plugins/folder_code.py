@@ -21,7 +21,7 @@ def folder_module(folder: Path, name: str, package: str = "") -> ModuleType:
 
     Args:
         folder: The folder.
-        name: Name of the module, with dots for subfolders: "equations.truths.arm".
+        name: Name of the module, with dots for subfolders: "equations.derivations.arm".
         package: Name of the folder as an installed package, if it is one; not needed in folders of this package.
 
     Raises:

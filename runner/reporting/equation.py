@@ -7,9 +7,9 @@ from typing import Literal
 
 from runner.reporting.markup import literal
 
-EquationVerdict = Literal["correct", "correct after repair", "wrong as printed", "unreadable", "definition"]
+EquationVerdict = Literal["correct", "correct after emendation", "wrong as printed", "unreadable", "definition"]
 
-SHOWN: tuple[EquationVerdict, ...] = ("wrong as printed", "unreadable", "correct after repair")
+SHOWN: tuple[EquationVerdict, ...] = ("wrong as printed", "unreadable", "correct after emendation")
 """Verdicts that need a look, in the order of reading."""
 FOLDED: tuple[EquationVerdict, ...] = ("correct", "definition")
 """Verdicts that need none: the page folds their equations, paper lists their names."""
@@ -22,7 +22,7 @@ _NAME = re.compile(
 
 @dataclass(frozen=True)
 class EquationForm:
-    """One form of an equation: as printed, after repair, corrected. It has lines of formulas, or raw text, or neither.
+    """One form of an equation: as printed, emended, corrected. It has lines of formulas, or raw text, or neither.
 
     Attributes:
         label: Which form it is.
@@ -50,7 +50,7 @@ class Equation:
         place: Section or page.
         verdict: What the samples say.
         error: Largest and typical error, formatted with unit, or "".
-        forms: As printed first, then repaired and corrected.
+        forms: As printed first, then emended and corrected.
         finding: What is wrong, in words; inline mathematics as in Text.
     """
 

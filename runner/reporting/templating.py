@@ -21,7 +21,7 @@ VERDICT_SIGNS = {
     "source contradicts itself": "!",
     "undecided": "?",
     "correct": "✓",
-    "correct after repair": "✓",
+    "correct after emendation": "✓",
     "wrong as printed": "✕",
     "unreadable": "?",
     "definition": "–",

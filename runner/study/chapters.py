@@ -142,8 +142,8 @@ class Chapters:
 
     def _equations(self, caption: str) -> Equations:
         """Return the printed equations of the study with their verdicts."""
-        judged = audit(Source(self._folder, self._code.runs))
-        return Equations(caption, rows(judged), Origin(command=self._command), self._folder.name)
+        checked = audit(Source(self._folder, self._code.runs))
+        return Equations(caption, rows(checked), Origin(command=self._command), self._folder.name)
 
     def _each(self, chapters: Sequence[str | Part]) -> list[Section]:
         return parts((self._title(each), partial(self._one, each)) for each in chapters)

@@ -7,7 +7,7 @@ from itertools import accumulate
 from types import MappingProxyType
 
 from runner.audit.entry import Entry, Form, left_side
-from runner.audit.verdict import Judged
+from runner.audit.verdict import CheckedEquation
 from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
@@ -28,22 +28,22 @@ _PLACED = re.compile(r"\w+_\d\d")
 _VECTOR = ("x", "y", "z")
 
 
-class Likeness:
+class RightElements:
     """The right forms of the elements of a source's matrices, by name.
 
     Args:
-        judged: The equations of the source.
+        checked: The equations of the source.
     """
 
-    def __init__(self, judged: Iterable[Judged]) -> None:
+    def __init__(self, checked: Iterable[CheckedEquation]) -> None:
         self._right: dict[str, Node] = {}
-        for each in judged:
+        for each in checked:
             entry = each.entry
             if each.verdict not in ("unreadable", "definition"):
                 texts = {name: text for name, text in entry.right.elements.items() if _PLACED.fullmatch(name)}
                 self._right |= {name: parse(text).root for name, text in texts.items()}
 
-    def words(self, entry: Entry, elements: Mapping[str, Node]) -> str:
+    def misplaced(self, entry: Entry, elements: Mapping[str, Node]) -> str:
         """Return which other element a wrong one is, but for exchanged symbols, in a sentence; nothing if none.
 
         Args:
@@ -64,48 +64,48 @@ class Likeness:
         return f"It is the right ${_typeset_name(other)}${_exchanged(best)}."
 
 
-def forms_of(entry: Entry, likeness: Likeness, letters: Letters = MappingProxyType({})) -> list[EquationForm]:
+def forms_of(entry: Entry, right: RightElements, letters: Letters = MappingProxyType({})) -> list[EquationForm]:
     """Return the forms of an equation, each with what it does not share with the next one marked.
 
     Args:
         entry: The equation.
-        likeness: The right forms of the equations around it.
+        right: The right forms of the equations around it.
         letters: Names as the source writes them.
     """
-    forms = [form for form in (entry.printed, entry.repair, entry.corrected) if form is not None]
+    forms = [form for form in (entry.printed, entry.emendation, entry.corrected) if form is not None]
     read = [_read(form) for form in forms]
     marks = _marks(read)
     found = []
     for place, (form, elements) in enumerate(zip(forms, read, strict=True)):
         label = _label(entry, form)
-        note = entry.repair.why if entry.repair is not None and form is entry.repair else ""
+        note = entry.emendation.why if entry.emendation is not None and form is entry.emendation else ""
         beside = forms[1 - place] if len(forms) > 1 and place < 2 else None
-        if form.math and form is entry.repair and form.math == entry.printed.math:
+        if form.math and form is entry.emendation and form.math == entry.printed.math:
             found.append(EquationForm(label, note=note))
         elif form.math:
             found.append(EquationForm(label, [[form.math]], note=note))
         elif elements is None:
             found.append(_unread(f"{label}, as the text has it", form, beside, note))
-        elif form is entry.repair and read[0] is None and not (entry.printed.math or entry.corrected):
+        elif form is entry.emendation and read[0] is None and not (entry.printed.math or entry.corrected):
             found.append(_unread(label, form, beside, note))
         else:
-            like = likeness.words(entry, elements) if len(forms) == place + 2 and entry.corrected is not None else ""
+            like = right.misplaced(entry, elements) if len(forms) == place + 2 and entry.corrected is not None else ""
             alone = len(forms) == 1
             told = f"{note} {like}".strip()
             made = _shown(label, form, elements, marks[place], told, letters, like=like, alone=alone)
             if made.lines and entry.indices:
                 numbers = [f"{each} = {', '.join(map(str, found))}" for each, found in entry.indices.items()]
                 made = replace(made, lines=[*made.lines[:-1], [*made.lines[-1], *numbers]])
-            mended = entry.repair is not None and beside is not None and form is not entry.corrected
+            emended = entry.emendation is not None and beside is not None and form is not entry.corrected
             empty = not (made.lines or like) and len(_text(form)) < _LONGEST
-            found.append(_unread(label, form, beside, note) if mended and empty else made)
+            found.append(_unread(label, form, beside, note) if emended and empty else made)
     return found
 
 
 def _label(entry: Entry, form: Form) -> str:
     if form is entry.corrected:
         return "corrected"
-    return "as printed" if form is entry.printed else "repaired"
+    return "as printed" if form is entry.printed else "emended"
 
 
 def _read(form: Form) -> _Elements | None:

@@ -5,11 +5,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 
 from runner.audit.audit import counts, inventory
-from runner.audit.rollout import run_rollout
-from runner.audit.verdict import SAMPLES, VERDICTS, Judged
+from runner.audit.consequence import simulate_consequence
+from runner.audit.verdict import SAMPLES, VERDICTS, CheckedEquation
 from runner.base import progress
 from runner.base.quantities import quantity
-from runner.reporting.audit.forms import Likeness, forms_of
+from runner.reporting.audit.forms import RightElements, forms_of
 from runner.reporting.document import (
     Block,
     Curves,
@@ -35,34 +35,37 @@ DATA = "equations.csv"
 
 _PANELS = 4  # panels of a figure
 _WORDS = (
-    "Correct: equal to the truth, but for rounding, at every configuration tried. Correct after repair: so once damage "
-    "of the text is mended. Wrong as printed: not so, and the right form stands beside it, with what differs marked. "
+    "Correct: equal to both derivations, but for rounding, at every configuration tried. Correct after emendation: so "
+    "once damage of the text is emended. Wrong as printed: not so; the right form follows, with what differs marked. "
     "Unreadable: too much of the text is lost. Definition: it only names things."
 )
 
 
-def audit_document(judged: Mapping[str, Sequence[Judged]]) -> Document:
+def audit_document(checked: Mapping[str, Sequence[CheckedEquation]]) -> Document:
     """Return the report on the audit.
 
     Args:
-        judged: The verdicts of each source, by its name.
+        checked: The verdicts of each source, by its name.
     """
-    everything = [each for source in judged.values() for each in source]
+    everything = [each for source in checked.values() for each in source]
     total = counts(everything)
-    progress.begin("trying", sum(len(_rollouts(each)) for each in judged.values()), "wrong formulas")
+    progress.begin("trying", sum(len(_consequences(each)) for each in checked.values()), "wrong formulas")
     return Document(
         title="Equations of three published sources, checked by machine",
         subtitle="Every printed equation against the arm's true kinematics and dynamics",
         abstract=(
             f"{len(everything)} equations were transcribed as they are printed and tried at {SAMPLES} random "
-            f"configurations each. {total['correct']} are correct and {total['correct after repair']} more once damage "
-            f"of the text is mended; {total['wrong as printed']} are wrong as printed, each with its right form below; "
-            f"{total['unreadable']} can be read no more, and {total['definition']} only name things. Every verdict of "
-            "wrong was found in two independent ways."
+            f"configurations each. {total['correct']} are correct and {total['correct after emendation']} more once "
+            f"damage of the text is emended; {total['wrong as printed']} are wrong as printed, each with its right "
+            f"form below; {total['unreadable']} can be read no more, and {total['definition']} only name things. Every "
+            "verdict of wrong was found by two independent derivations."
         ),
         sections=(
-            *(_source(source, each) for source, each in judged.items()),
-            Section("How they were judged", (Text(_reading()), _counts(judged), _ways(judged), _inventory(judged))),
+            *(_source(source, each) for source, each in checked.items()),
+            Section(
+                "How they were checked",
+                (Text(_reading()), _counts(checked), _derivations(checked), _inventory(checked)),
+            ),
             Section("Provenance", (_provenance(),)),
         ),
         notes=(_WORDS, f"Each square leads to its equations. All of them, whole, stand in {DATA} beside this report."),
@@ -70,9 +73,9 @@ def audit_document(judged: Mapping[str, Sequence[Judged]]) -> Document:
     )
 
 
-def _counts(judged: Mapping[str, Sequence[Judged]]) -> Table:
-    rows = [[source, *map(str, counts(each).values()), str(len(each))] for source, each in judged.items()]
-    total = counts([each for source in judged.values() for each in source])
+def _counts(checked: Mapping[str, Sequence[CheckedEquation]]) -> Table:
+    rows = [[source, *map(str, counts(each).values()), str(len(each))] for source, each in checked.items()]
+    total = counts([each for source in checked.values() for each in source])
     rows.append(["all", *map(str, total.values()), str(sum(total.values()))])
     return Table(
         "Equations of each source by verdict.",
@@ -85,21 +88,21 @@ def _counts(judged: Mapping[str, Sequence[Judged]]) -> Table:
 
 def _reading() -> str:
     return (
-        "A form is judged as it stands wherever it can be read, even where the text is more likely to be at fault "
-        "than the author: we have the text of the three sources as a machine read it, not their pages. It is repaired "
-        "only where it cannot be read, or where a line is plainly damaged, and then the repair is stated and keeps "
-        "every other sign; a wrong label, too, is judged as it stands unless those around it are plainly "
-        "misread. Verdicts are worked out, not written down: the printed form, the repaired and the "
-        "corrected one are evaluated at the same configurations and compared with the truth, once from Pinocchio's "
-        "model or the like and once in a way that shares nothing with it but the arm's measures. The largest error is "
-        "over all configurations and elements, the typical one the median over configurations of the largest "
+        "A form is checked as it stands wherever it can be read, even where the text is more likely to be at fault "
+        "than the author: we have the text of the three sources as a machine read it, not their pages. It is emended "
+        "only where it cannot be read, or where a line is plainly damaged, and then the emendation is stated and keeps "
+        "every other sign; a wrong label, too, is checked as it stands unless those around it are plainly "
+        "misread. Verdicts are worked out, not written down: the printed form, the emended and the "
+        "corrected one are evaluated at the same configurations and compared with two independent derivations, one "
+        "from Pinocchio's model or the like and one that shares only the arm's dimensions with it. The largest error "
+        "is over all configurations and elements, the typical one the median over configurations of the largest "
         "element's."
     )
 
 
-def _inventory(judged: Mapping[str, Sequence[Judged]]) -> Table:
+def _inventory(checked: Mapping[str, Sequence[CheckedEquation]]) -> Table:
     rows = []
-    for source, each in judged.items():
+    for source, each in checked.items():
         audited = [one.entry.place for one in each]
         for place in inventory(source).places:
             lost = ", ".join(place.lost) or "–"
@@ -113,32 +116,36 @@ def _inventory(judged: Mapping[str, Sequence[Judged]]) -> Table:
     )
 
 
-def _ways(judged: Mapping[str, Sequence[Judged]]) -> Table:
+def _derivations(checked: Mapping[str, Sequence[CheckedEquation]]) -> Table:
     found: dict[tuple[str, str], dict[str, None]] = {}
-    for source, each in judged.items():
-        for one, another in sorted({one.ways for one in each if one.entry.truth}):
+    for source, each in checked.items():
+        for one, another in sorted({one.methods for one in each if one.entry.derivation}):
             found.setdefault((source, one), {})[another] = None
     lines = [[source, one, "; ".join(others)] for (source, one), others in found.items()]
-    return Table("Ways to what the equations claim to equal.", ["source", "one way", "another"], lines)
+    return Table(
+        "Reference derivations of what the equations claim to equal.",
+        ["source", "first derivation", "second derivation"],
+        lines,
+    )
 
 
-def _source(source: str, judged: Sequence[Judged]) -> Section:
+def _source(source: str, checked: Sequence[CheckedEquation]) -> Section:
     blocks: list[Block] = [
         Notice("finding", "What is wrong, and why", inventory(source).found),
-        Equations(f"Equations of the {source} source.", rows(judged), source=source, data=DATA),
+        Equations(f"Equations of the {source} source.", rows(checked), source=source, data=DATA),
     ]
-    names = _rollouts(judged)
+    names = _consequences(checked)
     return Section(inventory(source).title, blocks, (_runs(source, names),) if names else ())
 
 
-def _rollouts(judged: Sequence[Judged]) -> Sequence[str]:
+def _consequences(checked: Sequence[CheckedEquation]) -> Sequence[str]:
     """Return the names of what a robot does that believes wrong formulas, each once."""
-    return list(dict.fromkeys(each.entry.rollout for each in judged if each.entry.rollout))
+    return list(dict.fromkeys(each.entry.consequence for each in checked if each.entry.consequence))
 
 
-def rows(judged: Sequence[Judged]) -> list[Equation]:
+def rows(checked: Sequence[CheckedEquation]) -> list[Equation]:
     """Return the equations of a source for a report, in the order of the text."""
-    likeness = Likeness(judged)
+    right = RightElements(checked)
     return [
         Equation(
             each.entry.number,
@@ -146,18 +153,18 @@ def rows(judged: Sequence[Judged]) -> list[Equation]:
             each.entry.place,
             each.verdict,
             _error(each),
-            forms_of(each.entry, likeness, each.letters),
+            forms_of(each.entry, right, each.letters),
             each.entry.finding,
         )
-        for each in judged
+        for each in checked
     ]
 
 
-def _error(judged: Judged) -> str:
-    measured, entry = judged.measured, judged.entry
+def _error(checked: CheckedEquation) -> str:
+    measured, entry = checked.measured, checked.entry
     if measured is None:
         return ""
-    if judged.verdict != "wrong as printed":
+    if checked.verdict != "wrong as printed":
         return f"within {quantity(entry.tolerance, entry.unit, 2)}"
     if math.isinf(measured.largest):
         return f"without bound, typically {quantity(measured.typical, entry.unit)}"
@@ -168,7 +175,7 @@ def _runs(source: str, names: Iterable[str]) -> Section:
     """Return what a robot does that believes the wrong formulas: a sentence and a panel for each run."""
     found = []
     for name in names:
-        found.append(run_rollout(source, name))
+        found.append(simulate_consequence(source, name))
         progress.step()
     told = [f"{mark_text(words.title, 'emphasis')}: {words.text}" for words, _ in found]
     panels = [

@@ -283,8 +283,8 @@ def direction(calibrations: Calibrations, worst: str) -> dict[str, Measured]:
     R = alignment(*alignment_angles(t))
     off = [float(np.degrees(np.arccos(np.clip(along @ t, -1.0, 1.0)))) for along in (R.T[:, 2], R[:, 2])]
     return {
-        "alpha": Measured("true alpha", float(np.degrees(base.truth["alpha"])), "°"),
-        "beta": Measured("true beta", float(np.degrees(base.truth["beta"])), "°"),
+        "alpha": Measured("true alpha", float(np.degrees(base.derivation["alpha"])), "°"),
+        "beta": Measured("true beta", float(np.degrees(base.derivation["beta"])), "°"),
         "printed": Measured("angle to the tool, read as printed", off[0], "°"),
         "described": Measured("angle to the tool, read as described", off[1], "°"),
         "inserted": Measured("way of insertion", 1e3 * _INSERTED, "mm"),
@@ -315,6 +315,6 @@ def audited(equation: str) -> EquationVerdict:
     return next(each.verdict for each in audit("meca500", _SAMPLES) if each.entry.id == equation)
 
 
-def statements(caption: str, judged: Mapping[str, tuple[Verdict | EquationVerdict, str]]) -> Verdicts:
+def statements(caption: str, checked: Mapping[str, tuple[Verdict | EquationVerdict, str]]) -> Verdicts:
     """Return each statement with its verdict and what was measured, by its name."""
-    return Verdicts(caption, judged_statements(load_statements("meca500"), judged), _LEGEND)
+    return Verdicts(caption, judged_statements(load_statements("meca500"), checked), _LEGEND)

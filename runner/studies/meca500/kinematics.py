@@ -9,12 +9,12 @@ import numpy as np
 from runner.audit.audit import audit, counts
 from runner.audit.entry import parts
 from runner.audit.evaluation import evaluate
-from runner.audit.verdict import Judge, Judged
+from runner.audit.verdict import Check, CheckedEquation
 from runner.base.expressions.parser import parse
 from runner.base.quantities import number
 from runner.reporting.document import Table
 from runner.robots.model import RobotModel
-from runner.studies.meca500.equations.truths.meca500 import TABLE
+from runner.studies.meca500.equations.derivations.meca500 import TABLE
 from runner.studies.meca500.figures import Runs
 from runner.studies.meca500.modified_denavit_hartenberg import modified_frames
 from runner.study.measured import Measured
@@ -23,7 +23,7 @@ _COUNT, _SAMPLES = 1000, 200
 _MILLIMETRES = 1000.0
 _NOTHING = 1e-4  # mm or degrees: the chord of two equal rotations is known to the root of rounding
 _SIZES = {"T": (3, 4), "J_g0": (6, 6), "J_g6": (6, 6)}
-_WORDS = {"correct": "right", "correct after repair": "right, mended", "unreadable": "text lost"}
+_WORDS = {"correct": "right", "correct after emendation": "right, emended", "unreadable": "text lost"}
 _RUN = "plants/kinematic"
 _TURNED = {
     "with both turns": (),
@@ -34,19 +34,19 @@ _TURNED = {
 
 
 def equations() -> dict[str, Measured]:
-    """Return how many equations are right, wrong and lost, and in how many postures that is judged."""
-    judged = _judged()
-    total = counts(judged)
+    """Return how many equations are right, wrong and lost, and in how many postures that is checked."""
+    checked = _checked()
+    total = counts(checked)
     cells = [cell for name in _SIZES for row in elements(name, "").rows for cell in row[1:]]
     (_, transform), (linear, of_linear), (angular, of_angular) = (
-        _readable(judged, rows) for rows in (r"T_\d\d", "J_g._[012]", "J_g._[345]")
+        _readable(checked, rows) for rows in (r"T_\d\d", "J_g._[012]", "J_g._[345]")
     )
     found = {
-        "postures": ("postures in which the table of the arm is judged", _COUNT),
-        "samples": ("postures in which the printed elements are judged", _SAMPLES),
-        "all": ("equations", len(judged)),
+        "postures": ("postures in which the table of the arm is checked", _COUNT),
+        "samples": ("postures in which the printed elements are checked", _SAMPLES),
+        "all": ("equations", len(checked)),
         "right": ("equations right as printed", total["correct"]),
-        "mended": ("equations right after repair", total["correct after repair"]),
+        "emended": ("equations right after emendation", total["correct after emendation"]),
         "wrong": ("equations wrong as printed", total["wrong as printed"]),
         "lost": ("equations that cannot be read", total["unreadable"]),
         "names": ("equations that only name things", total["definition"]),
@@ -56,7 +56,7 @@ def equations() -> dict[str, Measured]:
         "linear_wrong": ("wrong ones of the linear rows", of_linear),
         "angular": ("readable equations of the angular rows", angular),
         "angular_wrong": ("wrong ones of the angular rows", of_angular),
-        "axes": ("those that are the joint's axis without terms that bear an angle", _axes(judged)),
+        "axes": ("those that are the joint's axis without terms that bear an angle", _axes(checked)),
     }
     return {key: Measured(words, count) for key, (words, count) in found.items()}
 
@@ -89,8 +89,8 @@ def elements(name: str, caption: str) -> Table:
     """Return the verdict on each element of a printed matrix, T, J_g0 or J_g6, in its place."""
     rows, columns = _SIZES[name]
     found: dict[tuple[int, int], str] = {}
-    for each in _judged():
-        for element in (each.entry.repair or each.entry.printed).elements:
+    for each in _checked():
+        for element in (each.entry.emendation or each.entry.printed).elements:
             place = re.fullmatch(rf"{name}_(\d)(\d)", element)
             if place is not None:
                 found.setdefault((int(place[1]), int(place[2])), _cell(each, element))
@@ -98,29 +98,29 @@ def elements(name: str, caption: str) -> Table:
     return Table(caption, ["row", *(f"column {column}" for column in range(columns))], cells)
 
 
-def _judged() -> list[Judged]:
+def _checked() -> list[CheckedEquation]:
     return [each for each in audit("meca500", _SAMPLES) if each.entry.place[0] in "17"]
 
 
-def _readable(judged: Sequence[Judged], names: str) -> tuple[int, int]:
+def _readable(checked: Sequence[CheckedEquation], names: str) -> tuple[int, int]:
     """Return how many equations for elements of such names can be read, and how many of these are wrong."""
     found = [
         each.verdict
-        for each in judged
+        for each in checked
         if each.measured is not None and any(re.match(names, name) for name in each.measured.elements)
     ]
     return len(found), found.count("wrong as printed")
 
 
-def _axes(judged: Sequence[Judged]) -> int:
+def _axes(checked: Sequence[CheckedEquation]) -> int:
     """Return how many wrong equations of the angular rows are right where every bare angle is zero."""
-    wrong = {each.entry.id for each in judged if each.verdict == "wrong as printed"}
+    wrong = {each.entry.id for each in checked if each.verdict == "wrong as printed"}
     found = 0
     for part in parts("meca500"):
-        symbols = Judge(part, _SAMPLES).symbols
+        symbols = Check(part, _SAMPLES).symbols
         zeros = {name: 0.0 * values if re.fullmatch(r"theta\d", name) else values for name, values in symbols.items()}
         for entry in part.entries:
-            form, right = entry.repair or entry.printed, entry.corrected
+            form, right = entry.emendation or entry.printed, entry.corrected
             names = [name for name in form.elements if re.match("J_g._[345]", name)]
             if entry.id in wrong and right is not None and names:
                 off = [
@@ -131,7 +131,7 @@ def _axes(judged: Sequence[Judged]) -> int:
     return found
 
 
-def _cell(judged: Judged, element: str) -> str:
-    if judged.verdict in _WORDS or judged.measured is None:
-        return _WORDS.get(judged.verdict, "text lost")
-    return f"wrong by up to {number(judged.measured.elements[element], 2)}"
+def _cell(checked: CheckedEquation, element: str) -> str:
+    if checked.verdict in _WORDS or checked.measured is None:
+        return _WORDS.get(checked.verdict, "text lost")
+    return f"wrong by up to {number(checked.measured.elements[element], 2)}"

@@ -17,7 +17,7 @@ from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
 from runner.studies.thesis.diagrams.block_diagram import block_diagram
 from runner.studies.thesis.diagrams.frames import frame_assignment
 from runner.studies.thesis.diagrams.operational_space import operational_space_graph
-from runner.studies.thesis.equations.truths.thesis_printed import compare
+from runner.studies.thesis.equations.derivations.thesis_printed import compare
 from runner.study.job import PRESETS
 from runner.study.measured import Condition, Measured, check_caption
 from runner.study.prose.patterns import found

@@ -12,7 +12,7 @@ from runner.base.expressions.parser import parse
 from runner.base.quantities import number
 from runner.robots.model import RobotModel
 from runner.store import Run
-from runner.studies.xarm7.equations.truths.xarm7 import JOINTS, constants
+from runner.studies.xarm7.equations.derivations.xarm7 import JOINTS, constants
 from runner.studies.xarm7.parts.three_joint_kinematics import BRANCHES, MOVING, Branch, ThreeJointArm
 
 CENTIMETRES = 100.0
@@ -30,7 +30,7 @@ def _entries() -> Mapping[str, Entry]:
 def _value(name: str, right: bool, values: Mapping[str, FloatArray]) -> FloatArray:
     """Return a formula's value as printed, or put right where it is wrong."""
     entry = _entries()[name]
-    form = (entry.corrected if right else None) or entry.repair or entry.printed
+    form = (entry.corrected if right else None) or entry.emendation or entry.printed
     return evaluate(parse(form.elements[name]), values)
 
 

@@ -62,7 +62,7 @@ def test_no_measure_is_typed_in_words(source):
     found = [
         (entry.id, span.text)
         for _, entry in entries(source)
-        for text in (entry.finding, entry.repair.why if entry.repair else "")
+        for text in (entry.finding, entry.emendation.why if entry.emendation else "")
         for span in spans(text)
         if not span.math and MEASURE.search(span.text)
     ]
@@ -78,12 +78,16 @@ def test_a_typed_measure_is_found(text):
 def test_the_mathematics_of_every_entry_is_valid(source):
     from runner.reporting import formulas
 
-    texts = [text for _, entry in entries(source) for text in (entry.finding, entry.repair.why if entry.repair else "")]
+    texts = [
+        text
+        for _, entry in entries(source)
+        for text in (entry.finding, entry.emendation.why if entry.emendation else "")
+    ]
     inline = [span.text for text in texts for span in spans(text) if span.math]
     shown = []
     for part, entry in entries(source):
         letters = {**part.letters, **entry.letters}
-        for form in (form for form in (entry.printed, entry.repair, entry.corrected) if form):
+        for form in (form for form in (entry.printed, entry.emendation, entry.corrected) if form):
             shown += [form.math] if form.math else []
             nodes = [parse(text).root for text in form.elements.values()] if form.readable else []
             shown += [typeset(node, letters=letters) for node in (*map(left_side, form.elements), *nodes)]

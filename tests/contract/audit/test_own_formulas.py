@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.audit.model_truths import by_model
+from runner.audit.model_derivations import by_model
 from runner.audit.own_formulas import QUANTITIES, compare
 from runner.base.errors import RunnerError
 

@@ -134,14 +134,14 @@ def test_calibrations_are_made_by_the_same_engine(small_study, tmp_path):
 
 
 def test_the_audit_is_a_report_and_a_table(cli, monkeypatch, tmp_path):
-    judged = audit("meca500", samples=20)[:10]
-    monkeypatch.setattr("runner.audit.audit.audit_all", lambda: {"meca500": judged})
+    checked = audit("meca500", samples=20)[:10]
+    monkeypatch.setattr("runner.audit.audit.audit_all", lambda: {"meca500": checked})
     ending = cli("reproduce", "audit")
     assert (ending.code, ending.folder) == (0, tmp_path / "outputs" / "reports" / "audit")
     names = sorted(path.name for path in ending.folder.iterdir())
     assert names == ["conclusions.json", "equations.csv", "report.html", "report.pdf"]
     table = list(csv.DictReader(ending.folder.joinpath("equations.csv").read_text(encoding="utf-8").splitlines()))
-    assert len(table) == len(judged) == 10
+    assert len(table) == len(checked) == 10
     assert {row["verdict"] for row in table} <= set(VERDICTS)
 
 

@@ -15,13 +15,13 @@ from runner.reporting.templating import VERDICT_SIGNS
 
 
 @pytest.fixture(scope="module")
-def judged():
+def checked():
     return {source: audit(source, samples=50) for source in ("xarm7", "meca500")}
 
 
 @pytest.fixture(scope="module")
-def document(judged):
-    return audit_document(judged)
+def document(checked):
+    return audit_document(checked)
 
 
 @pytest.fixture(scope="module")
@@ -34,16 +34,16 @@ def tables(document, kind):
 
 
 @pytest.mark.costs(5)
-def test_each_source_has_one_table_with_a_row_for_each_equation(document, judged):
+def test_each_source_has_one_table_with_a_row_for_each_equation(document, checked):
     found = tables(document, Equations)
-    assert [len(table.rows) for table in found] == [len(each) for each in judged.values()]
+    assert [len(table.rows) for table in found] == [len(each) for each in checked.values()]
     assert all(row.forms for table in found for row in table.rows)
 
 
-def test_the_counts_add_up(document, judged):
+def test_the_counts_add_up(document, checked):
     counts = tables(document, Table)[0]
     total = [int(cell) for cell in counts.rows[-1][1:]]
-    assert sum(total[:-1]) == total[-1] == sum(map(len, judged.values()))
+    assert sum(total[:-1]) == total[-1] == sum(map(len, checked.values()))
     assert counts.header[1:-1] == list(VERDICTS)
 
 
@@ -71,9 +71,9 @@ def shown(page):
     return re.findall(row, page, re.DOTALL)
 
 
-def test_the_page_can_be_searched_by_what_is_printed(page, judged):
+def test_the_page_can_be_searched_by_what_is_printed(page, checked):
     found = shown(page)
-    assert len(found) == sum(map(len, judged.values()))
+    assert len(found) == sum(map(len, checked.values()))
     assert {verdict for verdict, _ in found} <= set(VERDICTS)
     texts = [squeezed(row) for _, row in found]
     assert sum("J43Angularvelocityalongx" in text for text in texts) == 1
@@ -85,7 +85,7 @@ def test_the_page_can_be_searched_by_what_is_printed(page, judged):
 def test_wrong_equations_come_first_and_right_ones_are_folded(page):
     order = [verdict for verdict, _ in shown(page)]
     first = order[: order.index("definition")]
-    assert list(dict.fromkeys(first)) == ["wrong as printed", "unreadable", "correct after repair", "correct"] or (
+    assert list(dict.fromkeys(first)) == ["wrong as printed", "unreadable", "correct after emendation", "correct"] or (
         list(dict.fromkeys(first)) == ["wrong as printed", "unreadable", "correct"]
     )
     assert page.count('<details class="verdict" open>') == 5
@@ -99,11 +99,11 @@ def test_what_differs_is_marked_in_both_forms(document):
     assert marks == [{("q", "1"), ("q", "2"), ("q", "5")}, {("θ", "1"), ("θ", "2")}]
 
 
-def test_a_repaired_relation_is_mathematics_where_the_damaged_one_is(document):
+def test_an_emended_relation_is_mathematics_where_the_damaged_one_is(document):
     rows = {row.number: row for table in tables(document, Equations) for row in table.rows}
-    printed, repaired = rows["S2 P"].forms
+    printed, emended = rows["S2 P"].forms
     assert printed.lines
-    assert repaired.lines == [['""^(S_2) P_(S_1) = - ""_(S_1)^(S_2) R ""^(S_1) P_(S_2)']]
+    assert emended.lines == [['""^(S_2) P_(S_1) = - ""_(S_1)^(S_2) R ""^(S_1) P_(S_2)']]
 
 
 def test_a_shifted_column_is_named_and_not_printed_again(document):

@@ -43,6 +43,6 @@ def test_a_report_in_one_format_has_its_stages_only(tmp_path, told, formats):
 
 def test_the_audit_steps_once_for_each_equation(told, monkeypatch):
     monkeypatch.setattr("runner.audit.audit.sources", lambda: ["meca500", "xarm7"])
-    judged = audit_all(samples=2)
-    count = sum(map(len, judged.values()))
+    checked = audit_all(samples=2)
+    count = sum(map(len, checked.values()))
     assert told == {"auditing": [count, count]}

@@ -135,7 +135,7 @@ def test_nor_do_gains(paper, tmp_path):
 KINDS = [
     "study.yaml", "runs.yaml", "one.md", "experiment/own.yaml", "claims.yaml", "gains.yaml", "caveats.yaml",
     "checklist.yaml", "one.py", "robots/own.urdf", "robots/own.xml", "robots/mesh.stl", "own.csv", "own.parquet",
-    "equations/inventory.yaml", "equations/own.yaml", "equations/truths/own.py", "mine.ranges.yaml", "noise",
+    "equations/inventory.yaml", "equations/own.yaml", "equations/derivations/own.py", "mine.ranges.yaml", "noise",
 ]  # fmt: skip
 
 

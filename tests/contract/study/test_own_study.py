@@ -269,12 +269,10 @@ def test_the_example_is_what_is_written():
 def test_its_printed_equations_are_judged_by_yaml_alone(tmp_path, made):
     folder = a_study(tmp_path / "paper", one__md='# One\n\n{{ equations("All.") }}\n')
     (folder / "equations").mkdir()
-    entry = (
-        '- {id: %s, number: "1", place: p. 1, title: Height, printed: {elements: {P_z: %s}}, truth: model.position%s}'
-    )
+    entry = '- {id: %s, number: "1", place: p. 1, title: H, derivation: model.position, printed: {elements: {%s}}%s}'
     right = "cos(q2 + q3) + sin(q2)"
     corrected = f", corrected: {{elements: {{P_z: {right}}}}}"
-    entries = [entry % ("a", right, ""), entry % ("b", "sin(q2)", corrected)]
+    entries = [entry % ("a", f"P_z: {right}", ""), entry % ("b", "P_z: sin(q2)", corrected)]
     (folder / "equations" / "1.yaml").write_text("\n".join(["robot: macro", "entries:", *entries]))
     _, (section,) = read(folder, made)
     assert [row.verdict for row in section.blocks[0].rows] == ["correct", "wrong as printed"]

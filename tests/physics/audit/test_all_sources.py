@@ -1,4 +1,4 @@
-"""Audit of all sources: verdicts of known slips, repairs and the table of equations."""
+"""Audit of all sources: verdicts of known slips, emendations and the table of equations."""
 
 import csv
 import io
@@ -59,10 +59,10 @@ def test_the_column_of_the_first_joint_is_the_second_of_the_printed_jacobian(eve
 
 
 def test_the_table_has_a_line_for_each_equation(everything):
-    judged = [each for source in everything.values() for each in source]
-    rows = list(csv.DictReader(io.StringIO(as_csv(judged))))
-    assert len(rows) == len(judged)
-    assert sum(counts(judged).values()) == len(judged)
+    checked = [each for source in everything.values() for each in source]
+    rows = list(csv.DictReader(io.StringIO(as_csv(checked))))
+    assert len(rows) == len(checked)
+    assert sum(counts(checked).values()) == len(checked)
     by_id = {row["id"]: row for row in rows}
     assert by_id["xarm7-q2"]["verdict"] == "wrong as printed"
     assert float(by_id["xarm7-q2"]["largest_error"]) > 1
@@ -82,5 +82,5 @@ def test_with_the_inverse_rotation_the_meca500_s_gravity_equations_are_right(eve
 
 
 def test_damaged_indices_are_mended_and_told(everything):
-    repaired = {each.entry.id for each in everything["meca500"] if each.verdict == "correct after repair"}
-    assert {"meca500-chain", "meca500-origin", "meca500-Jg054"} <= repaired
+    emended = {each.entry.id for each in everything["meca500"] if each.verdict == "correct after emendation"}
+    assert {"meca500-chain", "meca500-origin", "meca500-Jg054"} <= emended

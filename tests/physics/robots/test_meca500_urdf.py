@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.description import with_payloads
 from runner.robots.inertials import Payload
-from runner.studies.meca500.equations.truths import meca500 as report
+from runner.studies.meca500.equations.derivations import meca500 as report
 from runner.studies.meca500.modified_denavit_hartenberg import (
     ModifiedRow,
     modified_frames,

@@ -10,12 +10,12 @@ import pytest
 from runner.audit.entry import entries, form_values
 from runner.audit.evaluation import evaluate_all
 from runner.studies.thesis.equations.appendix import Harmonic, canonical, parse, read_appendix
-from runner.studies.thesis.equations.truths import thesis_appendix
-from runner.studies.thesis.equations.truths.thesis import symbols
-from runner.studies.thesis.equations.truths.thesis_appendix import appendix_damages, damages, true_series
-from runner.studies.thesis.equations.truths.thesis_arms import COMBINED
+from runner.studies.thesis.equations.derivations import thesis_appendix
+from runner.studies.thesis.equations.derivations.thesis import symbols
+from runner.studies.thesis.equations.derivations.thesis_appendix import appendix_damages, damages, true_series
+from runner.studies.thesis.equations.derivations.thesis_arms import COMBINED
 
-TRUTH = COMBINED.audited.truth("model.dynamics")
+DYNAMICS = COMBINED.audited.derivations("model.dynamics")
 TERMS = (1011, 592, 427, 359, 325, 239)
 GROUPS = (26, 25, 24, 19, 21, 20)  # with gravity, which joint 1 does not feel
 DAMAGED = (7, 2, 2, 1, 1, 106)
@@ -49,8 +49,8 @@ def factors(text):
     return [term.factor for term in parse([text]).terms]
 
 
-def repairs(text):
-    return [repair.kind for repair in parse([text]).repairs]
+def emendations(text):
+    return [emendation.kind for emendation in parse([text]).emendations]
 
 
 # Reading.
@@ -74,11 +74,11 @@ def test_a_term():
 )
 def test_groups(text, expected):
     assert factors(text) == expected
-    assert repairs(text) == []
+    assert emendations(text) == []
 
 
 @pytest.mark.parametrize(
-    ("text", "expected", "repaired"),
+    ("text", "expected", "emended"),
     [
         ("(sin(q2))*qv1*qv5+-1/4*cos(q6)+sin(q3))*qv3*qv6", ["qv1*qv5", "qv3*qv6", "qv3*qv6"], ["bracket put in"]),
         ("(sin(q2)-cos(q3)*qa3+(sin(q4))*qa4", ["qa3", "qa3", "qa4"], ["bracket put in"]),
@@ -90,9 +90,9 @@ def test_groups(text, expected):
         ("(sin(q2)4))*qa5", ["qa5"], ["unreadable"] * 2),
     ],
 )
-def test_damage_is_mended_and_recorded(text, expected, repaired):
+def test_damage_is_mended_and_recorded(text, expected, emended):
     assert factors(text) == expected
-    assert repairs(text) == repaired
+    assert emendations(text) == emended
 
 
 def test_a_product_sign_put_in_makes_no_other_term():
@@ -132,8 +132,8 @@ def test_no_position_of_joint_1_appears():
     assert {term.harmonic.multiples[0] for term in read_appendix().terms} == {0}
 
 
-def test_repairs_of_the_text():
-    assert Counter(repair.kind for repair in read_appendix().repairs) == {
+def test_emendations_of_the_text():
+    assert Counter(emendation.kind for emendation in read_appendix().emendations) == {
         "product sign put in": 183,
         "raised number put down": 19,
         "v or a put in": 11,
@@ -142,7 +142,7 @@ def test_repairs_of_the_text():
     }
 
 
-# The truth.
+# True coefficients.
 
 
 def test_true_terms_are_one_more_than_printed_ones():
@@ -159,7 +159,7 @@ def test_the_true_series_is_the_torque():
     q, dq, ddq = COMBINED.q(values), COMBINED.dq(values), COMBINED.ddq(values)
     terms = [(torque, factor, h, c) for (torque, factor), found in true_series().items() for h, c in found.items()]
     torques = evaluate(terms, q, dq, ddq)
-    np.testing.assert_allclose(torques, TRUTH.first(values)["tau"], atol=1e-12)
+    np.testing.assert_allclose(torques, DYNAMICS.first(values)["tau"], atol=1e-12)
 
 
 def test_known_torques():
@@ -168,8 +168,8 @@ def test_known_torques():
         f"ddq{i}": np.array([0.7 - i / 10]) for i in range(1, 7)
     }
     expected = [0.756871, 17.639557, -1.458317, 0.001641, 0.132384, -0.057832]
-    for way in (TRUTH.first, TRUTH.second):
-        np.testing.assert_allclose(way(values)["tau"][0], expected, atol=1e-6)
+    for derivation in (DYNAMICS.first, DYNAMICS.second):
+        np.testing.assert_allclose(derivation(values)["tau"][0], expected, atol=1e-6)
 
 
 # Damage.
@@ -225,10 +225,12 @@ def test_the_torques_as_read_and_mended(torque):
     whole = entry.as_read(part.source)
     assert len(whole.printed.elements) == GROUPS[torque - 1] + 1
     values = symbols(50, np.random.default_rng(0))
-    true = TRUTH.first(values)[f"tau_{torque}"]
-    read, mended = (form_values(whole, form, values, {})[f"tau_{torque}"] for form in (whole.printed, whole.repair))
+    true = DYNAMICS.first(values)[f"tau_{torque}"]
+    read, emended = (
+        form_values(whole, form, values, {})[f"tau_{torque}"] for form in (whole.printed, whole.emendation)
+    )
     assert np.abs(read - true).max() > entry.tolerance * 1e5
-    np.testing.assert_allclose(mended, true, atol=1e-12)
+    np.testing.assert_allclose(emended, true, atol=1e-12)
 
 
 @pytest.mark.parametrize("torque", range(1, 7))

@@ -6,14 +6,14 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from runner.audit.derivations import along
 from runner.audit.entry import entries, parts, values_at
 from runner.audit.evaluation import evaluate
-from runner.audit.truth import along
-from runner.audit.verdict import AuditError, Judge
+from runner.audit.verdict import AuditError, Check
 from runner.base.expressions.parser import parse
-from runner.studies.thesis.equations.truths import thesis_measures, thesis_operational
-from runner.studies.thesis.equations.truths.thesis import regular_symbols, symbols, symbols_at
-from runner.studies.thesis.equations.truths.thesis_arms import COMBINED, MACRO, MINI
+from runner.studies.thesis.equations.derivations import thesis_measures, thesis_operational
+from runner.studies.thesis.equations.derivations.thesis import regular_symbols, symbols, symbols_at
+from runner.studies.thesis.equations.derivations.thesis_arms import COMBINED, MACRO, MINI
 
 WRONG = {
     "J_ij",
@@ -32,29 +32,29 @@ WRONG = {
     "reference",
     "held",
 }
-REPAIRED = {"J_v3", "motion", "3T6", "names-45", "names-456", "G-mini", "motion-mini"}
-REPAIRED |= {f"appendix-{torque}" for torque in range(1, 7)}
+EMENDED = {"J_v3", "motion", "3T6", "names-45", "names-456", "G-mini", "motion-mini"}
+EMENDED |= {f"appendix-{torque}" for torque in range(1, 7)}
 NAMES = {"epsilon", "3.7", "3.18", "3.22", "3.23", "3.31", "3.33", "3.35", "exact", "3.39", "3.40", "3.42", "4.3"}
 
 ENTRIES = {entry.id.removeprefix("thesis-"): (part, entry) for part, entry in entries("thesis")}
 
 
 @pytest.fixture(scope="module")
-def judged():
+def checked():
     return {
         each.entry.id.removeprefix("thesis-"): each
         for part in parts("thesis")
-        for judge in [Judge(part, samples=100)]
-        for each in map(judge.judge, part.entries)
+        for check in [Check(part, samples=100)]
+        for each in map(check.check, part.entries)
     }
 
 
-def test_verdicts(judged):
-    found = {name: each.verdict for name, each in judged.items()}
+def test_verdicts(checked):
+    found = {name: each.verdict for name, each in checked.items()}
     assert {name for name, verdict in found.items() if verdict == "wrong as printed"} == WRONG
-    assert {name for name, verdict in found.items() if verdict == "correct after repair"} == REPAIRED
+    assert {name for name, verdict in found.items() if verdict == "correct after emendation"} == EMENDED
     assert {name for name, verdict in found.items() if verdict == "definition"} == NAMES
-    assert Counter(found.values())["correct"] == len(ENTRIES) - len(WRONG) - len(REPAIRED) - len(NAMES)
+    assert Counter(found.values())["correct"] == len(ENTRIES) - len(WRONG) - len(EMENDED) - len(NAMES)
 
 
 def test_identifiers_are_unique():
@@ -70,8 +70,8 @@ def test_identifiers_are_unique():
         ("3.6", 1.0),  # the last link, 1 m long, is missing from its own column
     ],
 )
-def test_how_wrong(judged, name, size):
-    assert judged[name].measured.largest == pytest.approx(size, rel=0.02)
+def test_how_wrong(checked, name, size):
+    assert checked[name].measured.largest == pytest.approx(size, rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -97,16 +97,16 @@ def test_a_planted_error_is_found(name, element, old, new):
     assert old in text
     changed = entry.printed.elements | {element: text.replace(old, new, 1)}
     printed = entry.printed.model_copy(update={"elements": changed})
-    judge = Judge(part, samples=50)
+    check = Check(part, samples=50)
     with pytest.raises(AuditError, match="is wrong by"):
-        judge.judge(entry.model_copy(update={"printed": printed}))
-    both = judge.judge(entry.model_copy(update={"printed": printed, "corrected": entry.printed}))
+        check.check(entry.model_copy(update={"printed": printed}))
+    both = check.check(entry.model_copy(update={"printed": printed, "corrected": entry.printed}))
     assert both.verdict == "wrong as printed"
     assert both.second.largest == pytest.approx(both.measured.largest, rel=1e-4)
 
 
 @pytest.mark.parametrize("name", ["motion", "G-mini", "motion-mini", "3T6", "J_v3"])
-def test_a_repair_changes_torn_subscripts_alone(name):
+def test_an_emendation_changes_torn_subscripts_alone(name):
     entry = ENTRIES[name][1]
     torn = {
         "s2*s3": "s23",
@@ -124,8 +124,8 @@ def test_a_repair_changes_torn_subscripts_alone(name):
             mended = mended.replace(before, after)
         # c456 and c45 both stand as c4*s5: with three joints before the difference of three, with two elsewhere
         mended = re.sub(r"([cs])4\*s5", r"\g<1>45", mended) if name == "3T6" else mended
-        repaired = entry.repair.elements[element]
-        assert mended == (repaired.replace("456", "45") if name == "3T6" else repaired), element
+        emended = entry.emendation.elements[element]
+        assert mended == (emended.replace("456", "45") if name == "3T6" else emended), element
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_a_matrix_has_all_its_elements(name, shape):
     assert evaluate(parse(text), symbols_at(np.zeros((1, 6)))).shape == (1, *shape)
 
 
-# What the truths stand on.
+# The basis of the derivations.
 
 
 @pytest.mark.parametrize("arm", [MACRO, MINI, COMBINED])

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from runner.robots import RobotModel, find_urdf, read_urdf
-from runner.studies.thesis.equations.truths.thesis_printed import compare, gravity_torque, linear_jacobian, mass_matrix
+from runner.studies.thesis.equations.derivations.thesis_printed import (
+    compare,
+    gravity_torque,
+    linear_jacobian,
+    mass_matrix,
+)
 
 
 def thesis_arm(name: str) -> RobotModel:

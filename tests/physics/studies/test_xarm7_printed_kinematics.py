@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.studies.xarm7.equations.truths.xarm7 import THETA1, THETA2, pose
+from runner.studies.xarm7.equations.derivations.xarm7 import THETA1, THETA2, pose
 from runner.studies.xarm7.kinematics import printed_inverse, printed_tip, random_postures
 from runner.studies.xarm7.parts.three_joint_kinematics import BRANCHES, MOVING, ThreeJointArm
 

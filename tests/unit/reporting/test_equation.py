@@ -16,7 +16,7 @@ from runner.reporting.equation import (
 
 
 def equation(number, finding="", notes=(), place="page 1", verdict="wrong as printed"):
-    forms = [EquationForm("as printed"), *(EquationForm("repaired", note=note) for note in notes)]
+    forms = [EquationForm("as printed"), *(EquationForm("emended", note=note) for note in notes)]
     return Equation(number, "", place, verdict, "", forms, finding)
 
 

@@ -2,24 +2,24 @@
 
 import pytest
 
-from runner.audit.entry import Entry, Form, Repair
-from runner.audit.verdict import Judged
-from runner.reporting.audit.forms import Likeness, forms_of
+from runner.audit.entry import Emendation, Entry, Form
+from runner.audit.verdict import CheckedEquation
+from runner.reporting.audit.forms import RightElements, forms_of
 
 LONG = " + ".join(f"x{i}*y{i}*z{i}" for i in range(20))
 
 
-def entry(printed, corrected=None, repair=None, name="J_11"):
+def entry(printed, corrected=None, emendation=None, name="J_11"):
     return Entry(
         id=name, number=name, place="page 1", title="", printed=Form(elements={name: printed}),
-        repair=repair and Repair(why="Torn.", elements={name: repair}),
+        emendation=emendation and Emendation(why="Torn.", elements={name: emendation}),
         corrected=corrected and Form(elements={name: corrected}),
     )  # fmt: skip
 
 
 def forms(given, *others):
-    judged = [Judged("paper", each, "wrong as printed", None, None, ("", "")) for each in (given, *others)]
-    return forms_of(given, Likeness(judged))
+    checked = [CheckedEquation("paper", each, "wrong as printed", None, None, ("", "")) for each in (given, *others)]
+    return forms_of(given, RightElements(checked))
 
 
 def formula(form):
@@ -53,9 +53,9 @@ def test_a_form_that_stands_in_anothers_place_is_told_by_its_name():
 
 @pytest.mark.parametrize("printed", ["2*(a + b", "2 a"])
 def test_what_cannot_be_read_is_shown_as_text(printed):
-    first, second = forms(entry(printed, repair="2*(a + b)"))
+    first, second = forms(entry(printed, emendation="2*(a + b)"))
     assert "".join(piece for _, piece in first.raw).replace("\u200a", "") == f"J_11 = {printed}"
-    assert (second.label, second.note) == ("repaired", "Torn.")
+    assert (second.label, second.note) == ("emended", "Torn.")
     assert any(marked for marked, _ in (*first.raw, *second.raw))
 
 

@@ -1,1 +1,1 @@
-"""Printed equations of the Meca500 report: entries, truths and rollouts."""
+"""Printed equations of the Meca500 report: entries, reference derivations and simulated consequences."""

@@ -1,1 +1,1 @@
-"""Printed equations of the thesis: entries, truths and rollouts."""
+"""Printed equations of the thesis: entries, reference derivations and simulated consequences."""

@@ -2,7 +2,7 @@
 
 The appendix writes each torque as a sum of groups, "(sum of terms) * product of velocities" or "... * acceleration",
 and of gravity terms. A term is a fraction times the sine or cosine of a sum of joint positions. Some of the text is
-damaged; it is parsed as it is, and every repair is recorded.
+damaged; it is parsed as it is, and every emendation is recorded.
 """
 
 import re
@@ -53,8 +53,8 @@ class Term:
 
 
 @dataclass(frozen=True)
-class Repair:
-    """A place in a torque's row where the text as it stands cannot be read, and what kind of mending was done."""
+class Emendation:
+    """A place in a torque's row where the text as it stands cannot be read, and what kind of emendation was done."""
 
     torque: int
     kind: str
@@ -63,10 +63,10 @@ class Repair:
 
 @dataclass(frozen=True)
 class Appendix:
-    """The appendix as read: its terms in order, and what was mended to read them."""
+    """The appendix as read: its terms in order, and what was emended to read them."""
 
     terms: tuple[Term, ...]
-    repairs: tuple[Repair, ...]
+    emendations: tuple[Emendation, ...]
 
 
 @cache
@@ -84,21 +84,21 @@ def read_appendix() -> Appendix:
 def parse(rows: list[str]) -> Appendix:
     """Return the terms of the rows' texts, one row a torque.
 
-    Four kinds of damage are mended, and recorded: a lost bracket of a group (it is taken to begin after the group
+    Four kinds of damage are emended, and recorded: a lost bracket of a group (it is taken to begin after the group
     before it, or to end before its factor), a factor without the letter v or a ("q3^2" in the place of a factor is a
     velocity, a lone "q1" an acceleration), a number raised ("qv^2" for qv2, which is no power), and a missing product
     sign. Anything else that cannot be read is left out, and recorded as "unreadable".
     """
     terms: list[Term] = []
-    repairs: list[Repair] = []
+    emendations: list[Emendation] = []
     for torque, text in enumerate(rows, start=1):
-        _Row(torque, text, terms, repairs).read()
-    return Appendix(tuple(terms), tuple(repairs))
+        _Row(torque, text, terms, emendations).read()
+    return Appendix(tuple(terms), tuple(emendations))
 
 
 class _Row:
-    def __init__(self, torque: int, text: str, terms: list[Term], repairs: list[Repair]) -> None:
-        self._torque, self._text, self._terms, self._repairs = torque, text, terms, repairs
+    def __init__(self, torque: int, text: str, terms: list[Term], emendations: list[Emendation]) -> None:
+        self._torque, self._text, self._terms, self._emendations = torque, text, terms, emendations
         self._pending: list[tuple[Harmonic, Fraction, str]] = []
         self._open = False
 
@@ -117,7 +117,7 @@ class _Row:
                 place = term.end()
             else:
                 if self._text[place] != "+":  # the sign before a bracket that is lost
-                    self._mend("unreadable", place)
+                    self._emend("unreadable", place)
                 place += 1
         self._flush(self._pending, "gravity")
 
@@ -128,16 +128,16 @@ class _Row:
         for minus, count, product, joint in _POSITION.findall(argument or ""):
             multiples[int(joint) - 1] += int(count or 1) * (-1 if minus == "-" else 1)
             if count and not product:
-                self._mend("product sign put in", match.start())
+                self._emend("product sign put in", match.start())
         return *canonical(function or "cos", tuple(multiples), value), match[0]
 
     def _close(self, match: re.Match[str]) -> None:
         bracket, first, square, second = match.groups()
         names = [name for name in (first, second) if name]
         if any("^" in name for name in names):
-            self._mend("raised number put down", match.start())
+            self._emend("raised number put down", match.start())
         if any(name[1].isdigit() for name in names):
-            self._mend("v or a put in", match.start())
+            self._emend("v or a put in", match.start())
             letter = "qv" if square or second else "qa"
             names = [letter + name[1:] if name[1].isdigit() else name for name in names]
         factor = "*".join(name.replace("^", "") for name in names) + (square or "")
@@ -145,7 +145,7 @@ class _Row:
             self._flush([self._pending.pop()], factor)
             return
         if not (bracket and self._open):
-            self._mend("bracket put in", match.start())
+            self._emend("bracket put in", match.start())
         self._flush(self._pending, factor)
         self._open = False
 
@@ -153,8 +153,8 @@ class _Row:
         self._terms += [Term(self._torque, factor, *term) for term in pending]
         pending.clear()
 
-    def _mend(self, kind: str, place: int) -> None:
-        self._repairs.append(Repair(self._torque, kind, self._text[max(0, place - 20) : place + 20]))
+    def _emend(self, kind: str, place: int) -> None:
+        self._emendations.append(Emendation(self._torque, kind, self._text[max(0, place - 20) : place + 20]))
 
 
 def canonical(function: str, multiples: tuple[int, ...], value: Fraction) -> tuple[Harmonic, Fraction]:

@@ -1,1 +1,1 @@
-"""Printed equations of the xArm7 report: entries, truths and rollouts."""
+"""Printed equations of the xArm7 report: entries, reference derivations and simulated consequences."""

@@ -1,0 +1,1 @@
+"""Reference derivations of the Meca500 report's equations, two of each."""

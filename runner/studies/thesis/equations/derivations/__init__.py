@@ -1,0 +1,1 @@
+"""Reference derivations of the thesis equations, two of each."""

@@ -1,1 +1,0 @@
-"""Truths of the thesis equations, each evaluated in two ways."""

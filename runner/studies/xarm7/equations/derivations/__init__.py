@@ -1,0 +1,1 @@
+"""Reference derivations of the xArm7 report's equations, two of each."""

@@ -1,1 +1,0 @@
-"""Truths of the xArm7 report's equations, each evaluated in two ways."""
