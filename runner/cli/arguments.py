@@ -80,7 +80,7 @@ _SHARED: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {
     "quiet": (("-q", "--quiet"), {"action": "store_true"}),
 }
 _MEANINGS = {
-    "config_dir": "your own folder with YAML and URDFs; repeat for more",
+    "config_dir": "your folder of YAML and URDFs; repeatable",
     "plugin": "your own controller, trajectory, plant, environment or metric, as controller=FILE.py; "
     "a controller can be one function: controller=FILE.py:NAME; repeat for more",
     "quiet": "print only the path of the result",
@@ -99,10 +99,41 @@ class Parser(argparse.ArgumentParser):
         root: File of conf/ that the overrides of the command change.
     """
 
-    def __init__(self, **options: Any) -> None:
-        super().__init__(allow_abbrev=False, **options)
+    def __init__(self, parents: Sequence[argparse.ArgumentParser] = (), **options: Any) -> None:
+        super().__init__(allow_abbrev=False, parents=parents, **options)
+        self._inherited = {action for parent in parents for action in parent._actions}
         self.commands: dict[str, Parser] = {}
         self.root, self._options_first = "config", False
+
+    def describe(self, text: str) -> None:
+        """Set the description and the example of the help.
+
+        Args:
+            text: Docstring of the command's module; `Example: LINE` is its last paragraph.
+        """
+        self.description, _, example = text.rstrip().rpartition("\n\n")
+        self.epilog = f"{example}\nOptions of every command: runner --help"
+
+    def _get_formatter(self) -> argparse.HelpFormatter:
+        return argparse.HelpFormatter(self.prog, max_help_position=28)
+
+    def format_usage(self) -> str:
+        """Return the usage, without the options of every command."""
+        formatter = self._get_formatter()
+        formatter.add_usage(self.usage, self._own(), ())
+        return formatter.format_help()
+
+    def format_help(self) -> str:
+        """Return the help, without the options of every command."""
+        formatter = self._get_formatter()
+        formatter.add_text(self.description)
+        formatter.start_section(argparse.SUPPRESS)
+        formatter.add_arguments(self._own())
+        formatter.end_section()
+        return "\n".join(filter(None, (self.format_usage(), formatter.format_help(), self.epilog))).rstrip() + "\n"
+
+    def _own(self) -> list[argparse.Action]:
+        return [each for each in self._actions if each not in self._inherited and each.dest != "help"]
 
     def add_shared(self, *names: str, **meanings: str) -> None:
         """Add options that have the same meaning in every command.

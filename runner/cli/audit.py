@@ -1,8 +1,10 @@
-"""`runner audit URDF --tip FRAME --jacobian FILE`: compare your formulas with a robot's kinematics and dynamics.
+"""Compare your formulas with a robot's kinematics and dynamics.
 
-FILE is YAML: `elements` names each element with its expression (J_11 to J_6n, linear rows first; P_x, P_y, P_z; M_11
-to M_nn; G_1 to G_n), in SI units and the base frame. Expressions may use q1, s1 = sin(q1), c1 = cos(q1) and so on,
-and the names in `symbols`.
+A FILE of formulas is YAML: `elements` holds the expression of each element (J_11 to J_6n, linear rows first; P_x, P_y,
+P_z; M_11 to M_nn; G_1 to G_n), in SI units and the base frame. Expressions may use q1, s1 = sin(q1), c1 = cos(q1) and
+so on, and the names in `symbols`.
+
+Example: runner audit xarm7 --tip link7 --jacobian jacobian.yaml
 """
 
 import math
@@ -23,9 +25,7 @@ _MOST = 100_000
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
-    parser.add_argument(
-        "urdf", metavar="URDF", help="a file, one of our URDFs such as xarm7.urdf, or a robot such as xarm7"
-    )
+    parser.add_argument("urdf", metavar="URDF", help="a file, or a built-in robot such as xarm7")
     parser.add_argument("--tip", required=True, metavar="FRAME", help="link whose origin is the tip")
     for name, words in (
         ("position", "the tip's position [m]"),
@@ -34,8 +34,16 @@ def add_arguments(parser: Parser) -> None:
         ("gravity", "the gravity torques [N m]"),
     ):
         parser.add_argument(f"--{name}", type=Path, metavar="FILE", help=f"formulas of {words}")
-    parser.add_argument("--samples", type=int, default=1000, help="how many random configurations (1000)")
-    parser.add_argument("--tolerance", type=float, default=1e-6, help="largest error that is none, in SI units (1e-6)")
+    parser.add_argument(
+        "--samples", metavar="N", type=int, default=1000, help="number of random configurations (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--tolerance",
+        metavar="X",
+        type=float,
+        default=1e-6,
+        help="largest difference that counts as equal, in SI units (default: %(default)s)",
+    )
 
 
 def run(options: Namespace) -> int:

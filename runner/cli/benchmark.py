@@ -1,9 +1,11 @@
-"""`runner benchmark check LAW.py`: check in seconds if your controller fits the benchmark.
+"""Check in seconds if your controller fits the benchmark.
 
 LAW.py is the file for `--plugin controller=LAW.py`; its config controller/LAW.yaml and its ranges LAW.ranges.yaml are
-next to it. LAW.py:NAME is a law that is one function, without config. Every run of it is composed and compared with a
-run of a built-in controller. The first control steps are computed on each arm, and the total time is estimated. Nothing
-is stored. Exit code 2 if the controller does not fit.
+next to it. LAW.py:NAME is a law that is one function, without config. The check composes every run and compares it with
+a run of a built-in controller. It computes the first control steps on each arm, and estimates the total time. It stores
+nothing. Exit code 2: the controller does not fit.
+
+Example: runner benchmark check LAW.py
 """
 
 import shlex
@@ -27,7 +29,9 @@ def add_arguments(parser: Parser) -> None:
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     check = actions.add_parser("check", help="check if your controller fits")
     check.add_argument("law", metavar="FILE", help="your controller, a Python file")
-    check.add_argument("--profile", default="", metavar="P", help="a smaller or larger version of the benchmark")
+    check.add_argument(
+        "--profile", default="", metavar="P", help="smaller or larger version of the benchmark (default: quick)"
+    )
 
 
 def run(options: Namespace) -> int:

@@ -1,4 +1,7 @@
-"""`runner calibrate [OVERRIDES]`: simulate a tool or sensor calibration, compare it with the truth, store it."""
+"""Simulate a calibration of a tool or a sensor, compare it with the truth, and store it.
+
+Example: runner calibrate robot=meca500 calibration=gravity repetitions=10
+"""
 
 import sys
 from argparse import Namespace
@@ -15,7 +18,7 @@ if TYPE_CHECKING:
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_overrides("such as calibration=gravity, repetitions=10", root="calibrate")
-    parser.add_shared("config_dir", output="outputs folder, as outputs=PATH")
+    parser.add_shared("config_dir", output="outputs folder (default: outputs)")
 
 
 def run(options: Namespace) -> int:

@@ -1,9 +1,10 @@
-"""`runner check DIR [--baseline FILE]`: compare the metrics of a run or a sweep with a spec or a baseline.
+"""Compare the metrics of a run or a sweep with a spec or a baseline.
 
-Without a baseline, a run with a spec is checked by the spec. No repetition may break a bound. With
-`--max-failure-probability P` the whole 95 % interval of the probability of failing must be below P.
+Without a baseline, the spec of the run is compared, and no repetition may break a bound. With
+`--max-failure-probability` the whole 95 % interval of the probability of failing must be below P. `--save-baseline`
+writes the baseline of a sweep, and `--baseline` then lists the changes. Exit code 1: the check failed.
 
-`--save-baseline FILE` writes the baseline of a sweep. `--baseline FILE [--format markdown]` then lists the changes.
+Example: runner check latest --baseline baseline.yaml --format markdown
 """
 
 import argparse
@@ -32,8 +33,8 @@ def add_arguments(parser: Parser) -> None:
     stored = Stored("run", "sweep", "tuning")
     parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a run or a sweep, or latest")
     parser.add_shared(
-        baseline="bands or a saved sweep; default: the spec, or the baseline of the experiment",
-        save_baseline="write the baseline of a whole sweep",
+        baseline="bands or a saved sweep (default: the spec, or the experiment's)",
+        save_baseline="write the baseline of a sweep",
     )
     parser.add_argument(
         "--max-failure-probability",
@@ -41,7 +42,7 @@ def add_arguments(parser: Parser) -> None:
         metavar="P",
         help="highest allowed probability that a repetition breaks a bound of the spec",
     )
-    parser.add_formats(("text", "markdown"), "how the changes are printed; default: text", most=1)
+    parser.add_formats(("text", "markdown"), "format of the changes: text or markdown (default: text)", most=1)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -1,8 +1,9 @@
-"""`runner compare A B ...`: compare runs or sweeps, the first with each of the others.
+"""Compare runs or sweeps, the first with each of the others.
 
-Sweeps are compared by cell and repetition. `runner compare SWEEP --by controller --within robot` compares the levels
-of an axis of one sweep. `runner compare RUN recording.csv --columns map.yaml` compares the recording of a real arm
-with a run, and writes a report; its folder is the last line.
+Sweeps are compared by cell and repetition; with --by, the levels of an axis of one sweep. For a run and a recording of
+a real arm (CSV or ROS bag) it writes a report in reports/ and prints its folder.
+
+Example: runner compare latest --by controller --within robot
 """
 
 import json
@@ -39,20 +40,20 @@ def add_arguments(parser: Parser) -> None:
         nargs="+",
         type=StoredOrRecording("run", "sweep"),
         metavar="DIR",
-        help="runs, or sweeps; or latest; or a run and a recording, a CSV file or a ROS bag",
+        help="runs, sweeps, latest, a CSV file or a ROS bag",
     )
     parser.add_shared(
-        metrics="compare only these metrics; default: five, and with --all or --json every metric",
-        json="print the rows of runner.compare as JSON",
-        by="of one sweep: compare the levels of each of these axes",
-        within="within each level of these; default: over all others, and within the strongest of them",
-        where="of sweeps: only the cells with this value; repeat for more",
-        output="of a recording: folder of the report; default: a folder in reports/ of the outputs folder",
+        metrics="metrics (default: five; all with --all or --json)",
+        json="print JSON, one object for each row",
+        by="compare the levels of these axes of one sweep",
+        within="within each level of these axes (default: over all, then the strongest)",
+        where="only cells with this value; repeat for more",
+        output="recording: folder of the report",
     )
     parser.add_argument("--all", action="store_true", help="print every metric and the method")
-    parser.add_argument("--columns", type=Path, metavar="FILE", help="of a recording: which signal each column holds")
+    parser.add_argument("--columns", type=Path, metavar="FILE", help="recording: YAML of the signal in each column")
     parser.add_argument(
-        "--fill-gaps", type=_seconds, metavar="TIME", help="of a recording: fill gaps of up to this, such as 20ms"
+        "--fill-gaps", type=_seconds, metavar="TIME", help="recording: longest gap to fill, such as 20ms"
     )
 
 

@@ -1,10 +1,11 @@
-"""`runner doctor FILE [--tip FRAME] [--name NAME] [-o DIR] [--format config,html]`: check if your robot fits.
+"""Check if your robot fits.
 
-It prints one line for each finding. `refused` bars the robot. `fixed` was changed in the copy that --output writes; the
-line has the old and the new value. A `note` is good to know. `--output` writes a config folder with the robot's YAML
-and a copy of its URDF. An MJCF is copied unchanged, or becomes a URDF if something is fixed. `--format html` writes
-report.html there instead, and `--format config,html` writes both. A robot whose links have no mass gets a config with
-joint position commands. Exit codes: 0 it fits, 2 no config can be written of it.
+Each finding is one line. `refused` bars the robot. `fixed` was changed in the copy that --output writes; the line has
+the old and the new value. A `note` needs no change. The config folder holds the robot's YAML and a copy of its file; an
+MJCF becomes a URDF if something is fixed. A robot whose links have no mass gets joint position commands. Exit code 2:
+no config can be written.
+
+Example: runner doctor arm.urdf --output mine
 """
 
 import os
@@ -22,16 +23,14 @@ _FORMATS = ("config", "html")
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument("file", type=Path, metavar="FILE", help="a URDF or an MJCF")
-    parser.add_argument("--tip", metavar="FRAME", help="link that is the tip; default: where the arm ends")
-    parser.add_argument("--name", metavar="NAME", help="name of the robot; default: that of the file or its folder")
+    parser.add_argument("--tip", metavar="FRAME", help="link that is the tip (default: where the arm ends)")
+    parser.add_argument("--name", metavar="NAME", help="name of the robot (default: from the file or its folder)")
     parser.add_argument(
         "--package-path", action="append", default=[], type=Path, metavar="DIR",
-        help="folder with the ROS packages of its meshes; again for more",
+        help="folder with the ROS packages of its meshes; repeat for more",
     )  # fmt: skip
-    parser.add_shared(output="where to write; default: nothing is written")
-    parser.add_formats(
-        _FORMATS, "config: a config folder to start from (default); html: report.html, with the robot drawn"
-    )
+    parser.add_shared(output="folder to write (default: nothing is written)")
+    parser.add_formats(_FORMATS, "config: a config folder; html: report.html with a drawing (default: config)")
 
 
 def run(options: Namespace) -> int:

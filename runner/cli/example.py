@@ -1,4 +1,7 @@
-"""`runner example DIR`: copy the examples to a folder: arm, controller, trajectory, paper and notebook."""
+"""Copy the examples to a folder: arm, controller, trajectory, paper and notebook.
+
+Example: runner example examples
+"""
 
 import shutil
 import sys

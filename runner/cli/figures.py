@@ -1,6 +1,6 @@
-"""`runner figures DIR`: write each figure of a report as SVG, PDF and CSV, in the width of a journal column.
+"""Write each figure of a report as SVG, PDF and CSV, in the width of a journal column.
 
-DIR is a run, a sweep, a tuning, or a study from `runner reproduce`: its name, or its report's folder.
+Example: runner figures latest --width double
 """
 
 import math
@@ -33,10 +33,17 @@ class _Drawn(Stored):
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     drawn = _Drawn("run", "sweep", "tuning")
-    parser.add_argument("folder", type=drawn, metavar="DIR", help="a run, sweep or tuning; a study; or latest")
-    parser.add_shared(output="where to write; default: figures/ in the report's folder")
-    parser.add_argument("--width", default="single", metavar="W", help="single (88 mm), double (180 mm) or millimetres")
-    parser.add_argument("--only", metavar="NAME", help="one figure, or those whose names begin so")
+    parser.add_argument(
+        "folder", type=drawn, metavar="DIR", help="a run, sweep or tuning; a study's name or report; or latest"
+    )
+    parser.add_shared(output="folder to write (default: figures/ in the report's folder)")
+    parser.add_argument(
+        "--width",
+        default="single",
+        metavar="W",
+        help="single (88 mm), double (180 mm) or millimetres (default: single)",
+    )
+    parser.add_argument("--only", metavar="NAME", help="figures whose names begin so (default: all)")
 
 
 def run(options: Namespace) -> int:

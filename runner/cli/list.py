@@ -1,4 +1,7 @@
-"""`runner list [TOPIC]`: list the available robots, controllers, metrics and other options."""
+"""List the available robots, controllers, metrics and other options.
+
+Example: runner list controllers
+"""
 
 import re
 from argparse import Namespace

@@ -169,7 +169,8 @@ def build_parser(names: Iterable[str] = COMMANDS) -> Parser:
     actions = root.add_subparsers(dest="command", metavar="COMMAND", prog="runner")
     for name in names:
         module = importlib.import_module(f"runner.cli.{_module(name)}")
-        root.commands[name] = parser = actions.add_parser(name, description=module.__doc__, parents=[COMMON])
+        root.commands[name] = parser = actions.add_parser(name, parents=[COMMON])
+        parser.describe(str(module.__doc__))
         module.add_arguments(parser)
         parser.set_defaults(run=module.run, parser=parser)
     return root
@@ -186,7 +187,7 @@ def help_text() -> str:
         for summary, same in modules.items():
             first = f"  {', '.join(same):<{_COLUMN}}"
             lines.append(textwrap.fill(summary, _WIDTH, initial_indent=first, subsequent_indent=" " * len(first)))
-    shared = COMMON.format_help().partition("options:\n")[2]
+    shared = COMMON.format_help().partition("\n\n")[2]
     groups_text = textwrap.fill(f"Groups of config: {', '.join(groups())}.", _WIDTH)
     return "\n".join([*lines, "", "Options of every command", shared, _NOTES, groups_text, _EXITS])
 
@@ -245,6 +246,6 @@ def _module(name: str) -> str:
 
 
 def _summary(name: str) -> str:
-    """Return the first sentence of a command's description without its usage; reading it is faster than an import."""
+    """Return the first sentence of a command's description; reading it is faster than an import."""
     description = Path(__file__).with_name(f"{_module(name)}.py").read_text().split('"""')[1]
-    return " ".join(description.partition("\n\n")[0].partition("`: ")[2].split())
+    return " ".join(description.partition("\n\n")[0].split())

@@ -1,4 +1,7 @@
-"""`runner report DIR... [--format html,pdf] [--metrics A,B] [-o DIR]`: write a report on runs, sweeps or a tuning."""
+"""Write a report on runs, sweeps or a tuning.
+
+Example: runner report latest --format html
+"""
 
 from argparse import Namespace
 
@@ -14,12 +17,12 @@ def add_arguments(parser: Parser) -> None:
         nargs="+",
         type=Stored("run", "sweep", "tuning"),
         metavar="DIR",
-        help="run folders, sweep folders, or the folder of one tuning; or latest",
+        help="runs, sweeps or one tuning; or latest",
     )
-    parser.add_formats(FORMATS, "html, pdf or both; default: both")
+    parser.add_formats(FORMATS, "html, pdf or both (default: html,pdf)")
     parser.add_shared(
-        metrics="metrics by which a sweep is compared; the first ranks it",
-        output="folder to write to; default: a folder in reports/ of the outputs folder",
+        metrics="metrics that compare a sweep; the first ranks it (default: the main ones)",
+        output="folder to write (default: in reports/ of the outputs folder)",
     )
 
 

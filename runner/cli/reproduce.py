@@ -1,9 +1,10 @@
-"""`runner reproduce [NAME|FOLDER] [OVERRIDES]`: simulate the missing runs of a study and write its report.
+"""Simulate the missing runs of a study and write its report.
 
-FOLDER is your own study: `runner study new FOLDER` writes a template. OVERRIDES configure the execution:
-hydra.sweeper.workers and .address, sweep.time_limit, .attempts, .retry and .on_failure, limits.cpu_hours and .memory;
-caveats.RULE.KEY configures the caveats. The study defines its simulations; --plugin adds levels to an axis of the
-study that takes them.
+`runner study new FOLDER` writes your own study. OVERRIDES configure the execution: hydra.sweeper.workers and .address,
+sweep.time_limit, .attempts, .retry and .on_failure, limits.cpu_hours and .memory, caveats.RULE.KEY. The study defines
+its simulations; --plugin adds levels to an axis of the study that takes them.
+
+Example: runner reproduce xarm7 --jobs 4
 """
 
 import json
@@ -49,17 +50,20 @@ class _Reproduced:
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     studies = ", ".join((*study_names(), AUDIT, "all"))
-    parser.add_argument("study", nargs="?", default="all", metavar="NAME", help=f"{studies} or a folder")
+    parser.add_argument("study", nargs="?", default="all", metavar="NAME", help=f"{studies} or a folder (default: all)")
     parser.add_overrides("such as sweep.time_limit=60")
     parser.add_shared(
-        output="where to write runs and reports",
-        jobs="number of processes, as hydra.sweeper.workers=N",
-        json="print verdicts, findings, caveats and numbers as JSON; folders of reports go to standard error",
+        output="outputs folder (default: outputs)",
+        jobs="number of processes (default: 2)",
+        json="print the verdicts and numbers as JSON",
     )
     parser.set_defaults(output=outputs_dir())
     parser.add_argument("--check", action="store_true", help="exit 1 if a finding fails or a caveat is unexpected")
     parser.add_argument(
-        "--profile", default="", metavar="P", help="a smaller or larger version, by its name in study.yaml"
+        "--profile",
+        default="",
+        metavar="P",
+        help="smaller or larger version, by its name in study.yaml (default: the study's)",
     )
     parser.add_argument("--code", action="store_true", help="run the Python of FOLDER")
 

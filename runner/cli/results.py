@@ -1,4 +1,7 @@
-"""`runner results [DIR]`: list what is stored, write it as one page, or remove what is old."""
+"""List what is stored, write it as one page, or remove what is old.
+
+Example: runner results --output results.html
+"""
 
 import re
 import sys
@@ -16,7 +19,7 @@ _DAY = 86400.0
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument(
-        "outputs", nargs="?", type=Path, default=outputs_dir(), metavar="DIR", help="an outputs folder (./outputs)"
+        "outputs", nargs="?", type=Path, default=outputs_dir(), metavar="DIR", help="outputs folder (default: outputs)"
     )
     parser.add_shared(output="write one offline page, such as results.html")
     parser.add_argument(

@@ -1,7 +1,9 @@
-"""`runner [run] OVERRIDES`, `runner sweep OVERRIDES`: simulate one run, or every combination of the listed values.
+"""Simulate one run, or every combination of the listed values.
 
-An override sets a key or chooses from a group, as controller.period=5ms or robot=macro. `runner sweep` is the same as
-`runner -m`. All other flags are Hydra's.
+An override sets a key or chooses from a group, as controller.period=5ms or robot=macro. A line without a command is a
+run. `runner sweep` is the same as `runner -m`. All other flags are Hydra's.
+
+Example: runner sweep robot=macro trajectory=quintic controller=computed_torque,joint_pd seed=0,1
 """
 
 # Lines with flags of Hydra are read by Hydra's own command. It returns the overrides of a run or a sweep, which is then
@@ -43,16 +45,18 @@ _MANY, _OF_SWEEPER = ("-m", "--multirun"), "hydra.sweeper."
 
 def add_arguments(parser: Parser) -> None:
     """Add the arguments, for help and completion; `simulate` takes the words as they are typed."""
-    parser.add_overrides("such as robot=macro; a sweep takes lists, as seed=0,1")
+    parser.add_overrides("such as robot=macro; lists in a sweep, such as seed=0,1")
     parser.add_argument(*_MANY, action="store_true", help="simulate a sweep over every combination")
     _add_own(parser)
-    parser.add_argument("-c", "--cfg", choices=("job", "hydra", "all"), help="show the config without a simulation")
+    parser.add_argument("-c", "--cfg", choices=("job", "hydra", "all"), help="print the config, without a simulation")
     parser.add_argument("--hydra-help", action="store_true", help="show all flags of Hydra")
     parser.add_argument("--version", action="store_true", help="show the version")
 
 
 def _add_own(parser: Parser) -> None:
-    parser.add_shared("config_dir", output="outputs folder, as outputs=PATH", jobs="number of processes of a sweep")
+    parser.add_shared(
+        "config_dir", output="outputs folder (default: outputs)", jobs="number of processes of a sweep (default: 2)"
+    )
 
 
 def run(arguments: Namespace) -> int:

@@ -1,4 +1,7 @@
-"""`runner schema [GROUP]`: print the JSON Schema of config files, for editors that complete keys."""
+"""Print the JSON Schema of config files, for editors that complete keys.
+
+Example: runner schema --output schema.json
+"""
 
 import json
 from argparse import Namespace
@@ -9,9 +12,9 @@ from runner.cli.arguments import Parser
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument(
-        "group", nargs="?", default="", metavar="GROUP", help="a group, such as controller; default: the whole config"
+        "group", nargs="?", default="", metavar="GROUP", help="a group, such as controller (default: the whole config)"
     )
-    parser.add_shared(output="write it to a file, such as schema.json")
+    parser.add_shared(output="file to write (default: standard output)")
 
 
 def run(options: Namespace) -> int:

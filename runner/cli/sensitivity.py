@@ -1,8 +1,10 @@
-"""`runner sensitivity RUN`: compute the sensitivity of a run's metrics to its parameters, largest first.
+"""Compute the sensitivity of a run's metrics to its parameters, largest first.
 
 The derivatives are exact, by forward differentiation of the compiled run. Parameters are each number of the config,
 with the keys that take its value, and masses, armature and lengths of links. The start, the desired motion and the
 control steps are fixed. A run on bullet or mujoco has the derivatives of the same run on rk4.
+
+Example: runner sensitivity latest --parameters gains,masses
 """
 
 from argparse import Namespace
@@ -33,11 +35,13 @@ _GROUPS = (
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument("folder", type=Stored("run"), metavar="RUN", help="folder of a run, or latest")
-    parser.add_shared(metrics="which metrics; default: the main ones")
-    groups = f"groups of parameters: {', '.join(_GROUPS)}; default: all"
+    parser.add_shared(metrics="metrics (default: the main ones)")
+    groups = f"groups of parameters: {', '.join(_GROUPS)} (default: all)"
     parser.add_argument("--parameters", type=Names(_GROUPS), metavar="A,B", help=groups)
-    parser.add_argument("--repetition", type=int, default=0, metavar="N", help="which repetition (0)")
-    parser.add_argument("--finite-differences", action="store_true", help="compare with central differences")
+    parser.add_argument("--repetition", type=int, default=0, metavar="N", help="repetition (default: 0)")
+    parser.add_argument(
+        "--finite-differences", action="store_true", help="also compute central differences, to compare"
+    )
 
 
 def run(options: Namespace) -> int:

@@ -1,4 +1,7 @@
-"""`runner status DIR`: show the progress of a sweep from its stored runs."""
+"""Show the progress of a sweep from its stored runs.
+
+Example: runner status latest
+"""
 
 import sys
 from argparse import Namespace

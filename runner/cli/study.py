@@ -1,9 +1,10 @@
-"""`runner study new DIR`, `check DIR`, `diff OLD NEW`: write, check and compare studies.
+"""Write, check and compare studies.
 
-new writes a template of a study into a folder: it runs at once, and you change it. check simulates the missing runs
-and checks the study: every expression, every condition tested both ways, literal numbers in findings, unexpected
-caveats. diff prints the changes between two versions; OLD and NEW are what `runner reproduce --json` printed, or
-folders of reports on studies.
+`check` simulates the missing runs and checks every expression, every condition both ways, literal numbers in findings
+and unexpected caveats. `diff` compares two versions: files that `runner reproduce --json` printed, or folders of
+reports.
+
+Example: runner study new mine
 """
 
 import json
@@ -29,7 +30,7 @@ def add_arguments(parser: Parser) -> None:
     new.add_argument("folder", type=Path, metavar="DIR", help="a new folder, or an empty one")
     check = actions.add_parser("check", help="check a study")
     check.add_argument("study", metavar="DIR", help="the study's folder, or the name of an installed one")
-    check.add_shared(output="where to write runs")
+    check.add_shared(output="outputs folder (default: outputs)")
     check.set_defaults(output=outputs_dir())
     check.add_argument("--code", action="store_true", help="run the Python of DIR")
     diff = actions.add_parser("diff", help="print the changes between two versions")

@@ -1,6 +1,8 @@
-"""`runner table DIR`: export a sweep or run as a table: Parquet or CSV for data, Markdown or LaTeX for papers.
+"""Export a sweep or run as a table: Parquet or CSV for data, Markdown or LaTeX for papers.
 
 Without options, all cells of a sweep are written to table.parquet and table.csv in its folder.
+
+Example: runner table latest --format latex --by controller --output table.tex
 """
 
 import sys
@@ -24,12 +26,12 @@ def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     stored = Stored("sweep", "run", "tuning")
     parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a sweep or run, or latest")
-    parser.add_formats(FORMATS, ", ".join(FORMATS), most=1)
+    parser.add_formats(FORMATS, f"{', '.join(FORMATS)} (default: by the name of --output)", most=1)
     parser.add_shared(
-        metrics="which metrics",
-        by="a row for each combination of these axes",
+        metrics="metrics (default: all)",
+        by="one row for each combination of these axes",
         where="only the cells with this value; repeat for more",
-        output="write to a file instead of standard output",
+        output="file to write (default: standard output)",
     )
 
 

@@ -1,8 +1,10 @@
-"""`runner tune OVERRIDES --minimize METRIC`: tune numeric config keys to improve metrics, and write a report.
+"""Tune numeric config keys to improve metrics, and write a report.
 
 A key is tuned if it has a range instead of a value: controller.natural_frequency="interval(5,50)", on a logarithmic
 scale "tag(log, interval(5,50))", whole numbers "int(interval(1,9))", a grid "range(0.01,0.05,0.01)". Repeat an
 interrupted command to continue it; with more --trials it adds to the stored ones.
+
+Example: runner tune robot=macro controller.natural_frequency="interval(5,50)" --minimize peak_torque
 """
 
 import argparse
@@ -33,13 +35,15 @@ def add_arguments(parser: Parser) -> None:
             dest="objectives",
             metavar="METRIC",
             type=partial(_objective, direction),
-            help="of several objectives the report shows the Pareto front",
+            help=f"metric to {direction}; repeat for a Pareto front",
         )
-    parser.add_argument("--trials", type=count, default=_TRIALS, metavar="N", help=f"in all; default {_TRIALS}")
+    parser.add_argument(
+        "--trials", type=count, default=_TRIALS, metavar="N", help="number of trials in all (default: %(default)s)"
+    )
     parser.add_shared(
         "config_dir",
-        output="outputs folder, as outputs=PATH",
-        jobs=f"number of trials that run at once, at least as many as processes; default {_JOBS}",
+        output="outputs folder (default: outputs)",
+        jobs="number of trials that run at once (default: %(default)s)",
     )
     parser.set_defaults(jobs=_JOBS)
 

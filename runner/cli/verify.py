@@ -1,7 +1,9 @@
-"""`runner verify [DIR]`: check the files of an outputs folder against their checksums.
+"""Compare the files of an outputs folder with their checksums.
 
 A checksum detects corruption, such as a flipped bit or half a file; it does not detect forgery. Reports are derived
 from stored data and have no checksums; baselines and claims are edited by people.
+
+Example: runner verify
 """
 
 from argparse import Namespace
@@ -39,7 +41,7 @@ class Found:
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument(
-        "outputs", nargs="?", type=Path, default=outputs_dir(), metavar="DIR", help="an outputs folder (./outputs)"
+        "outputs", nargs="?", type=Path, default=outputs_dir(), metavar="DIR", help="outputs folder (default: outputs)"
     )
 
 

@@ -221,13 +221,14 @@ def _signature(function: Callable[..., Any]) -> str:
 
 
 def _commands() -> Iterator[str]:
-    yield "Options of every command:\n\n| Argument | Meaning | Default |\n|---|---|---|\n"
+    yield "Options of every command:\n\n| Argument | Meaning |\n|---|---|\n"
     yield from _arguments(COMMON)
     yield "\n"
     parsers = build_parser(name for name in COMMANDS if name != "sweep").commands
     for name, parser in parsers.items():
-        yield f"### runner {name}\n\n{inspect.cleandoc(parser.description or '')}\n\n"
-        yield "| Argument | Meaning | Default |\n|---|---|---|\n"
+        example = str(parser.epilog).splitlines()[0].replace(": ", ": `", 1)
+        yield f"### runner {name}\n\n{parser.description}\n\n{example}`\n\n"
+        yield "| Argument | Meaning |\n|---|---|\n"
         yield from _arguments(parser)
         yield "\n"
 
@@ -240,9 +241,7 @@ def _arguments(parser: argparse.ArgumentParser, before: str = "") -> Iterator[st
         elif not isinstance(action, argparse._HelpAction) and (parser is COMMON or action not in COMMON._actions):
             words = ", ".join(action.option_strings) or str(action.metavar or action.dest)
             value = f" {action.metavar}" if action.option_strings and action.metavar else ""
-            shown = action.default not in (None, False, [], argparse.SUPPRESS)
-            default = f"`{action.default}`" if shown else ""
-            yield f"| `{before}{words}{value}` | {_cell(action.help or '')} | {default} |\n"
+            yield f"| `{before}{words}{value}` | {_cell(str(action.help) % vars(action))} |\n"
 
 
 if __name__ == "__main__":

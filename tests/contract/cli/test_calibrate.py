@@ -104,4 +104,4 @@ def test_an_own_folder_adds_calibrations(cli, tmp_path):
 def test_unknown_arguments_show_the_usage(cli):
     ending = cli("calibrate", "--all")
     assert ending.code == 2
-    assert ending.err.startswith("runner: unrecognized arguments: --all. Usage: runner calibrate [-h]")
+    assert ending.err.startswith("runner: unrecognized arguments: --all. Usage: runner calibrate [--config-dir DIR]")

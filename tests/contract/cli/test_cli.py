@@ -36,15 +36,30 @@ def test_help_names_every_command(cli, flag):
     assert max(map(len, lines)) <= 120
 
 
-def test_every_command_has_a_parser_a_sentence_and_the_common_options():
-    parsers = build_parser().commands
-    assert tuple(parsers) == COMMANDS
-    for name, parser in parsers.items():
-        text = parser.format_help()
-        assert f"runner {name}" in text
-        assert "`: " in (parser.description or "").partition("\n\n")[0], name
-        assert "--plugin GROUP=MODULE" in text
-        assert "--quiet" in text
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_help_of_a_command_is_short_and_ends_with_an_example_that_parses(name, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    monkeypatch.setattr("runner.cli.arguments.find_folder", lambda text, kinds: Path(text))
+    parser = build_parser([name]).commands[name]
+    lines = parser.format_help().splitlines()
+    assert len(lines) < 25
+    assert lines[0].startswith("usage: runner ")
+    assert (parser.description or "").partition("\n\n")[0].endswith(".")
+    *_, example, common = lines
+    assert common == "Options of every command: runner --help"
+    assert "--quiet" not in "".join(lines)
+    said, command = example.split(": ", 1)
+    program, called, *words = shlex.split(command)
+    assert (said, program) == ("Example", "runner")
+    assert called == ("sweep" if name == "run" else name)
+    assert len(words) < 8
+    assert parser.parse_known_args(["--quiet", "--plugin", "controller=a.py", *words])[1] == []
+
+
+def test_the_help_of_an_action_has_its_usage(capsys):
+    with pytest.raises(SystemExit):
+        build_parser(["study"]).parse_args(["study", "diff", "--help"])
+    assert capsys.readouterr().out.startswith("usage: runner study diff [--all] [--json] OLD NEW\n\n  OLD ")
 
 
 @pytest.mark.parametrize("command", ["run", "sweep", "report"])
@@ -53,7 +68,7 @@ def test_help_of_a_command_is_its_own(cli, capsys, command):
         cli(command, "--help")
     assert ended.value.code == 0
     printed = capsys.readouterr().out
-    assert printed.startswith(f"usage: runner {'run' if command == 'sweep' else command} [-h]")
+    assert printed.startswith(f"usage: runner {'run' if command == 'sweep' else command} [-")
 
 
 def test_version(cli):

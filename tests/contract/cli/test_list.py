@@ -73,4 +73,4 @@ def test_an_unknown_topic_names_the_nearest(cli):
 def test_unknown_arguments_show_the_usage(cli):
     ending = cli("list", "robots", "--all")
     assert ending.code == 2
-    assert ending.err.startswith("runner: unrecognized arguments: --all. Usage: runner list [-h]")
+    assert ending.err.startswith("runner: unrecognized arguments: --all. Usage: runner list [--config-dir DIR]")

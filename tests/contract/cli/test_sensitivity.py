@@ -115,4 +115,4 @@ def test_from_python_it_is_arrays(run):
 def test_the_command_names_all_groups(cli, capsys):
     with pytest.raises(SystemExit, match="0"):
         cli("sensitivity", "--help")
-    assert f"groups of parameters: {', '.join(GROUPS)}; default: all" in " ".join(capsys.readouterr().out.split())
+    assert f"groups of parameters: {', '.join(GROUPS)} (default: all)" in " ".join(capsys.readouterr().out.split())
