@@ -38,12 +38,13 @@ _FREE = ("hydra.sweeper.", "sweep.", "limits.", "caveats.")
 
 @dataclass(frozen=True)
 class _Reproduced:
-    """Result of a study: its report, its runs by name, the reasons for missing runs, and the expected caveats."""
+    """Result of a study: report, runs by name, reasons for missing runs, expected caveats, problems of `--check`."""
 
     document: "Document"
     runs: "Mapping[str, Run]"
     missing: Mapping[str, str]
     expected: "Sequence[ExpectedCaveat]" = ()
+    problems: Sequence[str] = ()
     calibrations: "Mapping[str, Calibration]" = field(default_factory=dict)
 
 
@@ -58,7 +59,7 @@ def add_arguments(parser: Parser) -> None:
         json="print the verdicts and numbers as JSON",
     )
     parser.set_defaults(output=outputs_dir())
-    parser.add_argument("--check", action="store_true", help="exit 1 if a finding fails or a caveat is unexpected")
+    parser.add_argument("--check", action="store_true", help="exit 1 for a problem that `runner study check` finds")
     parser.add_argument(
         "--profile",
         default="",
@@ -88,8 +89,10 @@ def run(options: Namespace) -> int:
         print(options.output / "reports" / name, file=sys.stderr if options.json else None)
     if options.json:
         print(_conclusions(made), end="")
-    fallen = _tell_fallen(made) if options.check else False
-    return 1 if fallen or any(each.missing for each in made.values()) else 0
+    for name, each in made.items():
+        for line in each.problems:
+            print(f"runner: {name}: {line}", file=sys.stderr)
+    return 1 if any(each.missing or each.problems for each in made.values()) else 0
 
 
 def _parts(study: str) -> "tuple[UserPlugin, ...]":
@@ -136,21 +139,6 @@ def _reproduce(study: "Study | None", options: Namespace) -> "tuple[str, _Reprod
     return name, made
 
 
-def _tell_fallen(made: Mapping[str, _Reproduced]) -> bool:
-    """Print the findings that no longer hold and the unexpected caveats; return True if there are any."""
-    from runner.study.conclusions import list_failed_findings
-    from runner.study.expected_caveats import unexpected_caveats
-
-    lines = [
-        f"{study}: {line}"
-        for study, each in made.items()
-        for line in (*list_failed_findings(each.document), *unexpected_caveats(each.runs, each.expected))
-    ]
-    for line in lines:
-        print(f"runner: {line}", file=sys.stderr)
-    return bool(lines)
-
-
 def _conclusions(made: Mapping[str, _Reproduced]) -> str:
     """Return the conclusions of some studies as JSON."""
     from runner.study.conclusions import conclusions
@@ -164,21 +152,23 @@ def _conclusions(made: Mapping[str, _Reproduced]) -> str:
 def _reproduce_study(study: "Study", options: Namespace) -> _Reproduced:
     """Simulate the runs of a study, and create its document."""
     from runner.reporting.markup import literal
-    from runner.study.check import formulas_at
+    from runner.study.check import formulas_at, problems
     from runner.study.claims import late_claims
     from runner.study.execute import make_all
 
     study.measure(options.output)
     runs, calibrations = make_all(study, options.output, options.overrides, options.command)
     missing = runs.missing | calibrations.missing
-    document = study.document(runs, calibrations)
+    chapters = study.chapters(runs, calibrations)
+    document = study.document(runs, calibrations, chapters)
     late = late_claims(options.output, study, runs)
     document = replace(document, notes=[*document.notes, *map(literal, late)])
     for line in late:
         print(f"runner: {study.name}: {line}", file=sys.stderr)
-    for line in formulas_at(study, document):
+    found = [*problems(study, runs, calibrations, chapters, document)] if options.check else []
+    for line in [] if options.check else formulas_at(study, document):
         print(f"runner: {line}", file=sys.stderr)
-    return _Reproduced(document, runs, missing, study.expected, calibrations)
+    return _Reproduced(document, runs, missing, study.expected, found, calibrations)
 
 
 def _audit(folder: Path) -> _Reproduced:

@@ -22,7 +22,7 @@ Verdict = Literal[
 ]
 CONTRADICTION: Verdict = "source contradicts itself"
 Simulated = Callable[[str, str], float | None]
-"""Gives the simulated value of a metric of an experiment, or of a run by the begin of its name; None for none."""
+"""Gives the simulated value of a metric of a run, whose name is given without the preset; None for no value."""
 
 
 class Bound(StrictModel):
@@ -41,15 +41,35 @@ class Bound(StrictModel):
     reason: str
 
 
-class Likeness(StrictModel):
-    """What a claim without a number is compared with: another run.
+class Simulation(StrictModel):
+    """A simulated number: a metric of a run.
 
     Attributes:
-        experiment: The other experiment, or the begin of its run's name.
-        metric: The metric there.
+        experiment: The experiment that makes the run: that of "study/name" is called name/PRESET.
+        run: If no experiment makes it: the run's name without the preset, such as goal of goal/PRESET or stiff/f20 of
+            stiff/f20/PRESET.
+        metric: The metric.
     """
 
-    experiment: str
+    experiment: str = ""
+    run: str = ""
+    metric: str = ""
+
+    @model_validator(mode="after")
+    def _check_one_run(self) -> Self:
+        if bool(self.experiment) == bool(self.run):
+            raise ValueError("names an experiment or a run, one of the two")
+        return self
+
+    @property
+    def simulated_by(self) -> tuple[str, str]:
+        """Name of the run without the preset, and the metric."""
+        return self.run or self.experiment.rpartition("/")[2], self.metric
+
+
+class Likeness(Simulation):
+    """The other run that a claim without a number is compared with."""
+
     metric: str
 
 
@@ -77,7 +97,7 @@ class Extent(StrictModel):
         return wide and (self.middle is None or all(abs(end - self.middle) <= self.tolerance for end in ends))
 
 
-class PublishedClaim(StrictModel):
+class PublishedClaim(Simulation):
     """One published number.
 
     Attributes:
@@ -86,9 +106,7 @@ class PublishedClaim(StrictModel):
         place: Where.
         printed: The printed value, or the two ends of the printed range; empty where the source compares in words.
         unit: Its unit.
-        experiment: The experiment that makes it: of "study/name" the run of the study is name/PRESET.
-        run: Where no experiment makes it: begin of the run's name, name for name/PRESET.
-        metric: The metric that it is compared with; a range is compared by its upper end, the worst axis.
+        experiment: See Simulation, also for `run` and `metric`; a range is compared by its upper end, the worst axis.
         extents: Where it says how the tip moves, in place of a metric.
         fails: Whether it says that this motion is not met.
         reason: What the comparison shows; inline mathematics between dollar signs.
@@ -103,9 +121,6 @@ class PublishedClaim(StrictModel):
     place: str
     printed: Annotated[list[NonNegativeFloat], Field(max_length=2)]
     unit: str
-    experiment: str = ""
-    run: str = ""
-    metric: str = ""
     extents: list[Extent] = Field(default_factory=list)
     fails: bool = False
     reason: str
@@ -117,8 +132,6 @@ class PublishedClaim(StrictModel):
     def _check_comparison(self) -> Self:
         if bool(self.metric) == bool(self.extents):
             raise ValueError("is compared by metric or by extents, one of the two")
-        if bool(self.experiment) == bool(self.run):
-            raise ValueError("names an experiment or a run, one of the two")
         return self
 
     @property
@@ -223,22 +236,17 @@ def judge_motion(
     return "matches" if met != fails else "differs"
 
 
-def simulated_by(claim: PublishedClaim) -> tuple[str, str]:
-    """Return the experiment, or the begin of the run's name, that makes a claim's number, and the metric."""
-    return claim.experiment or claim.run, claim.metric
-
-
 def compared_with(claim: PublishedClaim, simulated: Simulated) -> float | None:
     """Return what a claim's simulated value is held against: the printed value, or the run that it is said to be like.
 
     None where that run has no value.
     """
-    return claim.value if claim.like is None else simulated(claim.like.experiment, claim.like.metric)
+    return claim.value if claim.like is None else simulated(*claim.like.simulated_by)
 
 
 def scale_bound(bound: Bound, claims: Sequence[PublishedClaim], simulated: Simulated) -> float | None:
     """Return what the simulated number of the other claim that a bound names leads one to expect."""
-    value = simulated(*simulated_by(_other(bound, claims)))
+    value = simulated(*_other(bound, claims).simulated_by)
     return None if value is None else value * bound.scale
 
 
@@ -266,7 +274,7 @@ def verdict_on(claim: PublishedClaim, claims: Sequence[PublishedClaim], simulate
     printed = compared_with(claim, simulated)
     if printed is None:
         return None
-    verdict = judge(printed, simulated(*simulated_by(claim)), expected_value(claim, claims, simulated))
+    verdict = judge(printed, simulated(*claim.simulated_by), expected_value(claim, claims, simulated))
     return "differs" if claim.like is not None and verdict != "matches" else verdict
 
 

@@ -22,8 +22,14 @@ from runner.study.prose.reader import Reading, Stated, conditions_of
 from runner.study.study import Study
 
 
-def problems(study: Study, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> Iterator[str]:
-    """Yield what is wrong with a study, a line each.
+def problems(
+    study: Study,
+    runs: Mapping[str, Run],
+    calibrations: Mapping[str, Calibration],
+    chapters: Chapters | None = None,
+    document: Document | None = None,
+) -> Iterator[str]:
+    """Yield the problems of a study, a line each.
 
     Every chapter is read, so that each expression is evaluated; every condition is tried with changed values.
 
@@ -31,20 +37,25 @@ def problems(study: Study, runs: Mapping[str, Run], calibrations: Mapping[str, C
         study: The study.
         runs: Its stored runs by name.
         calibrations: Its stored calibrations by name.
+        chapters: Its chapters, if they have been read.
+        document: Its report, if it exists.
     """
-    levels, chapters = levels_in([*runs, *calibrations]), study.chapters(runs, calibrations)
-    faults = 0
+    levels, chapters, readable = levels_in([*runs, *calibrations]), chapters or study.chapters(runs, calibrations), True
     for file in study.manifest.files():
-        for line in _of_chapter(study, file, chapters, levels):
-            faults += 1
-            yield line
+        try:
+            yield from _of_chapter(study, file, chapters, levels)
+        except LeftOutError:
+            continue
+        except RunnerError as error:
+            readable = False
+            yield f"{study.folder.name}/{file}: {error}" if isinstance(error, MissingError) else str(error)
     yield from (f"{study.name}: {name}: expected caveats: no run of it is named so" for name in _unused(study, runs))
     yield from unexpected_caveats(runs, study.expected)
     cover = study.manifest.cover
     if cover is not None and cover.run not in {**runs, **study.dropped()}:
         yield f"{study.folder.name}/{STUDY_FILE}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
-    if not faults:
-        document = study.document(runs, calibrations, chapters)
+    if document is not None or readable:
+        document = document or study.document(runs, calibrations, chapters)
         yield from list_failed_findings(document)
         yield from formulas_at(study, document)
 
@@ -62,18 +73,9 @@ def _of_chapter(study: Study, file: str, chapters: Chapters, levels: set[str]) -
     path = study.folder / file
     if path.suffix != ".md":
         return
-    text, name = chapter_text(path), f"{study.folder.name}/{file}"
-    try:
-        yield from never_failing(name, chapters.reading(path.stem))
-    except LeftOutError:
-        return
-    except MissingError as error:
-        yield f"{name}: {error}"
-        return
-    except RunnerError as error:
-        yield str(error)
-        return
-    yield from typed_numbers(name, text, levels)
+    name = f"{study.folder.name}/{file}"
+    yield from never_failing(name, chapters.reading(path.stem))
+    yield from typed_numbers(name, chapter_text(path), levels)
 
 
 def _unused(study: Study, runs: Mapping[str, Run]) -> Iterator[str]:

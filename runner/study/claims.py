@@ -22,7 +22,6 @@ from runner.reporting.published_claims import (
     judge_motion,
     load_claims,
     scale_bound,
-    simulated_by,
     verdict_on,
 )
 from runner.reporting.words import PLANT
@@ -65,7 +64,7 @@ def judged_claims(claims: Sequence[PublishedClaim], runs: Mapping[str, Run], pre
 
     Args:
         claims: All claims of a study: a bound of one names another.
-        runs: The stored runs of the study, by names such as "figure_3_5/full_equations"; see `run_name`.
+        runs: The stored runs of the study, by names such as "figure_3_5/full_equations"; see Simulation.
         presets: Names of the presets under which they are judged, with their words; where there are none, once.
 
     Raises:
@@ -95,9 +94,8 @@ def judged_statements(
     ]
 
 
-def run_name(experiment: str, preset: str) -> str:
-    """Return the name that the run of an experiment has among the runs of a study: "sources/name" is "name/preset"."""
-    name = experiment.rpartition("/")[2]
+def run_name(name: str, preset: str) -> str:
+    """Return the name of a run with its preset, or without one."""
     return f"{name}/{preset}" if preset else name
 
 
@@ -124,7 +122,7 @@ class _Claimed:
     def block(self) -> Claim:
         """Return it with its verdicts."""
         claim = self._claim
-        first = self._run(_named(claim), next(iter(self._presets)))
+        first = self._run(claim.simulated_by[0], next(iter(self._presets)))
         findings = [self._finding(preset) for preset in self._presets]
         return Claim(
             str(claim.number),
@@ -137,7 +135,7 @@ class _Claimed:
         )
 
     def _finding(self, preset: str) -> ClaimResult:
-        claim, run, words = self._claim, self._run(_named(self._claim), preset), self._presets[preset]
+        claim, run, words = self._claim, self._run(self._claim.simulated_by[0], preset), self._presets[preset]
         failed = run.status == "failed"
         if claim.extents:
             shown = run.failure or "" if failed else self._moved(run)
@@ -183,7 +181,7 @@ class _Claimed:
 
     def _with(self, preset: str, value: float | None) -> Verdict:
         """Return the verdict with another value in place of the claim's own."""
-        own = simulated_by(self._claim)
+        own = self._claim.simulated_by
         return self._of_number(lambda *key: value if key == own else self._median(preset, *key), preset)
 
     def _of_motion(self, run: Run) -> Verdict:
@@ -202,8 +200,8 @@ class _Claimed:
             raise MissingError(f"claim {self._claim.number}: there is nothing to compare it with under {preset}")
         return verdict
 
-    def _median(self, preset: str, experiment: str, metric: str) -> float | None:
-        return self._run(experiment, preset).median(metric)
+    def _median(self, preset: str, name: str, metric: str) -> float | None:
+        return self._run(name, preset).median(metric)
 
     def _reason(self) -> str:
         claim, told = self._claim, [self._claim.reason]
@@ -220,7 +218,7 @@ class _Claimed:
 
     def _late(self, preset: str) -> str:
         """Return how many repetitions have not settled when the error at rest is taken; nothing where all have."""
-        run = self._run(_named(self._claim), preset)
+        run = self._run(self._claim.simulated_by[0], preset)
         band = float(run.config["robot"]["settling_band"])
         errors = run.values("steady_state_error") if "steady_state_error" in run.metrics else np.zeros(0)
         late = np.count_nonzero(errors > band)
@@ -232,12 +230,8 @@ class _Claimed:
     def _under(self, preset: str) -> str:
         return f" ({self._presets[preset]})" if preset else ""
 
-    def _run(self, experiment: str, preset: str) -> Run:
-        return self._runs[run_name(experiment, preset)]
-
-
-def _named(claim: PublishedClaim) -> str:
-    return simulated_by(claim)[0]
+    def _run(self, name: str, preset: str) -> Run:
+        return self._runs[run_name(name, preset)]
 
 
 def _reach_lost(run: Run) -> tuple[float, float]:
@@ -268,9 +262,10 @@ def late_claims(outputs: Path, study: Study, runs: Mapping[str, Run], date: str 
     path, late = outputs / "claims" / f"{study.name}.json", []
     known = read_json(path, "remove it to forget what claims were judged by").get("claims", {}) if path.exists() else {}
     for claim in load_claims(study.folder) if (study.folder / CLAIMS).is_file() else ():
-        names = [run_name(simulated_by(claim)[0], preset) for preset in study.manifest.presets or ("",)]
+        names = [run_name(claim.simulated_by[0], preset) for preset in study.manifest.presets or ("",)]
         if all(name in runs for name in names):
             value = claim.model_dump(mode="json", include=_JUDGED_BY)
+            value["like"] = claim.like and claim.like.model_dump(exclude_defaults=True)
             key = " ".join([str(claim.number), *(runs[name].hash for name in names)])
             known = merge_histories(known, {key: [[date or today(), value]]})
             when, before = set_after(known[key], value)

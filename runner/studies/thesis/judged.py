@@ -8,9 +8,8 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.metrics.summary import over_repetitions
-from runner.reporting.published_claims import PublishedClaim, Verdict, compared_with, simulated_by, verdict_on
+from runner.reporting.published_claims import PublishedClaim, Verdict, compared_with, verdict_on
 from runner.store import Run
-from runner.study.claims import run_name
 
 DRAWN = 2000
 """Groups of seeds drawn with replacement."""
@@ -85,16 +84,16 @@ def judge_by_seeds(
         preset: The preset that both have.
     """
 
-    def stored(experiment: str, metric: str) -> FloatArray:
-        return _values(seeds[run_name(experiment, "")], metric)
+    def stored(run: str, metric: str) -> FloatArray:
+        return _values(seeds[run], metric)
 
     def by(groups: _Places) -> list[Verdict | None]:
         if not groups.size:
             return []
         medians: dict[tuple[str, str], list[float]] = {}
 
-        def simulated(group: int, experiment: str, metric: str) -> float | None:
-            key = experiment, metric
+        def simulated(group: int, run: str, metric: str) -> float | None:
+            key = run, metric
             if key not in medians:
                 values = stored(*key)
                 medians[key] = (
@@ -105,15 +104,16 @@ def judge_by_seeds(
 
         return [verdict_on(claim, claims, lambda *key, at=at: simulated(at, *key)) for at in range(len(groups))]
 
-    def of_study(experiment: str, metric: str) -> float | None:
-        return own[run_name(experiment, "")].median(metric)
+    def of_study(run: str, metric: str) -> float | None:
+        return own[run].median(metric)
 
-    def of_seeds(experiment: str, metric: str) -> float | None:
-        return seeds[run_name(experiment, "")].median(metric)
+    def of_seeds(run: str, metric: str) -> float | None:
+        return seeds[run].median(metric)
 
-    values = stored(*simulated_by(claim))
+    run, metric = claim.simulated_by
+    values = stored(run, metric)
     count = values.size
-    size = int(own[run_name(claim.experiment, "")].config["repetitions"])
+    size = int(own[run].config["repetitions"])
     every = np.arange(count)
     drawn = np.random.default_rng(_SEED).integers(0, count, (DRAWN, size)) if count else every
     return Judged(
@@ -125,7 +125,7 @@ def judge_by_seeds(
         alone=by(every[:, None]),
         drawn=by(drawn),
         apart=by(every[: count // size * size].reshape(-1, size)),
-        own=of_study(*simulated_by(claim)),
+        own=of_study(run, metric),
         own_verdict=verdict_on(claim, claims, of_study),
     )
 

@@ -2,7 +2,6 @@
 
 import csv
 import json
-from types import SimpleNamespace
 
 import pytest
 
@@ -11,7 +10,6 @@ from runner.audit.verdict import VERDICTS
 from runner.cli import reproduce
 from runner.reporting.document import Document, Section
 from runner.study.execute import make_all
-from runner.study.expected_caveats import ExpectedCaveat
 from runner.study.measured import Measured, finding
 from runner.study.study import load_study
 from runner.sweeps import job as workers
@@ -171,14 +169,6 @@ def one_finding(monkeypatch):
     monkeypatch.setattr(reproduce, "_reproduce_study", lambda *_: made)
 
 
-def test_check_lists_the_findings_that_no_longer_hold(cli, one_finding):
-    assert cli("reproduce", "thesis").code == 0
-    ending = cli("reproduce", "thesis", "--check")
-    assert ending.code == 1
-    assert "thesis: section 1: Small: not so: tip error < 1 mm (tip error: 2 mm)" in ending.err
-    assert "Not zero" not in ending.err
-
-
 def test_conclusions_are_written_for_programs(cli, one_finding, tmp_path):
     ending = cli("reproduce", "thesis", "--json")
     assert (ending.code, ending.err.splitlines()[-1]) == (0, "outputs/reports/thesis")
@@ -199,17 +189,3 @@ def test_jobs_are_the_processes_of_the_sweep(cli, small_study, monkeypatch):
     monkeypatch.setattr("runner.study.execute.make_all", lambda *arguments: given.append(arguments[2]) or 1 / 0)
     assert cli("reproduce", "small", "--jobs", "3", "sweep.time_limit=9").code == 3
     assert given == [["sweep.time_limit=9", "hydra.sweeper.workers=3"]]
-
-
-def test_check_lists_the_caveats_that_a_study_does_not_expect(cli, monkeypatch):
-    caveats = [{"rule": rule, "text": f"what {rule} found", "value": 1.0} for rule in ("saturation", "overload")]
-    runs = {"heavy": SimpleNamespace(caveats=caveats, hash="0a", status="ok", record={"metrics": {}})}
-    expected = [ExpectedCaveat("overload", "heavy", "It is to be heavy.")]
-    made = reproduce._Reproduced(Document("The thesis", "", "", (), "2026-01-01"), runs, {}, expected)
-    monkeypatch.setattr(reproduce, "_reproduce_study", lambda *_: made)
-    assert cli("reproduce", "thesis").code == 0
-    ending = cli("reproduce", "thesis", "--check")
-    assert ending.code == 1
-    told = [line for line in ending.err.splitlines() if "caveat" in line]
-    line = "runner: thesis: heavy: caveat saturation, which the study does not expect: what saturation found"
-    assert told == [line]

@@ -135,6 +135,22 @@ def test_what_is_wrong_with_a_study_is_told_with_its_place(tmp_path, made, holds
     assert re.search(told, found[0]), found
 
 
+@pytest.mark.costs(3)
+def test_reproduce_with_check_finds_what_study_check_finds(tmp_path, capsys):
+    chapter = CHAPTER + "\n::: finding Small\nIt is 3.2 m.\nholds: error < 1e-9\nholds: error > -1e9\n:::\n"
+    short = RUNS.replace("[0.05, 0.1]", "[0.1]").replace(", caveats.short_horizon.share=20", "")
+    folder, outputs = a_study(tmp_path / "paper", one__md=chapter, runs__yaml=short), f"--output={tmp_path / 'outputs'}"
+    assert dispatch(["study", "check", str(folder), outputs]) == 1
+    *checked, count = capsys.readouterr().out.splitlines()
+    assert dispatch(["reproduce", str(folder), outputs, "--check"]) == 1
+    told = capsys.readouterr().err.splitlines()
+    assert [line.removeprefix("runner: paper: ") for line in told if line.startswith("runner: paper: ")] == checked
+    assert count == f"{len(checked)} problems"
+    for problem in ("3.2 m: a number typed", "> -1e9: no change of a named value", "not so: largest error", "horizon"):
+        assert any(problem in line for line in checked), checked
+    assert dispatch(["reproduce", str(folder), outputs]) == 0
+
+
 def test_caveats_that_no_run_can_have_are_told(tmp_path, made):
     caveats = "- {rules: [saturation], runs: [gaol/*], why: So.}\n"
     study = load_study(str(a_study(tmp_path / "paper", caveats__yaml=caveats)))

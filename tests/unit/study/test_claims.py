@@ -9,7 +9,7 @@ from support.made_up_runs import made_up_metric, made_up_run
 from runner.reporting.document import Verdicts
 from runner.reporting.published_claims import CONTRADICTION, PublishedClaim, PublishedStatement
 from runner.reporting.words import PRESET
-from runner.study.claims import judged_claims, judged_statements, legend, run_name
+from runner.study.claims import judged_claims, judged_statements, legend
 from runner.study.job import PRESETS, MissingError
 
 NUMBER = {
@@ -53,8 +53,16 @@ def told(block):
     return said
 
 
-def test_a_run_is_named_by_the_last_part_of_its_experiment():
-    assert run_name("study/macro", "full_equations") == "macro/full_equations"
+def test_a_claim_names_one_cell_of_a_grid_with_two_axes():
+    cells = {f"stiff/f{hertz}": run_of({"settling_time": seconds(0.1 * hertz)}) for hertz in (10, 20)}
+    other = {key: value for key, value in NUMBER.items() if key not in ("experiment", "run")}
+    for hertz, measured in ((10, "1 s"), (20, "2 s")):
+        (block,) = blocks(cells, other | {"run": f"stiff/f{hertz}"})
+        assert told(block)[0] == measured
+    (block,) = blocks(
+        cells, other | {"printed": [], "run": "stiff/f20", "like": {"run": "stiff/f10", "metric": "settling_time"}}
+    )
+    assert told(block)[1] == "differs"
 
 
 def test_a_number_is_judged_by_the_median_and_shown_with_its_range():
