@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 from runner import store
 from runner.base.errors import ConfigError, RunnerError, unknown
 from runner.base.quantities import label_with_unit
-from runner.reporting.charts.stills import as_figure, draw
+from runner.reporting.charts.scales import curves_in_readable_units
+from runner.reporting.charts.static import as_figure, draw
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.metric_titles import capital
 from runner.store.run import units_of
@@ -146,7 +147,8 @@ def _curves(signals: Signals, name: str) -> Curves:
     title = _TITLES.get(name, name.replace("_", " "))
     units = dict.fromkeys(signals.units[column] for column in known[name].values())
     beside = known.get(_BESIDE.get(name, ""), {})
-    return Curves("", [_panel(signals, title, unit, known[name], beside) for unit in units], columns=1)
+    panels = [_panel(signals, title, unit, known[name], beside) for unit in units]
+    return curves_in_readable_units(Curves("", panels, columns=1))
 
 
 def _panel(signals: Signals, title: str, unit: str, columns: Mapping[str, str], beside: Mapping[str, str]) -> Panel:

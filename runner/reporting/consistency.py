@@ -1,11 +1,12 @@
-"""Curve colours by name, and units of table columns, throughout a report."""
+"""Curve colours by name, and readable units of figures and of table columns, throughout a report."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from runner.base.quantities import Shown, choose_unit, fewest_powers, number, smaller_units
 from runner.reporting.charts import palette
-from runner.reporting.document import Block, Curves, Document, Panel, Section, Series, Table
+from runner.reporting.charts.scales import curves_in_readable_units, maps_in_readable_units
+from runner.reporting.document import Block, Curves, Document, Maps, Panel, Section, Series, Table
 from runner.reporting.outline import blocks
 
 _UNITS = ("m", "s")
@@ -54,11 +55,19 @@ def _series(panel: Panel, found: Mapping[str, int]) -> Iterator[Series]:
 
 
 def in_readable_units(document: Document) -> Document:
-    """Return a report whose columns of lengths and times, "... (m)" and "... (s)", have the unit that fits them."""
-    return replace(
-        document,
-        sections=_changed(document.sections, lambda block: readable(block) if isinstance(block, Table) else block),
-    )
+    """Return a report whose figures and columns "... (m)" and "... (s)" have the unit that fits their numbers."""
+    return replace(document, sections=_changed(document.sections, _readable))
+
+
+def _readable(block: Block) -> Block:
+    match block:
+        case Table():
+            return readable(block)
+        case Curves():
+            return curves_in_readable_units(block)
+        case Maps():
+            return maps_in_readable_units(block)
+    return block
 
 
 def readable(table: Table) -> Table:

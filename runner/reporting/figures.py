@@ -4,7 +4,7 @@ import numpy as np
 
 from runner.reporting.bodies import playback_bodies
 from runner.reporting.charts.arm import arm_motion, moving_arm
-from runner.reporting.charts.thinning import spaced_indices
+from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Cover, Curves, Origin, Panel, Playback, Series
 from runner.store import Calibration, Run
 

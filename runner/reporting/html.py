@@ -14,9 +14,8 @@ from runner.base import progress
 from runner.base.paths import templates_dir
 from runner.reporting import formulas, outline, playback
 from runner.reporting.charts import palette
-from runner.reporting.curves import plotly_spec
+from runner.reporting.charts.interactive import plotly_spec
 from runner.reporting.document import Curves, Document, Maps, Playback, RunList
-from runner.reporting.maps import maps_spec
 from runner.reporting.outline import Places
 from runner.reporting.run_list import run_list_spec
 from runner.reporting.tally import tallies
@@ -46,7 +45,6 @@ def render(document: Document) -> str:
             mathml=lambda text, is_displayed: made[is_displayed].get(text.strip()),
             math_font=_math_font() if any(made.values()) else "",
             plotly_spec=plotly_spec,
-            maps_spec=maps_spec,
             run_list_spec=run_list_spec,
             data_uri=data_uri,
             tallies=tallies(document),

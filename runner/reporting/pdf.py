@@ -8,7 +8,7 @@ import typst
 
 from runner.base import progress
 from runner.reporting import formulas, outline
-from runner.reporting.charts import map_stills, stills
+from runner.reporting.charts import static
 from runner.reporting.document import Curves, Document, Maps
 from runner.reporting.outline import Places
 from runner.reporting.run_list import table_header, table_rows
@@ -29,8 +29,7 @@ def render(document: Document) -> bytes:
                 document=document,
                 chapters=outline.chapters(document),
                 formula_valid=lambda text, is_displayed: made[is_displayed].get(text) is not None,
-                curves_file=folder.curves,
-                maps_file=folder.maps,
+                figure_file=folder.figure,
                 run_list_header=table_header,
                 run_list_rows=table_rows,
                 image_file=folder.image,
@@ -53,15 +52,9 @@ class _Folder:
         self.root = root
         self._count = 0
 
-    def curves(self, block: Curves) -> str:
-        return self._figure(stills.draw(block))
-
-    def maps(self, block: Maps) -> str:
-        return self._figure(map_stills.draw(block))
-
-    def _figure(self, svg: str) -> str:
+    def figure(self, block: Curves | Maps) -> str:
         progress.step()
-        return self.image(svg)
+        return self.image(static.draw(block))
 
     def image(self, svg: str) -> str:
         self._count += 1

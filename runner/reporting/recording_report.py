@@ -11,7 +11,7 @@ from runner.recordings import files_of, words
 from runner.recordings.compare import RecordingComparison
 from runner.recordings.recording import Recording
 from runner.recordings.residuals import Residual
-from runner.reporting.charts.thinning import spaced_indices
+from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
 from runner.reporting.figures import origin
 from runner.reporting.markup import literal, literals

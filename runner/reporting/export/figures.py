@@ -12,11 +12,10 @@ import typst
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.sanitize import table_cell
-from runner.reporting.charts import map_stills, stills
-from runner.reporting.charts.axes import in_readable_units, map_in_readable_units
+from runner.reporting.charts import static
 from runner.reporting.charts.figure import Panel, Series
 from runner.reporting.charts.sheet import Sheet
-from runner.reporting.consistency import color_series
+from runner.reporting.consistency import color_series, in_readable_units
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.markup import spans
 from runner.reporting.outline import Places, blocks
@@ -35,7 +34,7 @@ def figures_of(document: Document) -> dict[str, Figure]:
     A name is the figure's address in the HTML report, such as figure-3-5 where it has a number and s1-figure-2 where it
     has none, and the first words of its caption.
     """
-    document = color_series(document)
+    document = in_readable_units(color_series(document))
     places = Places(document)
     return {
         f"{places.of(block)}-{_slug(block.caption)}".strip("-"): block
@@ -79,10 +78,8 @@ def write_figures(figures: Mapping[str, Figure], folder: Path, sheet: Sheet) -> 
 
 def _drawn(figure: Figure, sheet: Sheet) -> tuple[str, bytes]:
     match figure:
-        case Curves():
-            return stills.draw(figure, sheet), stills.draw_pdf(figure, sheet)
-        case Maps():
-            return map_stills.draw(figure, sheet), map_stills.draw_pdf(figure, sheet)
+        case Curves() | Maps():
+            return static.draw(figure, sheet), static.draw_pdf(figure, sheet)
         case Picture():
             svg = _fitted(figure.svg, sheet)
         case Playback():
@@ -133,16 +130,15 @@ def _rows(figure: Figure) -> Iterator[Row]:
     match figure:
         case Curves():
             yield ("panel", "curve", "x axis", "x", "y axis", "y")
-            for panel in in_readable_units(figure.panels, figure.columns):
+            for panel in figure.panels:
                 for series in panel.series:
                     yield from _of_curve(panel, series)
         case Maps():
             yield ("panel", "x axis", "x", "y axis", "y", "quantity", "value")
-            shown = map_in_readable_units(figure)
-            for each in shown.panels:
+            for each in figure.panels:
                 for y, row in zip(each.y_names, each.values.tolist(), strict=True):
                     for x, value in zip(each.x_names, row, strict=True):
-                        yield (each.title, each.x_label, x, each.y_label, y, shown.value_label, _number(value))
+                        yield (each.title, each.x_label, x, each.y_label, y, figure.value_label, _number(value))
         case Playback():
             yield ("curve", "x (m)", "y (m)", "z (m)")
             for name, path in (("path of the tip", figure.path), ("desired path", figure.desired)):

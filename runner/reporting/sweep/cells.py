@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from runner.reporting.charts.thinning import spaced_indices
+from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import StoreError
 from runner.base.quantities import with_ends
-from runner.reporting.charts.thinning import POINTS, spaced_indices
+from runner.reporting.charts.figure import POINTS, spaced_indices
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.markup import literal

@@ -6,8 +6,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import label_with_unit, number
-from runner.reporting.charts.map_scale import EQUAL, widen_range
-from runner.reporting.charts.thinning import spaced_indices
+from runner.reporting.charts.figure import spaced_indices
+from runner.reporting.charts.scales import EQUAL, widen_range
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, title

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.reporting import metric_titles
-from runner.reporting.charts.thinning import spaced_indices
+from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Formula, Map, Maps, Section, Series, Text
 from runner.reporting.markup import literal
 from runner.reporting.sweep.subject import Subject, key_label, spans_decades

@@ -7,7 +7,7 @@ import numpy as np
 from runner.base.errors import RunnerError
 from runner.base.quantities import quantity
 from runner.reporting.answers import EXPLAINED, HEADER, Answer, ask, judge, sentences, short_table
-from runner.reporting.charts.thinning import spaced_indices
+from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.pairs import SEED, level_pairs
 from runner.reporting.comparison.sweeps import compare_levels

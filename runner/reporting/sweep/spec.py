@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.config.judgement import Bound
-from runner.reporting.charts.thinning import spaced_indices
+from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Map, Maps, Notice, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.spec_blocks import RULE, bound_text, late_text, probability

@@ -6,7 +6,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
-from runner.reporting.charts.thinning import POINTS, spaced_indices
+from runner.reporting.charts.figure import POINTS, spaced_indices
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import COSTS, title

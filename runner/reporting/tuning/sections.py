@@ -10,7 +10,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity
 from runner.plugins.metric_units import units
-from runner.reporting.charts.thinning import spaced_indices
+from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Origin, Panel, Section, Series, Table, Text
 from runner.reporting.figures import playback, torque_and_error
 from runner.reporting.markup import literal, literals

@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding, format_range, number, quantity
 from runner.metrics.caveats.torques import CHATTER
-from runner.reporting.charts.thinning import envelope
+from runner.reporting.charts.figure import envelope
 from runner.reporting.document import Panel, Series
 from runner.reporting.figures import AXES, rows_until
 from runner.reporting.metric_titles import title

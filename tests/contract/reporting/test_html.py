@@ -174,5 +174,5 @@ def test_every_figure_has_an_address_and_what_can_be_done_with_it():
     assert sum("figure" in name or "table" in name for name in ids) == captioned
     done = [value for name, value in page.attributes if name == "data-do"]
     drawn = [block.block for block in outline.blocks(document())]
-    assert done.count("svg") == sum(drawn.count(kind) for kind in ("curves", "maps", "picture", "playback"))
-    assert done.count("csv") == sum(drawn.count(kind) for kind in ("curves", "maps", "table", "verdicts"))
+    assert done.count("svg") == sum(drawn.count(kind) for kind in ("chart", "picture", "playback"))
+    assert done.count("csv") == sum(drawn.count(kind) for kind in ("chart", "table", "verdicts"))

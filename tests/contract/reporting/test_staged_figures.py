@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch, Polygon
 
 from runner.reporting.charts.control_steps import control_steps, steps
-from runner.reporting.charts.stills import draw
+from runner.reporting.charts.static import draw
 from runner.reporting.figures import macro_mini_targets
 from runner.studies.thesis.diagrams.block_diagram import block_diagram
 from runner.studies.thesis.diagrams.frames import frame_assignment

@@ -7,22 +7,22 @@ import numpy as np
 import pytest
 from support.sample_document import HOSTILE, curves
 
-from runner.reporting.charts import stills
-from runner.reporting.curves import plotly_spec
+from runner.reporting.charts import static
+from runner.reporting.charts.interactive import plotly_spec
 from runner.reporting.document import Curves, Panel, Series
 
 
 @pytest.mark.parametrize("text", HOSTILE)
 def test_any_text_gives_a_valid_drawing(text):
-    ElementTree.fromstring(stills.draw(curves(text)))
+    ElementTree.fromstring(static.draw(curves(text)))
 
 
 def test_the_same_figure_gives_the_same_text():
-    assert stills.draw(curves()) == stills.draw(curves())
+    assert static.draw(curves()) == static.draw(curves())
 
 
 def test_text_is_drawn_and_no_date_is_written():
-    drawing = stills.draw(curves())
+    drawing = static.draw(curves())
     assert "<text" not in drawing
     assert "dc:date" not in drawing
 
@@ -30,14 +30,14 @@ def test_text_is_drawn_and_no_date_is_written():
 def test_logarithmic_axes_take_values_that_have_no_logarithm():
     x = np.array([0.0, 1.0, 10.0])
     panel = Panel("", "x", "y", [Series("a", x, -x)], x_log=True, y_log=True, y_range=(-1.0, 1.0))
-    ElementTree.fromstring(stills.draw(Curves("", [panel])))
+    ElementTree.fromstring(static.draw(Curves("", [panel])))
 
 
 def test_legend_entries_read_along_the_rows():
     x = np.arange(3.0)
     names = ["one", "two", "three", "four", "five"]
     panels = [Panel("", "", "", [Series(name, x, x) for name in [*names, last]]) for last in "abc"]
-    drawing = stills.draw(Curves("", panels, columns=3))
+    drawing = static.draw(Curves("", panels, columns=3))
     # matplotlib fills columns, and names every drawn text in a comment.
     assert drawing.index("<!-- one -->") < drawing.index("<!-- three -->") < drawing.index("<!-- two -->")
 
@@ -48,13 +48,13 @@ def test_odd_values_are_no_error(values, log):
     x = np.arange(float(values.size))
     series = Series("a", x, values, low=values - 1, high=values + 1)
     odd = Curves("", [Panel("", "", "", [series], x_log=log, y_log=log, x_range=(1.0, 1.0))])
-    ElementTree.fromstring(stills.draw(odd))
+    ElementTree.fromstring(static.draw(odd))
     json.dumps(plotly_spec(odd), allow_nan=False)
 
 
 def test_figures_without_panels_or_curves_are_no_error():
     for empty in (Curves("", []), Curves("", [Panel("t", "x", "y", [])])):
-        ElementTree.fromstring(stills.draw(empty))
+        ElementTree.fromstring(static.draw(empty))
         plotly_spec(empty)
 
 
@@ -62,4 +62,4 @@ def test_figures_without_panels_or_curves_are_no_error():
 def test_an_axis_of_names_takes_any_text(text):
     x = np.arange(2.0)
     named = Curves("", [Panel("", "", "", [Series("", x, x)], x_names=[text, "two"])])
-    assert "<!-- two -->" in stills.draw(named)
+    assert "<!-- two -->" in static.draw(named)

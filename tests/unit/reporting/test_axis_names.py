@@ -3,8 +3,7 @@
 import pytest
 from matplotlib.figure import Figure
 
-from runner.reporting.charts.names import names_below, names_beside
-from runner.reporting.charts.sheet import REPORT, column
+from runner.reporting.charts.sheet import REPORT, column, names_below, names_beside
 
 LAWS = ["computed_torque", "operational_space"]
 NARROW = column(88.0)

@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 
-from runner.reporting.charts.axes import in_readable_units
-from runner.reporting.charts.figure import Panel, Series
+from runner.reporting.charts.figure import Curves, Panel, Series
+from runner.reporting.charts.scales import curves_in_readable_units
 
 X = np.linspace(0.0, 2.0, 5)
+
+
+def in_readable_units(panels, columns):
+    return curves_in_readable_units(Curves("", panels, columns)).panels
 
 
 def panel(height, label="error (m)", **more):

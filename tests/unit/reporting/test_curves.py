@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.sample_document import HOSTILE, curves
 
-from runner.reporting.curves import neutral, plotly_spec
+from runner.reporting.charts.interactive import neutral, plotly_spec
 from runner.reporting.document import Curves, Panel, Series
 
 

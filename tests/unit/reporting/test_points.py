@@ -7,6 +7,7 @@ import numpy as np
 from support.sample_document import SVG, playback
 
 from runner.base.paths import templates_dir
+from runner.reporting.charts.scales import curves_in_readable_units, maps_in_readable_units
 from runner.reporting.document import Curves, Map, Maps, Panel, Picture, Series
 from runner.reporting.export.figures import as_csv
 
@@ -20,7 +21,7 @@ def rows(figure):
 def test_a_curve_and_its_band_in_the_units_that_are_shown():
     y = np.array([0.001, np.nan, 0.003])
     figure = Curves("", [Panel("Tip", "time (s)", "error (m)", [Series("x", T, y, low=y - 0.001, high=y + 0.001)])])
-    found = rows(figure)
+    found = rows(curves_in_readable_units(figure))
     assert found[0] == ["panel", "curve", "x axis", "x", "y axis", "y"]
     assert found[1:4] == [["Tip", "x", "time (s)", "0.0", "error (mm)", "1.0"],
                           ["Tip", "x", "time (s)", "1.0", "error (mm)", ""],
@@ -42,7 +43,7 @@ def test_names_below_an_axis_stand_for_their_places():
 def test_a_map_has_a_row_for_each_cell():
     values = np.array([[0.001, 0.002], [np.nan, 0.004]])
     panel = Map("M", "mass (kg)", "robot", ["1", "2"], ["macro", "mini"], values, np.isnan(values))
-    found = rows(Maps("", "error (m)", [panel], log=True))
+    found = rows(maps_in_readable_units(Maps("", "error (m)", [panel], log=True)))
     assert found[0] == ["panel", "x axis", "x", "y axis", "y", "quantity", "value"]
     assert found[1:] == [
         ["M", "mass (kg)", "1", "robot", "macro", "error (mm)", "1.0"],

@@ -5,8 +5,8 @@ import re
 import numpy as np
 
 from runner.reporting.charts.figure import Panel, Series, shares_legend
-from runner.reporting.charts.stills import draw
-from runner.reporting.curves import plotly_spec
+from runner.reporting.charts.interactive import plotly_spec
+from runner.reporting.charts.static import draw
 from runner.reporting.document import Curves
 
 X = np.arange(3.0)

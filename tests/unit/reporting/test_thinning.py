@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.reporting.charts.figure import Series
-from runner.reporting.charts.thinning import band, envelope, runs, spaced_indices, thin
+from runner.reporting.charts.figure import Series, band, envelope, runs, spaced_indices, thin
 
 
 @given(st.integers(2001, 9000), st.data())

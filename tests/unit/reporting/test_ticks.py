@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.reporting.charts.axes import at_2_and_5, marks, plain_mark, power_mark
+from runner.reporting.charts.scales import at_2_and_5, marks, plain_mark, power_mark
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.sample_sweep import measurements
 
-from runner.reporting.charts.thinning import POINTS
+from runner.reporting.charts.figure import POINTS
 from runner.reporting.document import Curves, Table, Text
 from runner.reporting.sweep import cells, distributions, effects, maps, tradeoff
 from runner.reporting.sweep.subject import MOST_GROUPS, choose, group_levels

@@ -1,38 +1,52 @@
-"""Figures of curves as stills, drawn by matplotlib at print size."""
+"""Static drawings of figures: curves and heat maps, by matplotlib at print size."""
 
 import io
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import to_rgb
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
+from runner.base.arrays import FloatArray
 from runner.base.sanitize import plain
-from runner.reporting.charts import palette
-from runner.reporting.charts.axes import Mark, at_2_and_5, in_readable_units, marks
-from runner.reporting.charts.figure import Curves, Panel, Series, shares_legend, upright
-from runner.reporting.charts.names import Names, literal, names_below, wrap_text
-from runner.reporting.charts.sheet import REPORT, Sheet, render_figure, style
-from runner.reporting.charts.thinning import thin, usable
+from runner.reporting.charts import palette, scales
+from runner.reporting.charts.figure import Curves, Map, Maps, Panel, Series, shares_legend, thin, upright, usable
+from runner.reporting.charts.sheet import (
+    REPORT,
+    Names,
+    Sheet,
+    literal,
+    names_below,
+    names_beside,
+    render_figure,
+    style,
+    wrap_text,
+)
 
 # Measures in inches, for letters of the size of a report; fixed margins, because a layout engine costs more time than
 # all the curves.
 _LEFT, _RIGHT, _BOTTOM, _BARE = 0.64, 0.12, 0.42, 0.24  # the last one below an axis without a label
 _HEIGHTS, _LOWER = {1: 1.25, 2: 1.2}, 0.95  # of the axes in so many columns, and in more
 _ROWS = {2: 1.05, 3: 0.8, 4: 0.64}  # the same in so many rows, and in more
-_ABOVE = 0.15  # by which a label beside an axis may be longer than it
+_ABOVE = 0.15  # by which a label beside an axis of curves may be longer than it
 _HANDLE, _GAP = 0.42, 0.12
 _LEAST = 1.55  # width of a panel
+_MAP_LEFT, _MAP_LABEL, _MAP_BAR = 0.7, 0.3, 0.36  # the last two without names and values
+_MAP_HEIGHTS, _MAP_LOWER = {1: 2.6, 2: 1.8}, 1.3
+_LEAST_MAP = 1.8  # width of a map with what stands beside it
 _POINTS_PER_INCH = 300
 _PALE = 0.18  # of its colour in a band
+_COLORS = "viridis"
+_BRIGHT = 0.6  # share of the scale of colours from which black is read more easily than white
 Corner = Literal["upper left", "lower left"]
 _MARKS = ("o", "D", "s")
 _LINES = {"line": "-", "dashed": "--", "dotted": ":", "points": "none", "points_line": "-"}
@@ -40,9 +54,9 @@ _LINES = {"line": "-", "dashed": "--", "dotted": ":", "points": "none", "points_
 
 @dataclass(frozen=True)
 class _Frame:
-    """The texts around one panel, broken to its width, and the space they take [in]."""
+    """The texts around one panel or map, broken to its size, and the space they take [in]."""
 
-    panel: Panel
+    panel: Panel | Map
     sheet: Sheet
     width: float
     height: float
@@ -50,6 +64,7 @@ class _Frame:
     entries: list[str]
     columns: int
     x_names: Names | None = None
+    y_names: Names | None = None
 
     @property
     def x_label(self) -> str:
@@ -79,20 +94,20 @@ class _Frame:
         return math.ceil(len(named) / self.columns) * lines * self.sheet.line + 0.05
 
 
-def draw(curves: Curves, sheet: Sheet = REPORT) -> str:
-    """Return the figure as SVG; the same figure gives the same text."""
-    return render_figure(lambda: _figure(curves, sheet), sheet, "svg").decode()
+def draw(figure: Curves | Maps, sheet: Sheet = REPORT) -> str:
+    """Return a figure as SVG; the same figure gives the same text."""
+    return render_figure(lambda: _figure(figure, sheet), sheet, "svg").decode()
 
 
-def draw_pdf(curves: Curves, sheet: Sheet = REPORT) -> bytes:
-    """Return the figure as PDF, a page of its size; the same figure gives the same bytes."""
-    return render_figure(lambda: _figure(curves, sheet), sheet, "pdf")
+def draw_pdf(figure: Curves | Maps, sheet: Sheet = REPORT) -> bytes:
+    """Return a figure as PDF, a page of its size; the same figure gives the same bytes."""
+    return render_figure(lambda: _figure(figure, sheet), sheet, "pdf")
 
 
 def as_figure(curves: Curves, sheet: Sheet = REPORT) -> Figure:
     """Return the figure as one of matplotlib's, to be changed and saved; a notebook shows it."""
     with mpl.rc_context(style(sheet)):
-        return _figure(curves, sheet, _Shown)
+        return _curves(curves, sheet, _Shown)
 
 
 class _Shown(Figure):
@@ -104,42 +119,84 @@ class _Shown(Figure):
         return stream.getvalue()
 
 
-def _figure(curves: Curves, sheet: Sheet, kind: type[Figure] = Figure) -> Figure:
+def _figure(figure: Curves | Maps, sheet: Sheet) -> Figure:
+    return _curves(figure, sheet) if isinstance(figure, Curves) else _maps(figure, sheet)
+
+
+def _curves(curves: Curves, sheet: Sheet, kind: type[Figure] = Figure) -> Figure:
     columns = sheet.beside(curves.columns, len(curves.panels), _LEAST)
-    panels = in_readable_units(curves.panels, curves.columns)
+    panels = curves.panels
     count, width = math.ceil(len(panels) / columns), sheet.width / columns
     height = sheet.scale * min(_HEIGHTS.get(columns, _LOWER), _ROWS.get(min(count, max(_ROWS)), 9.0))
     shared = shares_legend(panels)
     lines = max((_beside(panel, height, sheet).count("\n") for panel in panels), default=0)
     left, right = _LEFT * sheet.scale + lines * sheet.line, _RIGHT * sheet.scale
-    frames = [_frame(panel, sheet, width - left - right, height, not shared) for panel in panels]
+    frames = [_frame(panel, () if shared else panel.series, sheet, width - left - right, height) for panel in panels]
     rows = [frames[start : start + columns] for start in range(0, len(frames), columns)]
     if shared and len({panel.x_label for panel in panels}) == 1:
         # One label below the last panel of each column.
         rows[:-1] = [_bare(row, below) for row, below in itertools.pairwise(rows)]
-    foot = _frame(panels[0], sheet, sheet.width - left - right, height) if shared else None
-    heights = [*map(_row_height, rows), *([foot.legend] if foot else [])]
-    total = sum(heights) or _BOTTOM
+    foot = _frame(panels[0], panels[0].series, sheet, sheet.width - left - right, height) if shared else None
+    total = sum(map(_row_height, rows)) + (foot.legend if foot else 0.0) or _BOTTOM
     figure = kind(figsize=(sheet.width, total))
     of_first: Sequence[Line2D] = ()
-    for index, row in enumerate(rows):
-        head = sum(heights[:index]) + max(frame.top for frame in row)
-        for place, frame in enumerate(row):
-            bottom = total - head - frame.height
-            axes = figure.add_axes(
-                ((place * width + left) / sheet.width, bottom / total, frame.width / sheet.width, frame.height / total)
-            )
-            handles = _draw_panel(axes, frame)
-            of_first = of_first or handles
-            _draw_legend(axes, frame, handles, "upper left", (0, -(frame.bottom - 0.02) / frame.height))
+    for frame, axes in _placed(figure, rows, width, left, total):
+        handles = _draw_panel(axes, frame)
+        of_first = of_first or handles
+        _draw_legend(axes, frame, handles, "upper left", (0, -(frame.bottom - 0.02) / frame.height))
     if foot:
         _draw_legend(figure, foot, of_first, "lower left", (left / sheet.width, 0.03 / total))
     return figure
 
 
-def _beside(panel: Panel, height: float, sheet: Sheet) -> str:
+def _maps(maps: Maps, sheet: Sheet) -> Figure:
+    places, marks = scales.scale_marks(maps)
+    widest = max(map(len, marks), default=0)
+    label = _MAP_BAR * sheet.scale + 2 * sheet.line  # of the scale, in two lines at most
+    room = sheet.width - label - widest * sheet.character
+    columns = sheet.beside(maps.columns, len(maps.panels), _LEAST_MAP, room)
+    cell, height = room / columns, sheet.scale * _MAP_HEIGHTS.get(columns, _MAP_LOWER)
+    y_names = [names_beside(panel.y_names, height, sheet) for panel in maps.panels]
+    lines = max((_beside(panel, height, sheet).count("\n") for panel in maps.panels), default=0)
+    taken = max((names.room for names in y_names), default=0.0) + lines * sheet.line
+    left = max(_MAP_LEFT * sheet.scale, _MAP_LABEL * sheet.scale + taken)
+    width = cell - left - _RIGHT * sheet.scale
+    frames = [
+        replace(_frame(panel, panel.lines, sheet, width, height), y_names=names)
+        for panel, names in zip(maps.panels, y_names, strict=True)
+    ]
+    rows = [frames[start : start + columns] for start in range(0, len(frames), columns)]
+    total = sum(map(_row_height, rows)) or height
+    figure = Figure(figsize=(sheet.width, total))
+    colors = Normalize(*scales.value_range(maps))
+    for frame, axes in _placed(figure, rows, cell, left, total):
+        handles = _draw_map(axes, frame, maps, colors)
+        _draw_legend(axes, frame, handles, "upper left", (0, -(frame.bottom - 0.02) / frame.height))
+    bottom = 1 - (max((frame.top for frame in rows[0]), default=0.0) + height) / total if rows else 0.0
+    bar = figure.add_axes(((room + 0.1) / sheet.width, bottom, 0.1 / sheet.width, height / total))
+    figure.colorbar(ScalarMappable(colors, _COLORS), cax=bar).set_ticks(places, labels=marks)
+    literal(bar.yaxis.label, wrap_text(maps.value_label, height / sheet.character))
+    bar.grid(False)
+    return figure
+
+
+def _placed(
+    figure: Figure, rows: Sequence[Sequence[_Frame]], cell: float, left: float, total: float
+) -> Iterator[tuple[_Frame, Axes]]:
+    """Yield each frame with axes at its place; `cell` is the width of a column, `total` the height of the figure."""
+    head = 0.0
+    for row in rows:
+        top = head + max(frame.top for frame in row)
+        for place, frame in enumerate(row):
+            across, bottom = (place * cell + left) / frame.sheet.width, 1 - (top + frame.height) / total
+            size = frame.width / frame.sheet.width, frame.height / total
+            yield frame, figure.add_axes((across, bottom, *size))
+        head += _row_height(row)
+
+
+def _beside(panel: Panel | Map, height: float, sheet: Sheet) -> str:
     """Return the label beside an axis of a height, broken to it."""
-    return wrap_text(panel.y_label, (height + _ABOVE) / sheet.character)
+    return wrap_text(panel.y_label, (height + (_ABOVE if isinstance(panel, Panel) else 0.0)) / sheet.character)
 
 
 def _bare(row: Sequence[_Frame], below: Sequence[_Frame]) -> list[_Frame]:
@@ -148,10 +205,11 @@ def _bare(row: Sequence[_Frame], below: Sequence[_Frame]) -> list[_Frame]:
     return [*hidden, *row[len(below) :]]
 
 
-def _frame(panel: Panel, sheet: Sheet, width: float, height: float, named: bool = True) -> _Frame:
+def _frame(panel: Panel | Map, lines: Sequence[Series], sheet: Sheet, width: float, height: float) -> _Frame:
+    """Return the frame of a panel, with a legend of some curves."""
     title = wrap_text(panel.title, width / sheet.character)
     handle = _HANDLE * sheet.scale
-    entries = [wrap_text(series.name if named else "", (width - handle) / sheet.character) for series in panel.series]
+    entries = [wrap_text(series.name, (width - handle) / sheet.character) for series in lines]
     longest = max((len(line) for name in entries for line in name.splitlines()), default=0)
     count = sum(map(bool, entries))
     fitting = max(1, min(count, int((width + _GAP) / (longest * sheet.character + handle))))
@@ -164,11 +222,16 @@ def _row_height(row: Sequence[_Frame]) -> float:
     return max(frame.top for frame in row) + row[0].height + max(frame.bottom + frame.legend for frame in row)
 
 
-def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
-    panel, sheet = frame.panel, frame.sheet
-    literal(axes.set_title("", loc="left", y=1.0), frame.title)
+def _label(axes: Axes, frame: _Frame) -> None:
+    literal(axes.set_title("", loc="left", y=1.0, pad=4), frame.title)
     literal(axes.xaxis.label, frame.x_label)
     literal(axes.yaxis.label, frame.y_label)
+
+
+def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
+    panel, sheet = frame.panel, frame.sheet
+    assert isinstance(panel, Panel)  # noqa: S101 - for the type checker
+    _label(axes, frame)
     if panel.x_log:
         axes.set_xscale("log", nonpositive="mask")
     if panel.y_log:
@@ -199,16 +262,16 @@ def _mark(axes: Axes, which: Literal["x", "y"], most: int, whole: bool = False) 
     """Label the marks of an axis in one notation; of a linear one so many at most, at whole numbers alone if asked."""
     axis, (low, high) = (axes.xaxis, axes.get_xlim()) if which == "x" else (axes.yaxis, axes.get_ylim())
     log = axis.get_scale() == "log"
-    write = marks(low, high, log)
+    write = scales.marks(low, high, log)
     axis.set_major_formatter(_formatter(write))
     if log:
         # Labels between the powers of ten, and only where these alone would leave the axis bare.
-        axis.set_minor_formatter(_formatter(at_2_and_5(write)) if high < 30.0 * low else NullFormatter())
+        axis.set_minor_formatter(_formatter(scales.at_2_and_5(write)) if high < 30.0 * low else NullFormatter())
     else:
         axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10], integer=whole))
 
 
-def _formatter(write: Mark) -> FuncFormatter:
+def _formatter(write: scales.Mark) -> FuncFormatter:
     return FuncFormatter(lambda value, _: write(value))
 
 
@@ -237,7 +300,7 @@ def _draw_series(axes: Axes, series: Series, index: int, sheet: Sheet) -> Line2D
 def _draw_legend(
     owner: Axes | Figure, frame: _Frame, handles: Sequence[Line2D], corner: Corner, place: tuple[float, float]
 ) -> None:
-    named = [(handle, name) for handle, name in zip(handles, frame.entries, strict=True) if name]
+    named = [(handle, name) for handle, name in zip(handles, frame.entries, strict=False) if name]
     if not named:
         return
     # matplotlib fills columns first; a reader goes along the rows.
@@ -258,3 +321,52 @@ def _draw_legend(
     # Names are set afterwards, because matplotlib gives a meaning to a leading underscore.
     for text, (_, name) in zip(legend.get_texts(), named, strict=True):
         literal(text, name)
+
+
+def _draw_map(axes: Axes, frame: _Frame, maps: Maps, colors: Normalize) -> list[Line2D]:
+    panel = frame.panel
+    assert isinstance(panel, Map)  # noqa: S101 - for the type checker
+    _label(axes, frame)
+    values = scales.scale_values(panel.values, maps.log)
+    axes.grid(False)
+    rows, columns = values.shape
+    if panel.contours:
+        levels = np.linspace(*scales.value_range(maps), scales.CONTOURS + 1)
+        axes.contourf(values, levels, cmap=_COLORS, norm=colors)
+        crossed = levels[(levels > np.nanmin(values)) & (levels < np.nanmax(values))]
+        if crossed.size:
+            axes.contour(values, crossed, colors="white", linewidths=0.5)
+    else:
+        # Cells are centred on whole numbers, as curves over them expect.
+        edges = np.arange(columns + 1) - 0.5, np.arange(rows + 1) - 0.5
+        parted = "white" if max(values.shape) <= scales.MOST_PARTED else "face"  # no edge at all leaves seams
+        axes.pcolormesh(*edges, values, cmap=_COLORS, norm=colors, edgecolor=parted, linewidth=0.4)
+    axes.set_xlim(-0.5, columns - 0.5)
+    axes.set_ylim(-0.5, rows - 0.5)
+    for names, axis, count in ((frame.x_names, axes.xaxis, columns), (frame.y_names, axes.yaxis, rows)):
+        if names:
+            names.put(axis, count)
+    color = palette.color(scales.OVERLAY)
+    handles = [
+        line for series in panel.lines for line in axes.plot(series.x, series.y, "--", color=color, linewidth=1.4)
+    ]
+    failed_rows, failed_columns = np.nonzero(panel.failed)
+    axes.plot(failed_columns, failed_rows, "x", color=color, markersize=6, markeredgewidth=1.5)
+    if scales.prints_values(panel, maps):
+        _print_values(axes, frame, scales.printed_values(panel, maps), values, colors)
+    return handles
+
+
+def _print_values(
+    axes: Axes, frame: _Frame, values: Sequence[Sequence[str]], shades: FloatArray, colors: Normalize
+) -> None:
+    """Print the value of each cell, in white where the cell is dark; none where they are wider than the cells."""
+    letter = frame.sheet.character * frame.sheet.small / frame.sheet.font
+    if letter * max((len(text) for row in values for text in row), default=0) > frame.width / max(1, shades.shape[1]):
+        return
+    for row, texts in enumerate(values):
+        for column, value in enumerate(texts):
+            bright = np.isnan(shades[row, column]) or colors(float(shades[row, column])) > _BRIGHT
+            text = axes.text(column, row, "", ha="center", va="center", fontsize=frame.sheet.small)
+            text.set_color("black" if bright else "white")
+            literal(text, value)

@@ -1,4 +1,4 @@
-"""Figures of curves as Plotly data: one plot per panel, arrays as base64, labels without markup."""
+"""Interactive drawings of figures as Plotly data: one plot per panel or map, labels without markup."""
 
 import base64
 import html
@@ -12,11 +12,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.sanitize import plain
-from runner.reporting.charts import palette
-from runner.reporting.charts.axes import in_readable_units, marks
-from runner.reporting.charts.figure import shares_legend, upright
-from runner.reporting.charts.thinning import band, thin, usable
-from runner.reporting.document import Curves, Panel, Series
+from runner.reporting.charts import palette, scales
+from runner.reporting.charts.figure import Curves, Map, Maps, Panel, Series, band, shares_legend, thin, upright, usable
 
 Json = dict[str, Any]
 
@@ -30,15 +27,19 @@ _LARGEST = float(np.finfo("<f4").max)
 _UNIT = re.compile(r"\(([^(),]+)\)$")
 
 
-def plotly_spec(curves: Curves) -> list[Json]:
-    """Return what the page's script hands to Plotly: for each panel traces, palette indices and layout.
+def plotly_spec(figure: Curves | Maps) -> list[Json]:
+    """Return what the page's script hands to Plotly: for each panel or map traces, palette indices and layout.
 
-    Where one legend serves all panels, it stands below the first of the last row, and what it hides is hidden in all.
+    If one legend serves all panels, it stands below the first of the last row, and what it hides is hidden in all. Maps
+    share one colour scale; they also have the names of columns and rows, and whether colours follow the logarithm.
     """
-    shared, panels = shares_legend(curves.panels), in_readable_units(curves.panels, curves.columns)
-    below = (len(panels) - 1) // curves.columns * curves.columns
+    if isinstance(figure, Maps):
+        low, high = scales.value_range(figure)
+        return [_map(panel, figure, low, high) for panel in figure.panels]
+    shared, below = shares_legend(figure.panels), (len(figure.panels) - 1) // figure.columns * figure.columns
     return [
-        _panel(panel) | {"together": shared, "legend": not shared or at == below} for at, panel in enumerate(panels)
+        _panel(panel) | {"together": shared, "legend": not shared or at == below}
+        for at, panel in enumerate(figure.panels)
     ]
 
 
@@ -59,7 +60,7 @@ def _panel(panel: Panel) -> Json:
     heights = [series.y for series in panel.series] + edges
     across = _axis(panel.x_label, panel.x_log, panel.x_range, [series.x for series in panel.series])
     layout = {
-        "xaxis": across | named_places(panel.x_names) if panel.x_names else across,
+        "xaxis": across | _named_places(panel.x_names) if panel.x_names else across,
         "yaxis": _axis(panel.y_label, panel.y_log, panel.y_range, heights),
         "showlegend": any(plain(series.name).strip() for series in panel.series),
         "hovermode": "x unified" if all(map(_compared, panel.series)) else "closest",
@@ -67,7 +68,7 @@ def _panel(panel: Panel) -> Json:
     return {"traces": traces, "colors": colors, "layout": layout}
 
 
-def named_places(names: Sequence[str]) -> Json:
+def _named_places(names: Sequence[str]) -> Json:
     """Return an axis with names at the places 0, 1, ...; of many, every other one and so on."""
     step = -(-len(names) // _MOST_NAMES) or 1
     return {
@@ -166,7 +167,7 @@ def _marks(shown: tuple[float, float] | None, values: list[FloatArray]) -> Json:
     between = (1, 2, 5) if last - first <= _FEW_DECADES else (1,)
     places = [step * 10.0**power for power in range(first, last + 1, math.ceil((last - first) / 10) or 1)
               for step in between]  # fmt: skip
-    write = marks(places[0], places[-1], log=True)
+    write = scales.marks(places[0], places[-1], log=True)
     return {"tickmode": "array", "tickvals": places, "ticktext": [write(place) for place in places]}
 
 
@@ -184,3 +185,74 @@ def _typed(values: FloatArray) -> Json:
     # What single precision cannot hold overflows the autorange; NaN is a gap.
     finite = np.where(np.abs(values) <= _LARGEST, values, np.nan).astype("<f4")
     return {"dtype": "f4", "bdata": base64.b64encode(finite.tobytes()).decode("ascii")}
+
+
+def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
+    columns, rows = list(range(len(panel.x_names))), list(range(len(panel.y_names)))
+    colors = scales.scale_values(panel.values, block.log)
+    places, marks = scales.scale_marks(block)
+    drawn: Json = {
+        "type": "contour" if panel.contours else "heatmap",
+        "x": columns,
+        "y": rows,
+        "z": [[None if np.isnan(value) else round(float(value), 9) for value in row] for row in colors],
+        "zmin": low,
+        "zmax": high,
+        "colorscale": "Viridis",
+        "colorbar": {
+            "thickness": 10,
+            "outlinewidth": 0,
+            "tickvals": places,
+            "ticktext": marks,
+            "title": {"text": neutral(block.value_label), "side": "right"},
+        },
+        "hoverinfo": "skip",
+    }
+    if panel.contours:
+        drawn |= {"ncontours": scales.CONTOURS, "line": {"width": 0.7, "color": "#ffffff"}}
+    elif max(panel.values.shape) <= scales.MOST_PARTED:
+        drawn |= {"xgap": 1, "ygap": 1}
+    if scales.prints_values(panel, block):
+        drawn |= {"text": scales.printed_values(panel, block), "texttemplate": "%{text}"}
+    if panel.hints:
+        drawn |= {"hovertext": _by_rows([neutral(hint) for hint in panel.hints], len(columns)), "hoverinfo": "text"}
+    if panel.runs:
+        drawn["customdata"] = _by_rows(list(panel.runs), len(columns))
+    traces = [drawn, *_overlay(panel)]
+    layout = {
+        "xaxis": {"title": {"text": neutral(panel.x_label)}, **_named_places(panel.x_names)},
+        "yaxis": {"title": {"text": neutral(panel.y_label)}, **_named_places(panel.y_names)},
+        "showlegend": any(series.name for series in panel.lines),
+        "hovermode": "closest",
+    }
+    read = {"names": [list(map(neutral, names)) for names in (panel.x_names, panel.y_names)], "log": block.log}
+    return {"traces": traces, "colors": [scales.OVERLAY] * len(traces), "layout": layout, **read}
+
+
+def _overlay(panel: Map) -> list[Json]:
+    """Return what lies over the cells: curves, and crosses on failed cells."""
+    traces: list[Json] = [
+        {
+            "type": "scatter",
+            "mode": "lines",
+            "name": neutral(series.name),
+            "showlegend": bool(series.name),
+            "hoverinfo": "skip",
+            "line": {"width": 2.5, "dash": "dash"},
+            "x": series.x.tolist(),
+            "y": series.y.tolist(),
+        }
+        for series in panel.lines
+    ]
+    rows, columns = np.nonzero(panel.failed)
+    if rows.size:
+        cross = {"symbol": "x", "size": 11, "line": {"width": 0}}
+        traces.append(
+            {"type": "scatter", "mode": "markers", "showlegend": False, "hoverinfo": "skip", "marker": cross}
+            | {"x": columns.tolist(), "y": rows.tolist()}
+        )
+    return traces
+
+
+def _by_rows(values: list[str], columns: int) -> list[list[str]]:
+    return [values[start : start + columns] for start in range(0, len(values), columns)]
