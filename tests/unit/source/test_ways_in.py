@@ -1,4 +1,4 @@
-"""The ways in that CONTRIBUTING.md lists, against the tests that it names and the modules that read something."""
+"""The ways in that SECURITY.md lists, compared with the tests that it names and the modules that read something."""
 
 import ast
 import re
@@ -6,7 +6,7 @@ import re
 import pytest
 from support.pages import ROOT
 
-_SECTION = (ROOT / "CONTRIBUTING.md").read_text().split("\n## Ways in\n")[1].split("\n## ")[0]
+_SECTION = (ROOT / "SECURITY.md").read_text().split("\n## Ways in\n")[1].split("\n## ")[0]
 ROWS = [
     [cell.strip() for cell in line.strip("|").split(" | ")]
     for line in _SECTION.splitlines()
