@@ -1,4 +1,4 @@
-"""Pictures of an arm in motion, still and animated, and the path of its tip seen from above."""
+"""Pictures of an arm in motion, still and animated."""
 
 from collections.abc import Iterable, Sequence
 
@@ -8,12 +8,10 @@ from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import quantity
 from runner.reporting.charts import palette
 from runner.reporting.charts.canvas import GREY, INK, PALE, Camera, drawing, pair, scene, triad
 from runner.robots.model import RobotModel
 
-_LONG = 5.2  # long side of the view from above, in inches
 _ARM, _PATH, _GOAL = palette.LIGHT[:3]
 _SHADES = LinearSegmentedColormap.from_list("instants", ["#b9cfe8", palette.LIGHT[0], "#0c2b52"])
 _WIDTH, _HEIGHT, _MARGIN = 420.0, 300.0, 18.0
@@ -91,55 +89,6 @@ def _draw_base(axes: Axes, camera: Camera, model: RobotModel, floor: float) -> N
     axes.annotate("base axis", pair(camera.project(top)), (0, 3), textcoords="offset points", ha="center", fontsize=7.5,
                   color=GREY)  # fmt: skip
     triad(axes, camera, np.eye(4), camera.project(foot), 0.2 * model.reach, "", 0.05 * model.reach)
-
-
-@drawing
-def top_view(model: RobotModel, path: FloatArray, desired: FloatArray | None = None) -> Figure:
-    """Draw the path of the tip seen from above, with the place where it passes closest to the base axis.
-
-    Args:
-        model: The robot; its base axis is the vertical through its shoulder.
-        path: Path of the tip, shape (N, 3), in m.
-        desired: Desired path, shape (M, 3), in m.
-    """
-    centre = model.shoulder[:2]
-    flat = path[:, :2]
-    low, high = np.vstack([flat, centre]).min(axis=0), np.vstack([flat, centre]).max(axis=0)
-    middle, half = (low + high) / 2.0, (high - low) / 2.0 + 0.1 * model.reach
-    half = np.maximum(half, 0.35 * half.max())
-    width, height = _LONG * half[[1, 0]] / half.max()
-    figure = Figure(figsize=(width, height))
-    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set(xlim=(middle[1] - half[1], middle[1] + half[1]), ylim=(middle[0] + half[0], middle[0] - half[0]))
-    # y to the right and x downwards: what an observer above the arm sees after a quarter turn.
-    axes.plot(flat[:, 1], flat[:, 0], color=_PATH, lw=1.4, label="path of the tip", zorder=3)
-    if desired is not None:
-        axes.plot(desired[:, 1], desired[:, 0], color=INK, lw=1.0, ls=(0, (4, 2)), label="desired path", zorder=4)
-    for point, word, shift in ((flat[0], "start", (4, 5)), (flat[-1], "end", (4, 5))):
-        axes.plot(point[1], point[0], "o", ms=4.5, color=_PATH, zorder=4)
-        axes.annotate(word, (point[1], point[0]), shift, textcoords="offset points", fontsize=7.5)
-    axes.plot(centre[1], centre[0], "o", ms=7, mfc="white", mec=INK, zorder=5)
-    axes.plot(centre[1], centre[0], "o", ms=2, color=INK, zorder=5, label="base axis")
-    nearest, distance = _nearest(flat, centre)
-    axes.plot([centre[1], nearest[1]], [centre[0], nearest[0]], color=INK, lw=0.9, zorder=4)
-    axes.annotate(quantity(distance, "m"), (nearest[1], nearest[0]), (-12, -14), textcoords="offset points", ha="right",
-                  va="top", arrowprops={"arrowstyle": "-", "color": GREY, "lw": 0.6})  # fmt: skip
-    axes.grid(color="#e3e6ea", lw=0.5)
-    axes.set_xlabel("$y$ (m)")
-    axes.set_ylabel("$x$ (m)")
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=7.5, frameon=False)
-    return figure
-
-
-def _nearest(path: FloatArray, point: FloatArray) -> tuple[FloatArray, float]:
-    """Return the point of a polyline in the plane that lies closest to a point, and its distance in m."""
-    start, step = path[:-1], np.diff(path, axis=0)
-    squared = np.maximum(np.einsum("ij,ij->i", step, step), 1e-300)
-    share = np.clip(np.einsum("ij,ij->i", point - start, step) / squared, 0.0, 1.0)
-    feet = start + share[:, None] * step
-    distances = np.linalg.norm(feet - point, axis=1)
-    index = int(np.argmin(distances))
-    return feet[index], float(distances[index])
 
 
 def moving_arm(model: RobotModel, q: FloatArray, seconds: float, path: FloatArray, desired: FloatArray) -> str:

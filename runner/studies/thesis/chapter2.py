@@ -5,12 +5,12 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from runner.base.quantities import above_rounding, number
-from runner.reporting.charts.workspace import workspace_sphere
 from runner.reporting.document import Picture, Table
 from runner.reporting.figures import origin
 from runner.robots.workspace import analyse
 from runner.store import Run
 from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
+from runner.studies.thesis.diagrams.workspace import workspace_sphere
 
 _SAMPLES = 4000
 

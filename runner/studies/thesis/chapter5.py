@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from runner.reporting.charts.control_steps import control_steps
-from runner.reporting.document import Curves, Picture
-from runner.reporting.figures import macro_mini_targets, origin
+from runner.reporting.document import Curves, Panel, Picture, Series
+from runner.reporting.figures import origin, rows_until
 from runner.store import Run
 from runner.studies.thesis.diagrams.block_diagram import block_diagram
+from runner.studies.thesis.diagrams.control_steps import control_steps
 from runner.studies.thesis.diagrams.macro_mini import macro_mini_graph
 from runner.studies.thesis.diagrams.whole_body import whole_body_graph
 from runner.studies.thesis.folding import singular_value
@@ -87,3 +87,37 @@ def folded(run: Run) -> float:
 def spreads(runs: Mapping[str, Run], title: str, name: str, *metrics: str) -> list[str]:
     """Return the metrics of an experiment under each preset behind its title, as a row of a table."""
     return [title, *(runs[f"{name}/{preset}"].metrics[metric].text for preset in PRESETS for metric in metrics)]
+
+
+def macro_mini_targets(
+    run: Run, number: str = "", caption: str = "", until: float | None = None, axis: str = "x"
+) -> Curves:
+    """Return how the way to the desired tip is shared between the carrying arm and the riding one, along one axis.
+
+    Args:
+        run: A run of a robot with two stages.
+        number: Number of the figure in the source.
+        caption: What is seen; "" takes a sentence of its own.
+        until: End of the time axis, in s; None shows the whole run.
+        axis: The axis of the base frame: x, y or z.
+    """
+    rows = rows_until(run, until)
+    trace, t = run.trace()[rows], run.t[rows]
+    macro, mini = list(run.provenance["stages"])[:2]
+    desired, tip, end_point = (trace[f"{stem}_{axis}"].to_numpy() for stem in ("desired", "tip", f"{macro}_tip"))
+    big, small = macro.capitalize(), mini.capitalize()
+    positions = (
+        Series("tip", t, tip, color=0),
+        Series(f"{big} end point", t, end_point, color=1),
+        Series("desired tip", t, desired, "dashed", color=7),
+    )
+    shares = (
+        Series(f"tip less {big} end point", t, tip - end_point, color=0),
+        Series(f"desired tip less {big} end point", t, desired - end_point, "dashed", color=7),
+    )
+    panels = (
+        Panel(f"Positions in {axis} direction", "time (s)", f"{axis} (m)", positions),
+        Panel(f"The {small}'s share of them", "time (s)", f"{axis} (m)", shares),
+    )
+    caption = caption or f"How {big} and {small} share the way to the desired tip, in {axis} direction."
+    return Curves(caption, panels, origin=origin(run, number))

@@ -8,10 +8,10 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch, Polygon
 
-from runner.reporting.charts.control_steps import control_steps, steps
 from runner.reporting.charts.static import draw
-from runner.reporting.figures import macro_mini_targets
+from runner.studies.thesis.chapter5 import macro_mini_targets
 from runner.studies.thesis.diagrams.block_diagram import block_diagram
+from runner.studies.thesis.diagrams.control_steps import control_steps, steps
 from runner.studies.thesis.diagrams.frames import frame_assignment
 from runner.studies.thesis.diagrams.macro_mini import macro_mini_graph
 from runner.studies.thesis.diagrams.whole_body import whole_body_graph

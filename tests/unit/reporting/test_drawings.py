@@ -8,15 +8,16 @@ import numpy as np
 import pytest
 from support.arms import model_of, urdf_of
 
-from runner.reporting.charts.arm import _nearest, arm_motion, top_view
+from runner.reporting.charts.arm import arm_motion
 from runner.reporting.charts.canvas import Camera, circle
-from runner.reporting.charts.workspace import _best_samples, workspace_sphere
 from runner.robots import RobotModel
 from runner.robots.workspace import analyse
+from runner.studies.thesis.base_axis import _nearest, top_view
 from runner.studies.thesis.diagrams.block_diagram import block_diagram
 from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node
 from runner.studies.thesis.diagrams.frames import frame_assignment
 from runner.studies.thesis.diagrams.operational_space import operational_space_graph
+from runner.studies.thesis.diagrams.workspace import _best_samples, workspace_sphere
 
 START, GOAL = np.array([0.0, 1.0, 1.0]), np.array([0.1679, -0.7571, 0.4255])
 
