@@ -1,4 +1,4 @@
-"""Export a sweep or run as a table: Parquet or CSV for data, Markdown or LaTeX for papers.
+"""Export a sweep or run as a table: Parquet or CSV for data, Markdown, LaTeX or Typst for papers.
 
 Without options, all cells of a sweep are written to table.parquet and table.csv in its folder.
 
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from runner.reporting.export.paper_table import PaperTable
     from runner.sweeps.measurements import Measurements
 
-_ENDINGS = {".csv": "csv", ".parquet": "parquet", ".md": "markdown", ".tex": "latex"}
+_ENDINGS = {".csv": "csv", ".parquet": "parquet", ".md": "markdown", ".tex": "latex", ".typ": "typst"}
+_FOR_PAPER = ("markdown", "latex", "typst")
 FORMATS = tuple(_ENDINGS.values())
 
 
@@ -48,7 +49,7 @@ def run(options: Namespace) -> int:
     measurements = measure_sweep(sweep)
     if not (chosen or options.metrics or options.by or options.where):
         return _whole(options.folder, measurements)
-    if chosen in ("markdown", "latex"):
+    if chosen in _FOR_PAPER:
         from runner.reporting.export.paper_table import of_sweep
 
         table = of_sweep(measurements, sweep.command, options.metrics, options.by, options.where)
@@ -95,7 +96,7 @@ def _of_run(options: Namespace, chosen: str) -> int:
     run = store.open_run(options.folder)
     if not run.metrics:
         raise RunnerError(f"the run has no metrics: it {run.failure}")
-    if chosen in ("", "markdown", "latex"):
+    if chosen in ("", *_FOR_PAPER):
         from runner.reporting.export.paper_table import of_run
 
         _put(_for_paper(of_run(run, options.metrics), chosen or "markdown"), options.output)
@@ -113,8 +114,10 @@ def _of_run(options: Namespace, chosen: str) -> int:
 def _for_paper(table: "PaperTable", chosen: str) -> bytes:
     from runner.reporting.export.latex import latex
     from runner.reporting.export.markdown import markdown
+    from runner.reporting.export.typst_table import typst_table
 
-    return (latex if chosen == "latex" else markdown)(table).encode("utf-8", errors="replace")
+    write = {"markdown": markdown, "latex": latex, "typst": typst_table}[chosen]
+    return write(table).encode("utf-8", errors="replace")
 
 
 def _put(content: bytes, output: Path | None) -> int:

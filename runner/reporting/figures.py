@@ -39,14 +39,16 @@ def torque_and_error(run: Run, caption: str, number: str = "", until: float | No
     panels = []
     for title, label, slides in (("Torque", "torque (N m)", False), ("Force", "force (N)", True)):
         joints = [
-            Series(str(i + 1), t, torques[:, i], color=i) for i, is_force in enumerate(force) if is_force == slides
+            Series(name, t, torques[:, i], color=i)
+            for i, (name, is_force) in enumerate(zip(run.provenance["joints"], force, strict=True))
+            if is_force == slides
         ]
         if joints:
             panels.append(Panel(f"{title} of each joint", "time (s)", label, joints))
     axes = [Series(axis, t, error[:, index]) for index, axis in enumerate(AXES)]
     return Curves(
         caption,
-        (*panels, Panel("Tip position error", "time (s)", "error (m)", axes)),
+        (*panels, Panel("Tip position error", "time (s)", "tip error (m)", axes)),
         origin=origin(run, number),
     )
 
@@ -59,7 +61,7 @@ def desired_motion(run: Run, caption: str, number: str = "", axes: tuple[str, ..
         Panel(
             title,
             "time (s)",
-            f"{title.split()[-1]} ({unit})",
+            f"{title.lower()} ({unit})",
             [Series(axis, t, trace[f"{stem}_{axis}"].to_numpy(), color=AXES.index(axis)) for axis in axes],
         )
         for title, stem, unit in (

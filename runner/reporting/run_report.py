@@ -85,7 +85,7 @@ def _cover(run: Run) -> Cover:
     """Return the arm in motion; a move that settles early is shown until it rests."""
     settled = run.metrics["settling_time"].median if "settling_time" in run.metrics else None
     until = _AT_REST * settled if settled and run.config["trajectory"]["kind"] == "goal" else None
-    if until is None or until >= run.config["duration"]:
+    if until is None or until >= run.t[-1]:
         return cover(run, "The motion of repetition 0.")
     return cover(run, f"The first {quantity(until, 's')} of repetition 0.", until)
 

@@ -32,12 +32,14 @@ class Sheet:
         font: Size of its letters, in pt.
         title: Size of the letters of titles, in pt.
         small: Size of the letters within the axes, in pt.
+        marked: Whether each colour also has a mark, so that curves are told apart in print without colours.
     """
 
     width: float = 6.5
     font: float = _DESIGNED
     title: float = 7.5
     small: float = 6.0
+    marked: bool = False
 
     @property
     def scale(self) -> float:
@@ -72,8 +74,8 @@ REPORT = Sheet()
 
 
 def column(millimetres: float) -> Sheet:
-    """Return the column of a journal, all letters of 8 pt."""
-    return Sheet(millimetres / _MM, 8.0, 8.0, 8.0)
+    """Return the column of a journal, all letters of 8 pt, with a mark for each colour."""
+    return Sheet(millimetres / _MM, 8.0, 8.0, 8.0, marked=True)
 
 
 def render_figure(make: Callable[[], Figure], sheet: Sheet, kind: Literal["svg", "pdf"]) -> bytes:

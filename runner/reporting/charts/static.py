@@ -49,6 +49,9 @@ _COLORS = "viridis"
 _BRIGHT = 0.6  # share of the scale of colours from which black is read more easily than white
 Corner = Literal["upper left", "lower left"]
 _MARKS = ("o", "D", "s")
+COLOR_MARKS = ("o", "s", "^", "D", "v", "P", "X", "<")
+"""Mark of each colour of the palette, on a sheet that has them."""
+_MARKED = 7  # marks on a curve
 _LINES = {"line": "-", "dashed": "--", "dotted": ":", "points": "none", "points_line": "-"}
 
 
@@ -241,7 +244,7 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
     axes.margins(x=0.02)
     chosen = palette.indices([series.color for series in panel.series])
     handles = [
-        _draw_series(axes, thin(series, int(_POINTS_PER_INCH * frame.width)), color, sheet)
+        _draw_series(axes, thin(series, int(_POINTS_PER_INCH * frame.width)), color, sheet, len(set(chosen)) > 1)
         for series, color in zip(panel.series, chosen, strict=True)
     ]
     if usable(panel.x_range, panel.x_log):
@@ -275,7 +278,7 @@ def _formatter(write: scales.Mark) -> FuncFormatter:
     return FuncFormatter(lambda value, _: write(value))
 
 
-def _draw_series(axes: Axes, series: Series, index: int, sheet: Sheet) -> Line2D:
+def _draw_series(axes: Axes, series: Series, index: int, sheet: Sheet, several: bool) -> Line2D:
     color = palette.color(index)
     if series.low is not None and series.high is not None:
         # A pale colour and no transparency, which journals refuse; thin edges show through another band.
@@ -283,11 +286,16 @@ def _draw_series(axes: Axes, series: Series, index: int, sheet: Sheet) -> Line2D
         axes.fill_between(series.x, series.low, series.high, color=(red, green, blue), linewidth=0)
         for edge in (series.low, series.high):
             axes.plot(series.x, edge, color=color, linewidth=0.3, zorder=1.8)
-    mark = _MARKS[min(palette.rounds(index), len(_MARKS) - 1)]
-    marker = mark if series.style in ("points", "points_line") else ""
+    marked = sheet.marked and several
+    mark = COLOR_MARKS[index % len(COLOR_MARKS)] if marked else _MARKS[min(palette.rounds(index), len(_MARKS) - 1)]
+    pointed = series.style in ("points", "points_line")
+    marker = mark if pointed or (marked and series.name and np.isfinite(series.y).all()) else ""
+    # Marks of curves that are close to each other have different places.
+    every = None if pointed else ((index % 8 + 1) / (8 * _MARKED), 1 / _MARKED)
     # What is broken stands before what is not, so that neither hides the other.
     order = 2.1 if series.style in ("dashed", "dotted") else 2.0
-    (line,) = axes.plot(series.x, series.y, linestyle=_LINES[series.style], marker=marker, color=color, zorder=order)
+    (line,) = axes.plot(series.x, series.y, linestyle=_LINES[series.style], marker=marker, color=color, zorder=order,
+                       markevery=every)  # fmt: skip
     if series.label and series.x.size:
         end = (float(series.x[-1]), float(series.y[-1]))
         side = -1 if upright(series) else 1  # beside an upright line, above the end of a level one

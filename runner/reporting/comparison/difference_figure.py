@@ -33,7 +33,7 @@ def difference_panel(columns: Sequence[tuple[str, Answer]], across: str) -> Pane
         Series("interval", np.repeat(x, 3), np.column_stack([low, high, np.full(len(x), np.nan)]).ravel(), color=0),
         Series("difference", x, middle, "points", color=0, hints=[_hint(answer) for answer in answers]),
     ]
-    label = label_with_unit("difference", answers[0].unit)
+    label = label_with_unit(f"difference in {title(answers[0].metric)}", answers[0].unit)
     return Panel(capital(title(answers[0].metric)), across, label, series, x_names=[name for name, _ in columns])
 
 

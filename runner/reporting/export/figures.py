@@ -1,46 +1,102 @@
-"""Figures of a report as separate files: SVG and PDF at column width, points as CSV."""
+"""Figures of a report as separate files: SVG and PDF at column width, points as CSV, captions as text."""
 
 import csv
 import io
+import itertools
 import math
 import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
 import typst
 
 from runner.base.errors import RunnerError, nearest
 from runner.base.sanitize import table_cell
 from runner.reporting.charts import static
-from runner.reporting.charts.figure import Panel, Series
+from runner.reporting.charts.figure import Map, Panel, Series
 from runner.reporting.charts.sheet import Sheet
 from runner.reporting.consistency import color_series, in_readable_units
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.markup import spans
-from runner.reporting.outline import Places, blocks
+from runner.reporting.outline import blocks, numbered_place
 from runner.store.atomic import write_atomically
 
 _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([\d.]+)pt"')
 _POINTS = 72.0  # in an inch
-_WORDS = 6  # of the caption in the name of a file
+_LONGEST = 100  # letters of a file's name
+_WORD = re.compile("[a-z0-9]+")
+_UNIT_OF_LABEL = re.compile(r"\s*\([^()]*\)$")
 Figure = Curves | Maps | Picture | Playback
+Axes = TypeVar("Axes", Panel, Map)
 Row = Sequence[object]
 
 
 def figures_of(document: Document) -> dict[str, Figure]:
     """Return the figures of a report by name, in reading order.
 
-    A name is the figure's address in the HTML report, such as figure-3-5 where it has a number and s1-figure-2 where it
-    has none, and the first words of its caption.
+    A name says what the figure shows, such as tracking-error-by-controller. It begins with the figure's number in the
+    source if it has one, such as figure-3-5, and ends with -2, -3, ... if an earlier figure shows the same.
     """
     document = in_readable_units(color_series(document))
-    places = Places(document)
-    return {
-        f"{places.of(block)}-{_slug(block.caption)}".strip("-"): block
-        for block in blocks(document)
-        if isinstance(block, Curves | Maps | Picture | Playback)
-    }
+    named: dict[str, Figure] = {}
+    for block in blocks(document):
+        if isinstance(block, Curves | Maps | Picture | Playback):
+            whole = f"{numbered_place(block.origin.number, 'figure')} {_content(block)}"
+            name = "-".join(_WORD.findall(whole.lower()))[:_LONGEST].strip("-") or "figure"
+            several = sum(each == name or re.fullmatch(rf"{name}-\d+", each) is not None for each in named)
+            named[f"{name}-{several + 1}" if several else name] = block
+    return named
+
+
+def _content(figure: Figure) -> str:
+    """Return what a figure shows in a few words: the quantities of its axes, or the beginning of its caption."""
+    if isinstance(figure, Playback):
+        return "motion"
+    if isinstance(figure, Picture):
+        return plain_caption(figure.caption).partition(". ")[0]
+    if isinstance(figure, Curves):
+        shown, across = [panel.y_label for panel in figure.panels], [panel.x_label for panel in figure.panels]
+    else:
+        shown = [f"map of {figure.value_label}"]
+        across = [label for panel in figure.panels for label in (panel.x_label, panel.y_label)]
+    what, over = _joined(shown), _joined(across)
+    return f"{what} {'over' if over == 'time' else 'by'} {over}" if over else what
+
+
+def _joined(labels: Sequence[str]) -> str:
+    """Return the quantities of labels, each once; words with which all begin are there once, too."""
+    names = [name.split() for name in dict.fromkeys(_UNIT_OF_LABEL.sub("", label) for label in labels)]
+    shared = sum(1 for _ in itertools.takewhile(lambda words: len(set(words)) == 1, zip(*names, strict=False)))
+    return " and ".join(filter(None, map(" ".join, [*names[:1], *(name[shared:] for name in names[1:])])))
+
+
+def plain_caption(caption: str) -> str:
+    """Return a caption without markup; its mathematics as Typst has it."""
+    return "".join(span.text for span in spans(caption))
+
+
+def for_paper(figure: Figure) -> tuple[Figure, str]:
+    """Return a figure without titles, and its caption, which says what each panel shows."""
+    caption = plain_caption(figure.caption).strip()
+    match figure:
+        case Curves():
+            panels, titles = _lettered(figure.panels)
+            return replace(figure, panels=panels), caption + titles
+        case Maps():
+            maps, titles = _lettered(figure.panels)
+            return replace(figure, panels=maps), caption + titles
+    return figure, caption
+
+
+def _lettered(panels: Sequence[Axes]) -> tuple[list[Axes], str]:
+    """Return panels with letters for titles, none if there is one panel, and what to add to the caption."""
+    letters = [f"({chr(ord('a') + place % 26)})" if len(panels) > 1 else "" for place in range(len(panels))]
+    titles = [f"{letter} {panel.title}".strip() for letter, panel in zip(letters, panels, strict=True) if panel.title]
+    untitled = [replace(panel, title=letter) for letter, panel in zip(letters, panels, strict=True)]
+    return untitled, f" {'; '.join(titles)}." if titles else ""
 
 
 def choose_figures(figures: Mapping[str, Figure], only: str | None) -> dict[str, Figure]:
@@ -61,13 +117,15 @@ def choose_figures(figures: Mapping[str, Figure], only: str | None) -> dict[str,
 
 
 def write_figures(figures: Mapping[str, Figure], folder: Path, sheet: Sheet) -> Iterator[str]:
-    """Write each figure as NAME.svg, NAME.pdf and, where it has points, NAME.csv; yield the names one by one.
+    """Write each figure as NAME.svg and NAME.pdf, its caption as NAME.txt and its points as NAME.csv; yield the names.
 
     Raises:
         StoreError: If the disk does not take them.
     """
     for name, figure in figures.items():
-        svg, pdf = _drawn(figure, sheet)
+        untitled, caption = for_paper(figure)
+        svg, pdf = _drawn(untitled, sheet)
+        write_atomically(folder / f"{name}.txt", f"{caption}\n".encode("utf-8", errors="replace"))
         write_atomically(folder / f"{name}.svg", svg.encode("utf-8", errors="replace"))
         write_atomically(folder / f"{name}.pdf", pdf)
         points = as_csv(figure)
@@ -107,12 +165,6 @@ def _as_pdf(svg: str) -> bytes:
         source = '#set page(width: auto, height: auto, margin: 0pt)\n#image("drawing.svg")\n'
         (folder / "page.typ").write_text(source, encoding="utf-8")
         return typst.compile(folder / "page.typ", root=folder, format="pdf", ignore_system_fonts=True, timestamp=0)
-
-
-def _slug(caption: str) -> str:
-    """Return the first words of a caption as a part of a file's name; its numbers may be results, and are left out."""
-    text = " ".join(span.text for span in spans(caption) if not (span.math or span.anchor))
-    return "-".join(re.findall(r"(?<![\w.])[a-z]+(?!\w)", text.partition(". ")[0].lower())[:_WORDS])
 
 
 def as_csv(figure: Figure) -> bytes | None:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from runner.base.quantities import ROUNDING
+from runner.base.quantities import ROUNDING, SUPERSCRIPT, unit_text
 from runner.reporting.export.columns import Column, Unit, column
 from runner.reporting.export.pooling import Pooled, pool
 from runner.reporting.metric_titles import title
@@ -42,6 +42,30 @@ class PaperTable:
         if len(set().union(*rows)) <= 1:
             return ()
         return [", ".join(map(str, sorted(counts))) for counts in rows]
+
+    @property
+    def lines(self) -> list[list[str]]:
+        """The head and the rows as plain texts, a median with its interval as "4.1 [3.9, 4.4]"."""
+        counts = self.counts
+        lines = [[*self.heads, *map(_head, self.columns), *(["n"] if counts else [])]]
+        for row, labels in enumerate(self.labels):
+            cells = [each.cells[row] for each in self.columns]
+            numbers = [f"{cell.median} [{cell.low}, {cell.high}]" if cell.low else cell.median for cell in cells]
+            names = [unit_name(label) if isinstance(label, Unit) else label for label in labels]
+            lines.append([*names, *numbers, *([counts[row]] if counts else [])])
+        return lines
+
+
+def _head(column: Column) -> str:
+    unit = unit_name(column.unit)
+    untitled = "median [95 % interval]" if column.has_intervals else "median"
+    return f"{column.title} ({unit})" if unit else column.title or untitled
+
+
+def unit_name(unit: Unit) -> str:
+    """Return a unit as it is read, such as "10⁻⁶ N m"; nothing for 1."""
+    power = f"10{str(unit.power).translate(SUPERSCRIPT)}" if unit.power else ""
+    return f"{power} {unit_text(str(unit))}".strip()
 
 
 def of_sweep(

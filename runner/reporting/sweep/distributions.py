@@ -47,7 +47,14 @@ def _shares(subject: Subject, metric: str, axis: Axis) -> Panel:
         name = axis.text(first) + (f" to {axis.text(last)}" if last > first else "")
         series.append(Series(name, x, y))
     title = f"by {axis.name}"
-    return Panel(title, subject.label(metric), "share", series, x_log=spans_decades(values.ravel()), y_range=(0, 1.02))
+    return Panel(
+        title,
+        subject.label(metric),
+        "share of repetitions",
+        series,
+        x_log=spans_decades(values.ravel()),
+        y_range=(0, 1.02),
+    )
 
 
 def _distribution(values: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import label_with_unit, number
+from runner.base.quantities import number
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.charts.scales import EQUAL, widen_range
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
@@ -24,7 +24,10 @@ _MOST_OF_IT = 0.5  # share of the spread from which on the draws are named
 
 def section(subject: Subject) -> Section:
     """Return what each axis does to each metric."""
-    blocks: list[Block] = [_table(subject.effects), Text(_explained(subject.effects)), *_main_effects(subject)]
+    told = Text(
+        f"{_explained(subject.effects)} {QUANTILE_RULE} No point is drawn where half of the runs or more failed."
+    )
+    blocks: list[Block] = [_table(subject.effects), told, *_main_effects(subject)]
     many = [axis.name for axis in subject.axes if len(axis.values) > MOST_GROUPS]
     if many:
         blocks.insert(2, Text(literal(f"{', '.join(many)}: taken in {MOST_GROUPS} groups of neighbouring values.")))
@@ -96,25 +99,26 @@ def _on_chance(tests: int) -> str:
 
 def _main_effects(subject: Subject) -> list[Curves]:
     """Return a figure for each metric, with a panel for each axis."""
-    told = (
-        ": median of all repetitions at each value of an axis, over the values of the others; shaded, or a bar, the "
-        f"half of them between the quartiles. {QUANTILE_RULE} No point stands where half of the runs or more failed."
-    )
     figures: list[Curves] = []
     for metric in subject.metrics[:3]:
         panels = [_main_effect(subject, metric, axis) for axis in subject.axes]
-        caption = literal(f"{capital(title(metric))} and each axis{'.' if figures else told}")
-        figures.append(Curves(caption, panels, columns=len(panels) if len(panels) <= 4 else 3))
+        sizes = [
+            _at_level(subject, metric, axis, level).size for axis in subject.axes for level in range(len(axis.values))
+        ]
+        n = f"n = {min(sizes)}" if len(set(sizes)) == 1 else f"n = {min(sizes)} to {max(sizes)}"
+        caption = (
+            f"{capital(title(metric))} and each axis: median of all repetitions at each value ({n}); shaded, or a bar, "
+            "the half of them between the quartiles."
+        )
+        figures.append(Curves(literal(caption), panels, columns=len(panels) if len(panels) <= 4 else 3))
     return figures
 
 
 def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
-    values = subject.measurements.values[metric]
     shown = spaced_indices(len(axis.values), _MOST_LEVELS)
     quartiles = np.full((3, len(shown)), np.nan)
     for place, level in enumerate(shown):
-        pooled = values[axis.level == level]
-        pooled = pooled[~np.isnan(pooled)]
+        pooled = _at_level(subject, metric, axis, level)
         if pooled.size:
             low, high = np.quantile(pooled, (0.25, 0.75), method="inverted_cdf")
             quartiles[:, place] = low, np.median(pooled), high  # the median as in all tables
@@ -124,8 +128,14 @@ def _main_effect(subject: Subject, metric: str, axis: Axis) -> Panel:
     series = [Series("", x, median, "points_line", low, high, color=0)]
     if axis.numbers is None:
         series = at_texts(series[0])
-    unit = subject.measurements.units[metric]
-    return axis_panel("", axis, label_with_unit("median", unit), series, quartiles)
+    return axis_panel("", axis, subject.label(metric), series, quartiles)
+
+
+def _at_level(subject: Subject, metric: str, axis: Axis, level: int) -> FloatArray:
+    """Return the values of a metric in all repetitions at a value of an axis, shape (n,)."""
+    values: FloatArray = subject.measurements.values[metric][axis.level == level]
+    present: FloatArray = values[~np.isnan(values)]
+    return present
 
 
 def _percent(share: float) -> str:

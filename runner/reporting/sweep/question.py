@@ -14,7 +14,7 @@ from runner.reporting.comparison.sweeps import compare_levels
 from runner.reporting.document import Block, Curves, Section, Table, Text
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, first_screen, title
-from runner.reporting.sweep.subject import Subject
+from runner.reporting.sweep.subject import Subject, key_label
 from runner.statistics import SMALLEST_SAMPLE
 from runner.store.axes import Axis
 
@@ -60,12 +60,20 @@ def _figure(answers: Sequence[Answer]) -> Curves:
         shown = [one for one in (overall if several else answers) if one.metric == metric]
         names = [one.names[1] if several else ", ".join(one.at.values()) or "all" for one in shown]
         kept = spaced_indices(len(shown), _MOST_COLUMNS)
-        across = "" if several else ", ".join(next((one.at for one in shown if one.at), {}))
+        across = (
+            "value compared" if several else ", ".join(map(key_label, next((one.at for one in shown if one.at), {})))
+        )
         panels.append(difference_panel([(names[place], shown[place]) for place in kept], across))
     first, second = answers[0].names
     what = f"each minus {first}" if several else f"{second} minus {first}"
-    told = f"Differences, {what}: a dot for each pair, a bar for the interval; zero is no difference."
-    return Curves(literal(told), panels)
+    pairs = sorted({one.comparison.n for one in overall})
+    n = " to ".join(str(count) for count in dict.fromkeys([pairs[0], pairs[-1]]))
+    levels = "" if several or len(answers) == len(overall) else " and at each level"
+    caption = (
+        f"Differences, {what}, over all {n} pairs{levels}: a dot for each pair; point and bar are the "
+        "Hodges-Lehmann estimate and its interval, at the level of the signed-rank test corrected by Holm."
+    )
+    return Curves(literal(caption), panels)
 
 
 def causes(subject: Subject, answers: Sequence[Answer]) -> list[str]:

@@ -14,15 +14,18 @@ def test_the_figures_of_a_run_lie_beside_its_report(cli, copy_run):
     assert ending.folder.name == "figures"
     assert ending.folder.parent == cli("report", made, "--format", "html").folder
     listed = ending.out.splitlines()[:-1]
-    assert names(ending.folder) >= {f"{name}.{kind}" for name in listed for kind in ("svg", "pdf", "csv")}
+    assert names(ending.folder) >= {f"{name}.{kind}" for name in listed for kind in ("svg", "pdf", "csv", "txt")}
+    assert (listed[0], listed[-1]) == ("torque-and-tip-error-over-time", "motion")
+    caption = (ending.folder / f"{listed[0]}.txt").read_text()
+    assert caption.endswith("repetition 0. (a) Torque of each joint; (b) Tip position error.\n")
 
 
 def test_a_figure_of_a_sweep_is_made_again_in_the_width_asked_for(cli, copy_sweep, tmp_path):
     swept = copy_sweep("goal", "other seed")
-    ending = cli("figures", swept, "--width", "double", "--output", tmp_path / "papers", "--only", "s1-figure-2")
+    ending = cli("figures", swept, "--width", "double", "--output", tmp_path / "papers", "--only", "largest")
     assert ending.folder == tmp_path / "papers"
     (name,) = ending.out.splitlines()[:-1]
-    assert names(tmp_path / "papers") == {f"{name}.svg", f"{name}.pdf", f"{name}.csv"}
+    assert names(tmp_path / "papers") == {f"{name}.{kind}" for kind in ("svg", "pdf", "csv", "txt")}
     before = {path.name: path.read_bytes() for path in (tmp_path / "papers").iterdir()}
     cli("figures", swept, "--width", "180mm", "--output", tmp_path / "papers", "--only", name)
     assert {path.name: path.read_bytes() for path in (tmp_path / "papers").iterdir()} == before
@@ -92,4 +95,4 @@ def test_an_unknown_figure_is_told_with_those_that_there_are(cli, copy_run):
     ending = cli("figures", copy_run("goal"), "--only", "figure-9")
     assert ending.code == 2
     assert "--only: no figure 'figure-9'" in ending.err
-    assert "s1-figure-1-torque-of-each-joint-and-tip" in ending.err
+    assert "torque-and-tip-error-over-time" in ending.err

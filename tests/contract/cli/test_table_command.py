@@ -76,10 +76,10 @@ def test_a_run_has_a_table_of_its_metrics(cli, a_run):
     [
         (
             ("--format", "latx"),
-            "--format: unknown name 'latx'. Allowed: csv, parquet, markdown, latex. Did you mean 'latex'?",
+            "--format: unknown name 'latx'. Allowed: csv, parquet, markdown, latex, typst. Did you mean 'latex'?",
         ),
         (("--format", "parquet"), "--format: Parquet cannot be printed. Add --output FILE."),
-        (("--output", "t.txt"), "--output t.txt: unknown ending '.txt'. Allowed: .csv, .parquet, .md, .tex."),
+        (("--output", "t.txt"), "--output t.txt: unknown ending '.txt'. Allowed: .csv, .parquet, .md, .tex, .typ."),
         (("--metrics", "peak_torq"), "metrics: unknown metric 'peak_torq'. Allowed: "),
         (("--by", "robot"), "--by: unknown axis 'robot'"),
         (("--where", "controller=pid"), "--where controller: unknown value 'pid'"),

@@ -82,7 +82,7 @@ def test_each_cell_stands_in_the_figure_with_its_interval(document):
     assert points.y == pytest.approx([0.25] * 4)
     assert np.nanmax(zero.y) == 0.0
     assert interval.y[2::3] == pytest.approx([np.nan] * 4, nan_ok=True)
-    assert panel.y_label == "difference (m)"
+    assert panel.y_label == "difference in rms tracking error (m)"
     assert list(panel.x_names) == ["1", "2", "3", "4"]
     cells = next(block for block in parts(document.sections, Table) if block.caption == "The cells of the figure.")
     assert list(cells.rows[3]) == ["4", "xarm7", "9.81"]

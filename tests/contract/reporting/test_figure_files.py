@@ -11,7 +11,7 @@ from support.sample_document import HOSTILE, SVG, curves, document, maps, playba
 from runner.base.errors import RunnerError
 from runner.reporting.charts.sheet import column
 from runner.reporting.document import Curves, Document, Maps, Origin, Panel, Picture, Section, Series
-from runner.reporting.export.figures import as_csv, choose_figures, figures_of, write_figures
+from runner.reporting.export.figures import as_csv, choose_figures, figures_of, for_paper, write_figures
 
 SHEETS = {88.0: column(88.0), 180.0: column(180.0)}
 POINTS = 72.0 / 25.4  # in a millimetre
@@ -43,13 +43,23 @@ def size_of(pdf):
 
 
 def test_each_figure_has_its_files_and_is_named_as_in_the_report(tmp_path):
-    blocks = [curves("Torque of each joint, over time. More."), maps("m", origin=Origin("3.5")), playback(),
-              Picture("The frames.", SVG, "alt")]  # fmt: skip
+    x = np.linspace(0.0, 1.0, 5)
+    panels = [Panel("", "time (s)", f"{word} (N m)", [Series("", x, x)]) for word in ("largest torque", "largest load")]
+    blocks = [Curves("Both.", panels), Curves("Both.", panels), maps("m", origin=Origin("3.5")), playback(),
+              Picture("The frames. More.", SVG, "alt")]  # fmt: skip
     names = written(tmp_path, blocks)
-    assert names == ["s1-figure-1-torque-of-each-joint-over-time", "figure-3-5-m", "s1-figure-3-it-moves",
-                     "s1-figure-4-the-frames"]  # fmt: skip
+    both = "largest-torque-and-load-over-time"
+    assert names == [both, f"{both}-2", "figure-3-5-map-of-m-by-m", "motion", "the-frames"]
     kinds = {name: sorted(path.suffix for path in tmp_path.glob(f"{name}.*")) for name in names}
-    assert list(kinds.values()) == [[".csv", ".pdf", ".svg"]] * 3 + [[".pdf", ".svg"]]
+    assert list(kinds.values()) == [[".csv", ".pdf", ".svg", ".txt"]] * 4 + [[".pdf", ".svg", ".txt"]]
+
+
+def test_titles_of_panels_are_in_the_caption_and_letters_in_the_figure():
+    figure, caption = for_paper(maps("m $$ $omega$"))
+    assert [panel.title for panel in figure.panels] == ["(a)", "(b)"]
+    assert caption == "m $ omega (a) m $$ $omega$; (b) m $$ $omega$."
+    assert for_paper(curves("m", panels=[curves("m").panels[0]]))[1] == "m m."
+    assert for_paper(playback())[1] == "It moves."
 
 
 @pytest.mark.parametrize("width", SHEETS)
@@ -85,7 +95,7 @@ def test_nothing_is_transparent(tmp_path):
 def test_a_drawing_is_made_smaller_and_never_larger(tmp_path):
     wide = SVG.replace('width="40" height="20"', 'width="400pt" height="200pt"').replace("<path", "<g ></g><path")
     small = wide.replace("400pt", "40pt").replace("200pt", "20pt")
-    written(tmp_path, [Picture("wide", wide, ""), Picture("small", small, "")])
+    written(tmp_path, [Picture("first wide", wide, ""), Picture("second small", small, "")])
     first, second = (size_of(path.read_bytes()) for path in sorted(tmp_path.glob("*.pdf")))
     assert first == pytest.approx([88.0 * POINTS, 44.0 * POINTS], abs=0.1)
     assert second == pytest.approx([40.0, 20.0], abs=0.1)
@@ -112,9 +122,9 @@ def test_any_text_in_any_field_is_drawn(tmp_path):
 
 
 def test_one_figure_may_be_asked_for():
-    figures = figures_of(report(curves("One."), curves("Two.", origin=Origin("2.1")), maps("Three")))
-    assert list(choose_figures(figures, "figure-2-1")) == ["figure-2-1-two"]
-    assert list(choose_figures(figures, "s1-figure-1-one")) == ["s1-figure-1-one"]
+    figures = figures_of(report(curves(), curves(origin=Origin("2.1")), maps("Three")))
+    assert list(choose_figures(figures, "figure-2-1")) == ["figure-2-1-error-by-error"]
+    assert list(choose_figures(figures, "error-by-error")) == ["error-by-error"]
     assert list(choose_figures(figures, None)) == list(figures)
     with pytest.raises(RunnerError, match="no figure 'figure-2-2'") as told:
         choose_figures(figures, "figure-2-2")

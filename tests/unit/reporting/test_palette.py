@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from runner.reporting.charts import palette
+from runner.reporting.charts.static import COLOR_MARKS
 
 # Machado, Oliveira, Fernandes: A Physiologically-based Model for Simulation of Color Vision Deficiency, IEEE TVCG 2009,
 # table 1, severity 1.0; they act on linear red, green and blue.
@@ -35,6 +36,14 @@ def lab(rgb):
 
 def luminance(color):
     return float(TO_XYZ[1] @ linear(color))
+
+
+def test_no_two_colours_of_a_figure_for_print_share_their_grey_and_their_mark():
+    greys = [lab(np.full(3, luminance(color)))[0] for color in palette.LIGHT]
+    pairs = list(itertools.combinations(range(len(greys)), 2))
+    alike = [(one, other) for one, other in pairs if abs(greys[one] - greys[other]) < APART]
+    assert alike  # eight colours do not all differ in grey, so that marks are needed
+    assert all(COLOR_MARKS[one] != COLOR_MARKS[other] for one, other in alike)
 
 
 def test_the_measure_knows_black_from_white():
