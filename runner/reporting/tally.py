@@ -9,8 +9,7 @@ from runner.reporting.document import Block, ClaimResult, Document, Equations, V
 from runner.reporting.equation import FOLDED, SHOWN
 from runner.reporting.outline import blocks, claim_place, verdict_place
 from runner.reporting.published_claims import CONTRADICTION
-
-_OF_SEVERAL = {"matches": "match", "differs": "differ"}
+from runner.reporting.verdicts import WORDS
 
 
 class Square(NamedTuple):
@@ -50,7 +49,7 @@ class Tally:
         total = sum(count for _, count in self.counts)
         for verdict, count in self.counts:
             number = f"{count}{'' if told else f' of {total}'}{':' * (verdict == CONTRADICTION)}"
-            told.append(f"{number} {_OF_SEVERAL.get(verdict, verdict) if count > 1 else verdict}")
+            told.append(f"{number} {(count > 1 and WORDS[verdict].plural) or verdict}")
         return ", ".join(told)
 
 

@@ -12,24 +12,8 @@ from runner.reporting.document import Origin
 from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, name_text, of_verdict
 from runner.reporting.markup import spans
 from runner.reporting.outline import verdict_place
+from runner.reporting.verdicts import WORDS
 
-VERDICT_SIGNS = {
-    "matches": "=",
-    "differs": "≠",
-    "smaller than printed": "<",
-    "larger than printed": ">",
-    "source contradicts itself": "!",
-    "undecided": "?",
-    "correct": "✓",
-    "correct after emendation": "✓",
-    "wrong as printed": "✕",
-    "unreadable": "?",
-    "definition": "–",
-    "refused": "✕",
-    "fixed": "!",
-    "note": "–",
-}
-"""A sign beside each verdict, for readers who see no colours."""
 _SIZE = re.compile(r'viewBox="[-\d.]+ [-\d.]+ ([\d.]+) ([\d.]+)"')
 
 
@@ -126,5 +110,5 @@ def _environment(**options: Any) -> jinja2.Environment:
         "by_place": by_place,
         "verdict_place": verdict_place,
     }
-    environment.globals |= {"verdict_signs": VERDICT_SIGNS, "shown_verdicts": SHOWN, "folded_verdicts": FOLDED}
+    environment.globals |= {"verdict_words": WORDS, "shown_verdicts": SHOWN, "folded_verdicts": FOLDED}
     return environment

@@ -27,6 +27,8 @@ from runner.reporting.document import (
     Text,
 )
 from runner.reporting.markup import literals, mark_text
+from runner.reporting.metric_titles import capital
+from runner.reporting.verdicts import WORDS
 from runner.simulation import provenance
 
 COMMAND = "runner reproduce audit"
@@ -34,11 +36,7 @@ DATA = "equations.csv"
 """Name of the table of all equations, which stands beside the report."""
 
 _PANELS = 4  # panels of a figure
-_WORDS = (
-    "Correct: equal to both derivations, but for rounding, at every configuration tried. Correct after emendation: so "
-    "once damage of the text is emended. Wrong as printed: not so; the right form follows, with what differs marked. "
-    "Unreadable: too much of the text is lost. Definition: it only names things."
-)
+_WORDS = " ".join(f"{capital(verdict)}: {WORDS[verdict].meaning}." for verdict in VERDICTS)
 
 
 def audit_document(checked: Mapping[str, Sequence[CheckedEquation]]) -> Document:

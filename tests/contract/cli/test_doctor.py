@@ -70,7 +70,7 @@ def test_the_page_shows_robot_and_findings(cli, tmp_path):
     page = (tmp_path / "page/report.html").read_text()
     assert '<figure class="playback' in page
     assert "--name gives another" in page
-    assert 'class="badge note"' in page
+    assert 'class="badge none"' in page
     assert ">0 s<" not in page
 
 

@@ -11,7 +11,7 @@ from runner.reporting import formulas, html, outline
 from runner.reporting.audit.report import audit_document
 from runner.reporting.document import Curves, Equations, Table
 from runner.reporting.tally import tallies
-from runner.reporting.templating import VERDICT_SIGNS
+from runner.reporting.verdicts import WORDS
 
 
 @pytest.fixture(scope="module")
@@ -125,4 +125,4 @@ def test_the_page_leads_to_the_table_beside_it(page):
 
 
 def test_every_verdict_has_a_sign():
-    assert set(VERDICTS) <= set(VERDICT_SIGNS)
+    assert set(VERDICTS) <= set(WORDS)
