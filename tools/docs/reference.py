@@ -7,7 +7,8 @@ page says what the code does; a test fails where it is stale.
 import argparse
 import inspect
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -100,15 +101,15 @@ def _keys() -> Iterator[str]:
     yield _table("", CalibrationSettings, _read("calibrate"))
     yield "### robot\n\n" + _options("robot")
     defaults = _read("robot_defaults")["robot"]
-    yield _table("robot", OneArmConfig, defaults)
-    yield "A robot of several arms has `robot.stages.NAME` for each, instead of the keys of one arm:\n\n"
-    yield _table("robot.stages.NAME", StageConfig, {**defaults, "mount": None})
+    one, stage = _rows("robot", OneArmConfig, defaults), _rows("robot", StageConfig, {**defaults, "mount": None})
+    yield "A robot of several arms has these keys in `robot.stages.NAME` of each.\n\n"
+    yield _merged({"one arm": [*one], "several arms": [*stage]})
     kinds = {group: known for group, known in GROUPS.items() if isinstance(known, Kinds) and known.default is None}
     for group, registry in {**kinds, "calibration": CALIBRATIONS}.items():
         yield f"### {group}\n\n" + _options(group)
-        for kind in (kind for kind in registry.names() if registry.is_ours(kind)):
-            yield f"#### {group}.kind: {kind}\n\n"
-            yield _table(group, registry.config_model(kind), _of_kind(group, kind))
+        rows = {kind: [*_kind_rows(group, kind, registry)] for kind in registry.names() if registry.is_ours(kind)}
+        yield "Keys by `kind`:\n\n" + "".join(f"- `{kind}`: {_keys_of(own)}\n" for kind, own in rows.items()) + "\n"
+        yield _merged(rows)
         if group == "controller":
             yield "#### controller: one function\n\n"
             yield "A [function](plugins.md#a-law-as-one-function) has the keys of its arguments, and:\n\n"
@@ -151,9 +152,43 @@ def _read(name: str) -> dict[str, Any]:
 
 
 def _table(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> str:
-    rows = ["| Key | Meaning | Allowed | Default |", "|---|---|---|---|"]
-    rows += [f"| {' | '.join(_cell(cell) for cell in row)} |" for row in _rows(group, model, defaults)]
-    return "\n".join(rows) + "\n\n"
+    return _lines(_rows(group, model, defaults))
+
+
+def _kind_rows(group: str, kind: str, registry: "Kinds[Any]") -> Iterator[tuple[str, str, str, str]]:
+    """Yield the rows of a kind's keys, without the key that names the kind."""
+    rows = _rows(group, registry.config_model(kind), _of_kind(group, kind))
+    yield from (row for row in rows if row[0] != f"`{group}.kind`")
+
+
+def _lines(rows: Iterable[Sequence[str]]) -> str:
+    lines = ["| Key | Meaning | Allowed | Default |", "|---|---|---|---|"]
+    lines += [f"| {' | '.join(_cell(cell) for cell in row)} |" for row in rows]
+    return "\n".join(lines) + "\n\n"
+
+
+def _keys_of(rows: Iterable[Sequence[str]]) -> str:
+    """Return the names of keys below their group, without the keys below them."""
+    return ", ".join(dict.fromkeys(f"`{key.strip('`').split('.')[1]}`" for key, *_ in rows))
+
+
+def _merged(rows: Mapping[str, Sequence[tuple[str, str, str, str]]]) -> str:
+    """Return one table of the keys of several kinds; kinds are named at a key that differs between them."""
+    defaults: dict[tuple[str, str, str], dict[str, list[str]]] = {}
+    for kind, own in rows.items():
+        for *meaning, default in own:
+            key, said, allowed = meaning
+            defaults.setdefault((key, said, allowed), {}).setdefault(default, []).append(kind)
+    having = Counter(key for own in rows.values() for key in {row[0] for row in own})
+    merged = []
+    for (key, said, allowed), by_default in sorted(defaults.items(), key=lambda item: item[0][0].strip("`")):
+        kinds = [kind for some in by_default.values() for kind in some]
+        of_kinds = f" ({', '.join(kinds)})" if len(kinds) < having[key] else ""
+        values = [
+            value if len(by_default) == 1 else f"{value} ({', '.join(some)})" for value, some in by_default.items()
+        ]
+        merged.append((key + of_kinds, said, allowed, ", ".join(values)))
+    return _lines(merged)
 
 
 def _cell(text: str) -> str:
