@@ -10,7 +10,7 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, get_origin
 
 import yaml
 
@@ -202,7 +202,7 @@ def _rows(group: str, model: type[StrictModel], defaults: Mapping[str, Any]) -> 
         inner = nested_model(field.annotation)
         given = defaults.get(name, None if field.is_required() else field.get_default())
         if inner is not None and isinstance(given, Mapping):
-            yield from _rows(key, inner, given)
+            yield from _rows(f"{key}.NAME" if get_origin(field.annotation) is dict else key, inner, given)
             continue
         default = "must be given" if name not in defaults and field.is_required() else f"`{_inline(given)}`"
         yield f"`{key}`", _null(said[name]), describe(field.annotation, field.metadata), default
