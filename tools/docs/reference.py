@@ -39,7 +39,10 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "reference.md"
 _HEAD = """\
 # Reference
 
-All config keys, metrics and commands. Made by `python -m tools.docs.reference` from the models: do not edit.
+All config keys, metrics and commands, from the models by `python -m tools.docs.reference`. The command line has them:
+
+    $ runner --cfg job robot=macro
+    $ runner list metrics
 
 Units are SI, angles in rad; prismatic joints use m instead of rad. A default such as `${robot.period}` is the value
 of another key. "By stage" means one value for a robot of one arm, and a mapping with one for each stage of several
