@@ -36,10 +36,10 @@ their true values. `letters` sets names as the source does, and `indices` gives 
     indices: {i: [1, 2, 3]}
     letters: {"R[i]": "attach(R, tl: 0, br: i)", dq: dot(q)}    # in Typst mathematics
 
-If a source has a text that a machine can read, `read: thesis_appendix.read_1` names the function that returns
-`elements` from it. `math` contains a definition in Typst. If no expression has the value of an equation, `math` shows
-it and `code: xarm7.left_inverse` names the function that evaluates it. The verdict is never stored: `verdict.py`
-computes it.
+If a source has a text that a machine can read, `read: thesis_appendix.read_1` under `printed` names the function that
+returns `elements` from it. An emendation can have `replace: {h_12: {1/40000*c1: 1/4000*c1}}` instead of elements.
+`math` contains a definition in Typst. If no expression has the value of an equation, `math` shows it and
+`code: xarm7.left_inverse` names the function that evaluates it. The verdict is never stored: `verdict.py` computes it.
 """
 
 import re
@@ -55,6 +55,7 @@ from runner.audit.evaluation import Numbered, Values
 from runner.audit.sources import Source, Where, derivation_of, source_of
 from runner.base.arrays import FloatArray
 from runner.base.data_file import read_data
+from runner.base.errors import RunnerError
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
 from runner.base.expressions.tree import Name, Node, at_places
@@ -90,13 +91,11 @@ class Form(StrictModel):
 
     Attributes:
         elements: Right side of each equation, by its left side.
-        read: Function of equations/derivations that returns the elements, read from the source's own text.
         math: The equation in Typst mathematics, if it defines a name, or if no expression has its value.
         code: Function of equations/derivations that returns what `math` says at the samples.
     """
 
     elements: dict[str, Written] = Field(default_factory=dict)
-    read: str = ""
     math: str = ""
     code: str = ""
 
@@ -109,7 +108,7 @@ class Form(StrictModel):
                 left_side(name)
             except ExpressionError as error:
                 raise ValueError(f"'{name}' is no left side of an equation: {error}") from error
-        if not (self.elements or self.read or self.math):
+        if not any(value for name, value in self if name not in ("code", "why")):
             raise ValueError("has neither elements nor math: nothing to show")
         return self
 
@@ -122,14 +121,42 @@ class Form(StrictModel):
             return False
 
 
+class Printed(Form):
+    """The form in the source.
+
+    Attributes:
+        read: Function of equations/derivations that returns the elements, read from the source's own text.
+    """
+
+    read: str = ""
+
+
 class Emendation(Form):
     """A form emended where the text, not the author, is at fault.
 
     Attributes:
         why: What was emended, and how we know.
+        replace: Parts of the printed elements, by element, each with what must stand there; the rest is as printed.
     """
 
     why: str
+    replace: dict[str, dict[str, str]] = Field(default_factory=dict)
+
+    def applied(self, elements: Mapping[str, str]) -> dict[str, str]:
+        """Return the printed elements with the parts replaced.
+
+        Raises:
+            RunnerError: If a part is not once in its element.
+        """
+        found = dict(elements)
+        for name, parts in self.replace.items():
+            for old, new in parts.items():
+                if (count := found.get(name, "").count(old)) != 1:
+                    raise RunnerError(
+                        f"emendation: replace: '{old}' is {count} times in '{name}' as printed; allowed: 1"
+                    )
+                found[name] = found[name].replace(old, new)
+        return found
 
 
 class Entry(StrictModel):
@@ -158,7 +185,7 @@ class Entry(StrictModel):
     number: str
     place: str
     title: str
-    printed: Form
+    printed: Printed
     emendation: Emendation | None = None
     corrected: Form | None = None
     derivation: str = ""
@@ -176,13 +203,13 @@ class Entry(StrictModel):
         return self.corrected or self.emendation or self.printed
 
     def as_read(self, source: Source) -> "Entry":
-        """Return the same with the elements of forms that a function reads."""
-        changed = {
-            name: form.model_copy(update={"elements": derivation_of(source, form.read)()})
-            for name in ("printed", "emendation", "corrected")
-            if (form := getattr(self, name)) is not None and form.read
-        }
-        return self.model_copy(update=changed)
+        """Return the same with the elements that a function reads, and with the parts replaced that are emended."""
+        printed, emendation = self.printed, self.emendation
+        if printed.read:
+            printed = printed.model_copy(update={"elements": derivation_of(source, printed.read)()})
+        if emendation and emendation.replace:
+            emendation = emendation.model_copy(update={"elements": emendation.applied(printed.elements)})
+        return self.model_copy(update={"printed": printed, "emendation": emendation})
 
     def equations(self, form: Form) -> Iterator[tuple[str, Numbered]]:
         """Yield the left and right sides of a form's equations, for each number that a letter stands for."""

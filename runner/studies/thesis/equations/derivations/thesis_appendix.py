@@ -1,204 +1,81 @@
-"""Thesis appendix compared with the true dynamics of the six-joint arm, by torque and term.
+"""Equations of motion of the six-joint arm, read from the text of the thesis' appendix.
 
-The torques of such a chain are trigonometric polynomials in the joint positions, times products of two velocities or
-an acceleration. The model evaluates them on a sufficiently fine grid. A discrete Fourier transform gives their
-coefficients, the true values of the printed terms.
+The appendix writes each torque as a sum of groups, "(sum of terms) * product of velocities" or "... * acceleration",
+and of gravity terms. A term is a fraction times the sine or cosine of a sum of joint positions. In the elements, `h_12`
+is the group of dq1 dq2, `a_1` that of ddq1, and `g` is gravity.
+
+Four kinds of damage are emended to read a row: a lost bracket of a group (it begins after the group before it, or ends
+before its factor), a factor without the letter v or a ("q3^2" is a velocity, a lone "q1" an acceleration), a number
+raised ("qv^2" for qv2), and a lost or stray product sign in an argument. Other characters are left out.
 """
 
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
-from fractions import Fraction
-from functools import cache
-from itertools import combinations_with_replacement, product
+from functools import cache, partial
+from pathlib import Path
 
-import numpy as np
+_TERM = re.compile(r"([+-]?)(\d+(?:/\d+)?(?:\*(?=[sc]))?)?((?:sin|cos)\([-+*\dq]*\))?")
+_OPENING = re.compile(r"[+-]?\(")
+_FACTOR = re.compile(r"(?P<bracket>\)?)\*(?P<first>q[va]?\^?\d)(?P<square>\^2)?(?:\*(?P<second>q[va]?\^?\d))?(?![\d^])")
 
-from runner.base.arrays import FloatArray
-from runner.robots.model import RobotModel
-from runner.studies.thesis.equations.appendix import JOINTS, Appendix, Harmonic, Term, read_appendix
-from runner.studies.thesis.equations.derivations.thesis_arms import COMBINED
-
-_POINTS = 5  # along each joint position: a harmonic of at most twice the angle needs 2 * 2 + 1
-_TOLERANCE = 1e-9  # of a coefficient; the smallest that is not zero is 1/32000
-_DENOMINATOR = 1_000_000  # more than the largest of a true coefficient
-_TORQUES = range(1, JOINTS + 1)
-_WRITTEN = re.compile(r"([+-]) (\d+(?:/\d+)?)(.*)")
-
-Series = dict[tuple[int, str], dict[Harmonic, float]]
-"""True coefficients by torque (1 to 6), factor of the group, and harmonic."""
-
-
-@dataclass(frozen=True)
-class Damage:
-    """A term of a torque's group as read, None where it is lost, and the true harmonic, None for nothing."""
-
-    torque: int
-    factor: str
-    read: Term | None
-    harmonic: Harmonic | None
-    true: Fraction
-
-    @property
-    def kind(self) -> str:
-        """What is damaged: a coefficient, the argument of the function, or the whole term, which is lost."""
-        if self.read is None:
-            return "lost"
-        return "coefficient" if self.read.harmonic == self.harmonic else "argument"
-
-
-# True coefficients.
+_Groups = dict[tuple[str, str], list[str]]
+"""Terms of each group by its name and its motion, such as h_12 and "*dq1*dq2"."""
+_GRAVITY = "g", ""
 
 
 @cache
-def true_series() -> Series:
-    """Return the true coefficients of the torques; nothing depends on joint 1's position, as its axis is vertical."""
-    model = COMBINED.model
-    angles = 2.0 * np.pi * np.arange(_POINTS) / _POINTS
-    grid = np.array([(0.0, *point) for point in product(angles, repeat=JOINTS - 1)])
-    samples = np.array([_coefficients(model, q) for q in grid])  # (grid, factors, joints)
-    shape = (_POINTS,) * (JOINTS - 1)
-    spectrum = np.fft.fftn(samples.reshape(*shape, *samples.shape[1:]), axes=range(JOINTS - 1)) / len(grid)
-    series: Series = {}
-    for place in np.argwhere(np.abs(spectrum) > _TOLERANCE):
-        multiples = (0, *(int((k + 2) % _POINTS) - 2 for k in place[: JOINTS - 1]))
-        if next((multiple for multiple in multiples if multiple), 0) < 0:
-            continue  # its conjugate says the same
-        amplitude = spectrum[tuple(place)] * (2.0 if any(multiples) else 1.0)
-        found = series.setdefault((int(place[-1]) + 1, _factors()[place[-2]]), {})
-        for function, coefficient in (("cos", amplitude.real), ("sin", -amplitude.imag)):
-            if abs(coefficient) > _TOLERANCE:
-                found[Harmonic(function, multiples)] = float(coefficient)
-    return series
+def _rows() -> list[str]:
+    text = Path(__file__).parents[1].joinpath("appendix.txt").read_text(encoding="utf-8")
+    return ["".join(row.split()) for row in re.split(r"^\[.*\]$", text, flags=re.MULTILINE)[1:]]
 
 
-def _factors() -> list[str]:
-    """Return what a group may be multiplied with: gravity's nothing, six accelerations, 21 products of velocities."""
-    pairs = combinations_with_replacement(_TORQUES, 2)
-    products = [f"qv{i}^2" if i == j else f"qv{i}*qv{j}" for i, j in pairs]
-    return ["gravity", *(f"qa{i}" for i in _TORQUES), *products]
+def elements(row: str) -> dict[str, str]:
+    """Return a torque's groups by name, and their sum with their motions as "tau", from its text without spaces."""
+    groups: _Groups = {}
+    pending: list[str] = []
+    place, opened = 0, False
 
+    def flush(group: tuple[str, str], count: int) -> None:
+        if count:
+            groups.setdefault(group, []).extend(pending[-count:])
+            del pending[-count:]
 
-def _coefficients(model: RobotModel, q: FloatArray) -> FloatArray:
-    """Return what the factors are multiplied with in the six torques at a posture, shape (factors, joints)."""
-    unit = np.eye(JOINTS)
-    squares = [model.coriolis_torque(q, e) for e in unit]
-    products = [
-        squares[i] if i == j else model.coriolis_torque(q, unit[i] + unit[j]) - squares[i] - squares[j]
-        for i, j in combinations_with_replacement(range(JOINTS), 2)
-    ]
-    return np.array([model.gravity_torque(q), *model.mass_matrix(q), *products])
-
-
-# Comparison.
-
-
-def damages(appendix: Appendix, series: Series) -> list[Damage]:
-    """Return where the appendix differs from the true coefficients.
-
-    A printed term is right when the true group has its function with its coefficient; each true term is taken once.
-    Of the others, one whose function the true group has is damaged in its coefficient, and one whose function it has
-    not is damaged in its argument: it is matched to a true term left over in its group with the same coefficient.
-    """
-    left = {key: dict(terms) for key, terms in series.items()}
-    doubtful = [term for term in appendix.terms if not _take(left.get((term.torque, term.factor), {}), term)]
-    found: list[Damage] = []
-    strangers: list[Term] = []
-    for term in doubtful:
-        group = left.get((term.torque, term.factor), {})
-        if term.harmonic in group:
-            found.append(Damage(term.torque, term.factor, term, term.harmonic, _fraction(group.pop(term.harmonic))))
+    while place < len(row):
+        if factor := _FACTOR.match(row, place):
+            in_brackets = factor["bracket"] or opened
+            flush(_group(factor), len(pending) if in_brackets else 1)
+            opened = opened and not in_brackets
+            place = factor.end()
+        elif opening := _OPENING.match(row, place):
+            flush(_GRAVITY, len(pending))
+            place, opened = opening.end(), True
+        elif (term := _TERM.match(row, place)) and (term[2] or term[3]) and (term[1] or not pending):
+            pending.append(_signed(term[0]))
+            place = term.end()
         else:
-            strangers.append(term)
-    for term in strangers:
-        group = left.get((term.torque, term.factor), {})
-        size = abs(float(term.coefficient))
-        harmonic = next((h for h, value in group.items() if abs(abs(value) - size) < _TOLERANCE), None)
-        true = _fraction(group.pop(harmonic)) if harmonic else Fraction(0)
-        found.append(Damage(term.torque, term.factor, term, harmonic, true))
-    lost = [(*key, *item) for key, group in left.items() for item in group.items()]
-    return found + [Damage(torque, factor, None, h, _fraction(value)) for torque, factor, h, value in lost]
+            place += 1  # the sign before a lost bracket, or a character that is left out
+    flush(_GRAVITY, len(pending))
+    sums = {name: " ".join(texts).removeprefix("+ ") for (name, _), texts in groups.items()}
+    return sums | {"tau": " + ".join(map("".join, groups))}
 
 
-def _take(group: dict[Harmonic, float], term: Term) -> bool:
-    right = term.harmonic in group and abs(group[term.harmonic] - float(term.coefficient)) < _TOLERANCE
-    if right:
-        del group[term.harmonic]
-    return right
+def _group(factor: re.Match[str]) -> tuple[str, str]:
+    """Return the name and the motion of the group that a factor ends."""
+    names = [factor[key] for key in ("first", "second") if factor[key]]
+    velocity = "v" in "".join(names) or factor["square"] or len(names) == 2
+    joints = [name[-1] for name in names]
+    motion = "".join(f"*{'dq' if velocity else 'ddq'}{joint}" for joint in joints) + (factor["square"] or "")
+    return (f"h_{joints[0]}{joints[-1]}" if velocity else f"a_{joints[0]}"), motion
 
 
-def _fraction(value: float) -> Fraction:
-    return Fraction(value).limit_denominator(_DENOMINATOR)
+def _signed(term: str) -> str:
+    """Return a term with its sign before it, and with product signs in its argument put right."""
+    body = re.sub(r"([-+])\*q", r"\1q", re.sub(r"(\d)q", r"\1*q", term.lstrip("+-")))
+    return f"{'-' if term.startswith('-') else '+'} {body}"
 
 
-@cache
-def appendix_damages() -> tuple[Damage, ...]:
-    """Return where the appendix as read differs from the true coefficients."""
-    return tuple(damages(read_appendix(), true_series()))
+def _read(torque: int) -> dict[str, str]:
+    found = elements(_rows()[torque - 1])
+    return {(f"tau_{torque}" if name == "tau" else name): text for name, text in found.items()}
 
 
-# The six torques as expressions: `h_12` is what dq1 dq2 is multiplied with, `a_1` what ddq1 is, `g` is gravity.
-
-
-def _as_read(torque: int) -> Callable[[], dict[str, str]]:
-    """Return a torque by its terms as they have been read."""
-    return lambda: _equations(torque, [(term.factor, _text(term)) for term in _terms(torque)])
-
-
-def _emended(torque: int) -> Callable[[], dict[str, str]]:
-    """Return a torque by its terms with the damaged ones emended, and the lost ones put in."""
-
-    def equations() -> dict[str, str]:
-        found = [each for each in appendix_damages() if each.torque == torque]
-        emended = {id(each.read): _true_text(each) for each in found}
-        whole = [(term.factor, emended.get(id(term), _text(term))) for term in _terms(torque)]
-        return _equations(torque, whole + [(each.factor, _true_text(each)) for each in found if each.read is None])
-
-    return equations
-
-
-def _terms(torque: int) -> list[Term]:
-    return [term for term in read_appendix().terms if term.torque == torque]
-
-
-def _equations(torque: int, terms: list[tuple[str, str]]) -> dict[str, str]:
-    groups: dict[str, list[str]] = {}
-    for factor, text in terms:
-        groups.setdefault(factor, []).append(text)
-    sums = {_name(factor): " ".join(texts).strip().removeprefix("+ ") for factor, texts in groups.items()}
-    return sums | {f"tau_{torque}": " + ".join(_name(factor) + _motion(factor) for factor in groups)}
-
-
-def _name(factor: str) -> str:
-    joints = re.findall(r"q[va](\d)", factor)
-    if not joints:
-        return "g"
-    return f"a_{joints[0]}" if factor.startswith("qa") else f"h_{joints[0]}{joints[-1]}"
-
-
-def _motion(factor: str) -> str:
-    return "" if factor == "gravity" else "*" + factor.replace("qv", "dq").replace("qa", "ddq")
-
-
-def _text(term: Term) -> str:
-    """Return a term as it stands, with its sign before it and product signs that are lost or stray put right."""
-    body = re.sub(r"([-+])\*q", r"\1q", re.sub(r"(\d)q", r"\1*q", term.text.lstrip("+-")))
-    return f"{'-' if term.text.startswith('-') else '+'} {body}"
-
-
-def _true_text(damage: Damage) -> str:
-    """Return what must stand in a damaged place; nothing where no term does."""
-    if damage.harmonic is None:
-        return ""
-    signed = [(count, f"q{joint}") for joint, count in enumerate(damage.harmonic.multiples, start=1) if count]
-    angle = " ".join(f"{'-' if n < 0 else '+'} {f'{abs(n)}*' if abs(n) > 1 else ''}{q}" for n, q in signed)
-    value, function = damage.true, f"*{damage.harmonic.function}({angle.removeprefix('+ ')})" if signed else ""
-    if damage.read is not None and damage.kind == "coefficient":
-        match = _WRITTEN.fullmatch(_text(damage.read))
-        sign, coefficient, function = match.groups() if match else ("+", "1", function)
-        value *= damage.read.coefficient / Fraction(f"{sign}{coefficient}")  # -1 if its argument has the other sign
-    return f"{'-' if value < 0 else '+'} {abs(value)}{function}"
-
-
-read_1, read_2, read_3, read_4, read_5, read_6 = (_as_read(torque) for torque in _TORQUES)
-emended_1, emended_2, emended_3, emended_4, emended_5, emended_6 = (_emended(torque) for torque in _TORQUES)
+read_1, read_2, read_3, read_4, read_5, read_6 = (partial(_read, torque) for torque in range(1, 7))
