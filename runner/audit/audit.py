@@ -9,7 +9,7 @@ from pydantic import Field
 
 from runner.audit.entry import Form, Part, entries, parts
 from runner.audit.sources import Where, source_of, sources
-from runner.audit.verdict import SAMPLES, VERDICTS, Check, CheckedEquation, Verdict
+from runner.audit.verdict import SAMPLES, VERDICTS, AuditError, Check, CheckedEquation, Verdict
 from runner.base import progress
 from runner.base.data_file import read_data
 from runner.base.sanitize import table_cell
@@ -25,7 +25,7 @@ def audit(where: Where, samples: int = SAMPLES) -> list[CheckedEquation]:
 
     Raises:
         RunnerError: If there is no such source, a file does not fit its format, or what it names does not exist.
-        AuditError: If an entry contradicts itself.
+        AuditError: If entries contradict themselves; names all of them.
     """
     return list(_checked(parts(where), samples))
 
@@ -43,7 +43,16 @@ def audit_all(samples: int = SAMPLES) -> dict[str, list[CheckedEquation]]:
 
 
 def _checked(found: Iterable[Part], samples: int) -> Iterator[CheckedEquation]:
-    return (checked for part in found for checked in map(Check(part, samples).check, part.entries))
+    faults: dict[str, str] = {}  # by cause: one of a whole file is reported once
+    for part in found:
+        check = Check(part, samples)
+        for entry in part.entries:
+            try:
+                yield check.check(entry)
+            except AuditError as error:
+                faults.setdefault(f"{part.path} {error.__cause__}", str(error))
+    if faults:
+        raise AuditError("\n".join(faults.values()))
 
 
 def counts(checked: Iterable[CheckedEquation]) -> dict[Verdict, int]:

@@ -214,7 +214,8 @@ def _finite(values: FloatArray) -> NDArray[np.bool_]:
 # Numbers, vectors and matrices.
 
 
-def _size(values: FloatArray) -> str:
+def size_of(values: FloatArray) -> str:
+    """Return the size of values in words, such as "a vector of 3"."""
     kinds = "a number", "a vector of {}", "a {} by {} matrix"
     return kinds[values.ndim - 1].format(*values.shape[1:])
 
@@ -222,7 +223,7 @@ def _size(values: FloatArray) -> str:
 def _alike(values: Sequence[FloatArray]) -> list[FloatArray]:
     """Return values with one number of axes; numbers apply to each element."""
     if len({each.shape[1:] for each in values if each.ndim > 1}) > 1:
-        raise ValueError(f"{' and '.join(map(_size, values))} do not fit")
+        raise ValueError(f"{' and '.join(map(size_of, values))} do not fit")
     most = max(each.ndim for each in values)
     return [each.reshape(len(each), *(each.shape[1:] or (most - 1) * (1,))) for each in values]
 
@@ -232,14 +233,14 @@ def _multiply(first: FloatArray, second: FloatArray) -> FloatArray:
     if 1 in (first.ndim, second.ndim):
         return np.asarray(np.multiply(*_alike([first, second])))
     if not (first.ndim == 3 and first.shape[2] == second.shape[1]):
-        raise ValueError(f"{_size(first)} @ {_size(second)} do not fit")
+        raise ValueError(f"{size_of(first)} @ {size_of(second)} do not fit")
     found = along(first, second) if second.ndim == 2 else np.matmul(first, second)
     return found.reshape(len(found)) if found.size == len(found) else found
 
 
 def _divide(first: FloatArray, second: FloatArray) -> FloatArray:
     if second.ndim > 1:
-        raise ValueError(f"{_size(first)} / {_size(second)} do not fit")
+        raise ValueError(f"{size_of(first)} / {size_of(second)} do not fit")
     return np.asarray(np.divide(*_alike([first, second])))
 
 
@@ -249,7 +250,7 @@ def _matrix(*rows: Sequence[FloatArray]) -> FloatArray:
         raise ValueError("the rows of the matrix have different lengths")
     count = max(len(block) for row in rows for block in row)
     sizes = np.array([[_block(block) for block in row] for row in rows])
-    heights, widths = [_one_size(row) for row in sizes[:, :, 0]], [_one_size(column) for column in sizes[:, :, 1].T]
+    heights, widths = [_onesize_of(row) for row in sizes[:, :, 0]], [_onesize_of(column) for column in sizes[:, :, 1].T]
     found = np.zeros((count, sum(heights), sum(widths)))
     top = 0
     for row, height in zip(rows, heights, strict=True):
@@ -269,7 +270,7 @@ def _block(block: FloatArray) -> tuple[int, int]:
     return block.shape[1], block.shape[2] if block.ndim == 3 else 1
 
 
-def _one_size(sizes: NDArray[np.int_]) -> int:
+def _onesize_of(sizes: NDArray[np.int_]) -> int:
     found = {int(size) for size in sizes if size} or {1}
     if len(found) > 1:
         raise ValueError(f"blocks of {' and '.join(map(str, sorted(found)))} rows or columns do not fit")
@@ -278,7 +279,7 @@ def _one_size(sizes: NDArray[np.int_]) -> int:
 
 def _checked(values: FloatArray, name: str, fits: bool, wanted: str) -> None:
     if not fits:
-        raise ValueError(f"{name} takes {wanted}, not {_size(values)}")
+        raise ValueError(f"{name} takes {wanted}, not {size_of(values)}")
 
 
 def _transpose(matrix: FloatArray) -> FloatArray:

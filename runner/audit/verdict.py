@@ -10,7 +10,7 @@ import numpy as np
 
 from runner.audit.derivations import Derivations, Elements, Symbols
 from runner.audit.entry import Entry, Form, Part, form_values, left_side, right_elements
-from runner.audit.evaluation import Numbered, Values, evaluate, evaluate_all
+from runner.audit.evaluation import Numbered, Values, evaluate, evaluate_all, size_of
 from runner.audit.model_derivations import AuditedArm, audited_arm, sample
 from runner.audit.sources import Source, derivation_of
 from runner.base.arrays import FloatArray
@@ -173,6 +173,9 @@ class Check:
         true_size = 0.0
         for name, numbers, values in sides:
             true, placed = self._left(name, numbers, true_values), at_places(name, numbers)
+            for each in values:
+                if each.ndim > 1 and each.shape != true.shape:
+                    raise AuditError(f"{placed} is {size_of(each)}; its true value is {size_of(true)}")
             size = np.max([error(each, true, entry.unit) for each in values], axis=0)
             true_size = max(true_size, float(np.abs(true).max()))
             sizes[placed] = np.maximum(size, sizes.get(placed, 0.0))

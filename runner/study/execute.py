@@ -37,8 +37,10 @@ def make_all(
     Raises:
         ConfigError: if one cannot be made, or all would cost too much; nothing has been started then.
         StoreError: if the disk does not take them.
-        RunnerError: if another sweep is at work in the same folder, or the Dask scheduler does not answer.
+        RunnerError: if an equation cannot be checked or typeset, another sweep is at work in the same folder, or the
+            Dask scheduler does not answer.
     """
+    study.check_equations()
     way = Way(outputs, overrides, command, study.config_dirs)
     tunings = study.untuned()
     if tunings:

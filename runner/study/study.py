@@ -28,6 +28,7 @@ if TYPE_CHECKING:  # drawing comes with these
 Calibrations = Mapping[str, tuple[str, ...]]
 """Overrides of each calibration by its name."""
 _PLAN = "plan"  # module whose computed_runs() and calibrations(given) add to runs.yaml
+_FEW = 20  # samples that show whether equations can be checked
 _MEASURE = "measure"  # module and function that measures what no run does
 
 
@@ -151,6 +152,22 @@ class Study:
 
         command = self.name if self.installed else os.path.relpath(self.folder)
         return Chapters(self.folder, self.manifest, self._code, self._grids, command, runs, calibrations)
+
+    def check_equations(self) -> None:
+        """Check the equations of a folder that is no installed package, at a few samples.
+
+        Raises:
+            RunnerError: with file, line and id of each equation that cannot be checked or typeset.
+        """
+        if self.installed or not (self.folder / "equations").is_dir():
+            return
+        from runner.audit.audit import audit
+        from runner.audit.sources import Source
+        from runner.reporting.audit.report import faulty_formulas
+
+        source = Source(self.folder, self._code.runs)
+        if faults := faulty_formulas(source, audit(source, _FEW)):
+            raise RunnerError("\n".join(faults))
 
     def measure(self, outputs: Path) -> None:
         """Measure what no run does, such as computing times, into an outputs folder, where the study does so."""

@@ -6,8 +6,11 @@ from datetime import UTC, datetime
 
 from runner.audit.audit import counts, inventory
 from runner.audit.consequence import simulate_consequence
+from runner.audit.entry import entries
+from runner.audit.sources import Where
 from runner.audit.verdict import SAMPLES, VERDICTS, CheckedEquation
 from runner.base import progress
+from runner.base.data_file import line_of
 from runner.base.quantities import quantity
 from runner.reporting.audit.forms import RightElements, forms_of
 from runner.reporting.document import (
@@ -26,6 +29,7 @@ from runner.reporting.document import (
     Table,
     Text,
 )
+from runner.reporting.formulas import faulty
 from runner.reporting.markup import literals, mark_text
 from runner.reporting.metric_titles import capital
 from runner.reporting.verdicts import WORDS
@@ -156,6 +160,22 @@ def rows(checked: Sequence[CheckedEquation]) -> list[Equation]:
         )
         for each in checked
     ]
+
+
+def faulty_formulas(where: Where, checked: Sequence[CheckedEquation]) -> list[str]:
+    """Return a line with file, line and id for each formula of checked equations that Typst rejects."""
+    paths = {entry.id: part.path for part, entry in entries(where)}
+    shown = {each.entry.id: row for each, row in zip(checked, rows(checked), strict=True)}
+    faulty(_only(shown.values()))  # all at once: those of each are known then
+    return [
+        f"{paths[name]}, line {line_of(paths[name], f'id: {name}')}: {name}: no formula in Typst's notation: {formula}"
+        for name, row in shown.items()
+        for formula in faulty(_only([row]))
+    ]
+
+
+def _only(shown: Iterable[Equation]) -> Document:
+    return Document("", "", "", (Section("", (Equations("", list(shown)),)),), "")
 
 
 def _error(checked: CheckedEquation) -> str:

@@ -13,6 +13,7 @@ from runner.cli.main import dispatch
 from runner.reporting import html, pdf
 from runner.reporting.document import Table
 from runner.study.check import problems
+from runner.study.execute import make_all
 from runner.study.measured import findings
 from runner.study.names import find_study, study_names, write_new
 from runner.study.study import load_study
@@ -292,6 +293,49 @@ def test_its_printed_equations_are_judged_by_yaml_alone(tmp_path, made):
     (folder / "equations" / "1.yaml").write_text("\n".join(["robot: macro", "entries:", *entries]))
     _, (section,) = read(folder, made)
     assert [row.verdict for row in section.blocks[0].rows] == ["correct", "wrong as printed"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("sin(q2)}", "sin(q7)}", r"line 3: height: P_z, position 20: no name 'q7' \(did you mean"),
+        ("cos(q2 + q3) + sin(q2)", "'[1, 2] @ [3, 4]'", r"height: P_z, position 10: .* a vector of 2 @ a vector of 2"),
+        ("P_z: cos(q2 + q3) + sin(q2)", "P: '[q1, q2]'", "height: P is a vector of 2; its true value is a vector of 3"),
+        ("unit: m", "letters: {q2: frac(1}", r"line 3: height: no formula in Typst's notation: .*frac\(1"),
+        ("title: Height", "title: Height, finding: Holds $frac(1$", r"no formula in Typst's notation: frac\(1"),
+        ("+ sin(q2)", "- sin(q2)", "line 3: height: is wrong by .* and has no correction"),
+        (
+            "unit: m",
+            "truth: model.position",
+            r"1.yaml: entries.0 \(1\).truth: Extra inputs are not permitted \(line 4\)",
+        ),
+    ],
+)
+def test_an_equation_that_cannot_be_checked_is_told_before_anything_is_simulated(tmp_path, old, new, message):
+    folder, outputs = a_study(tmp_path / "paper"), tmp_path / "outputs"
+    (folder / "equations").mkdir()
+    text = """robot: macro
+entries:
+- {id: height, number: '1', place: p. 1, title: Height, derivation: model.position,
+   unit: m, printed: {elements: {P_z: cos(q2 + q3) + sin(q2)}}}
+"""
+    path = folder / "equations" / "1.yaml"
+    path.write_text(text)
+    load_study(str(folder)).check_equations()
+    path.write_text(text.replace(old, new))
+    with pytest.raises(RunnerError, match=message):
+        make_all(load_study(str(folder)), outputs)
+    assert not outputs.exists()
+
+
+def test_all_equations_that_cannot_be_checked_are_told_at_once(tmp_path):
+    folder = a_study(tmp_path / "paper")
+    (folder / "equations").mkdir()
+    entry = "- {id: %s, number: '1', place: p, title: t, derivation: model.position, printed: {elements: {P_z: %s}}}"
+    lines = [entry % each for each in (("one", "q9"), ("two", "1"), ("three", "q2"))]
+    (folder / "equations" / "1.yaml").write_text("\n".join(["robot: macro", "entries:", *lines]))
+    with pytest.raises(RunnerError, match=r"(?s)line 3: one: .*line 4: two: is wrong .*line 5: three: is wrong"):
+        load_study(str(folder)).check_equations()
 
 
 def test_a_formula_that_cannot_be_read_is_told_with_its_line(tmp_path, made):

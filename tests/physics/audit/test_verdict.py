@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.audit.entry import Entry, Form, entries, parts
+from runner.audit.entry import Emendation, Entry, Printed, entries, parts
 from runner.audit.sources import source_of, sources
 from runner.audit.verdict import AuditError, Check
 
@@ -124,7 +124,7 @@ def spoilt(form, name):
     """Return a form with one side of one equation changed."""
     first, *others = form.elements[name].split("=")
     elements = form.elements | {name: "=".join([f"2*({first}) + 1/8", *others])}
-    return form.model_copy(update={"elements": elements, "read": ""})
+    return type(form)(elements=elements, **{"why": form.why} if isinstance(form, Emendation) else {})
 
 
 @pytest.mark.costs(6)
@@ -155,7 +155,7 @@ def test_a_left_side_can_be_an_expression_of_what_is_true():
     check, right = Check(part, 10), next(entry for entry in part.entries if entry.id == "thesis-3.10")
     assert list(right.printed.elements) == ["tau - G"]
     assert check.check(right).verdict == "correct"
-    lost = right.model_copy(update={"printed": Form(elements={"ddq - q": "M @ ddq"})})
+    lost = right.model_copy(update={"printed": Printed(elements={"ddq - q": "M @ ddq"})})
     with pytest.raises(AuditError, match=r"3_2.yaml, line 50: thesis-3.10: no true value of ddq - q; there is M, M_11"):
         check.check(lost)
 
@@ -163,7 +163,7 @@ def test_a_left_side_can_be_an_expression_of_what_is_true():
 def test_what_an_equation_defines_counts_before_a_symbol():
     part = parts("xarm7")[0]
     entry = next(entry for entry in part.entries if entry.id == "xarm7-transform-1")
-    longer = entry.model_copy(update={"printed": Form(elements=entry.printed.elements | {"l1": "27"})})
+    longer = entry.model_copy(update={"printed": Printed(elements=entry.printed.elements | {"l1": "27"})})
     with pytest.raises(AuditError, match=r"is wrong by 0\.3 cm"):
         Check(part, 10).check(longer)
 

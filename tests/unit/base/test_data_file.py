@@ -52,7 +52,14 @@ def test_an_entry_is_named_by_its_place_and_its_name_or_number(tmp_path, text, t
 
 def test_all_problems_are_told_at_once(tmp_path):
     message = refused(tmp_path, "items: [{name: mass}]", File)
-    assert "title: Field required; items.0 (mass).value: Field required" in message
+    assert "title: Field required (line 1); items.0 (mass).value: Field required (line 1)" in message
+
+
+def test_a_problem_has_its_line(tmp_path):
+    text = "title: A\nitems:\n- name: a\n  value: 1\n- value: 2\n  unit: kg\n- name: b\n"
+    message = refused(tmp_path, text, File)
+    assert "items.1.unit: Extra inputs are not permitted (line 6)" in message
+    assert "items.2 (b).value: Field required (line 7)" in message
 
 
 def test_what_cannot_be_read_is_refused(tmp_path):

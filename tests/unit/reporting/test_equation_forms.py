@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.audit.entry import Emendation, Entry, Form
+from runner.audit.entry import Emendation, Entry, Form, Printed
 from runner.audit.verdict import CheckedEquation
 from runner.reporting.audit.forms import RightElements, forms_of
 
@@ -11,7 +11,7 @@ LONG = " + ".join(f"x{i}*y{i}*z{i}" for i in range(20))
 
 def entry(printed, corrected=None, emendation=None, name="J_11"):
     return Entry(
-        id=name, number=name, place="page 1", title="", printed=Form(elements={name: printed}),
+        id=name, number=name, place="page 1", title="", printed=Printed(elements={name: printed}),
         emendation=emendation and Emendation(why="Torn.", elements={name: emendation}),
         corrected=corrected and Form(elements={name: corrected}),
     )  # fmt: skip
