@@ -154,7 +154,7 @@ class Study:
         return Chapters(self.folder, self.manifest, self._code, self._grids, command, runs, calibrations)
 
     def check_equations(self) -> None:
-        """Check the equations of a folder that is no installed package, at a few samples.
+        """Check the equations of a study that is not installed, at a few samples.
 
         Raises:
             RunnerError: with file, line and id of each equation that cannot be checked or typeset.

@@ -231,7 +231,7 @@ def test_a_profile_makes_other_levels(tmp_path):
 @pytest.mark.parametrize(
     ("files", "told"),
     [
-        ({"study__yaml": "title: T\n"}, r"study.yaml: source: Field required; .*chapters: Field required"),
+        ({"study__yaml": "title: T\n"}, r"study.yaml: source: Field required .*chapters: Field required"),
         ({"study__yaml": ABOUT.replace("one.md", "on.md")}, r"study.yaml: chapters: on.md: must be .*mean one.md\?\)"),
         ({"study__yaml": ABOUT + "in_al: false\n"}, r"study.yaml: in_al: Extra inputs are not permitted"),
         ({"study__yaml": "title: [\n"}, r"study.yaml, line 2"),
