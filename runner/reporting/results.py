@@ -15,8 +15,8 @@ from runner.reporting.key_metrics import key_metrics
 from runner.reporting.stored import report_name
 from runner.reporting.sweep.question import in_short
 from runner.reporting.sweep.subject import choose
+from runner.reporting.sweep.tuning import summary_of_tuning
 from runner.reporting.templating import html_environment
-from runner.reporting.tuning.report import summary_of_tuning
 from runner.store import Calibration, Run, Sweep, open_stored
 from runner.store.atomic import write_atomically
 from runner.store.kinds import KINDS

@@ -15,7 +15,7 @@ from runner.reporting.comparison.sweeps import letter
 from runner.reporting.document import Document
 from runner.reporting.run_report import run_document
 from runner.reporting.sweep.report import sweep_document
-from runner.reporting.tuning.report import tuning_document
+from runner.reporting.sweep.tuning import tuning_document
 from runner.store.kinds import kind_of, note, outputs_of
 from runner.sweeps.measurements import measure_stored
 from runner.sweeps.tuning.study import Tuning, open_tuning

@@ -1,6 +1,7 @@
 """Axes of a sweep and fixed values, failed runs with reasons, and caveats of the cells."""
 
 import math
+from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
@@ -96,15 +97,19 @@ def failures_section(subject: Subject) -> Section:
     if subject.axes:
         rows = [row for axis in subject.axes for row in _by_level(axis, failed)]
         blocks.append(Table("Failed runs by axis.", ["axis", "value", "failed"], [literals(row) for row in rows], (2,)))
-    cells = np.flatnonzero(failed).tolist()
     rows = [
         [measurements.hashes[cell][:8], subject.cell_name(cell), measurements.failures[cell]]
-        for cell in cells[:_MOST_FAILURES]
+        for cell in np.flatnonzero(failed).tolist()
     ]
-    left = len(cells) - len(rows)
-    more = f" {left} more stand in the list of runs and in the table of the sweep." if left else ""
-    blocks.append(Table(f"Failed runs.{more}", ["run", "cell", "failure"], [literals(row) for row in rows]))
+    blocks.append(failed_table("runs", ["run", "cell", "failure"], rows))
     return Section("Failed runs", blocks)
+
+
+def failed_table(what: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
+    """Return the table of failed runs or trials; of many the first ones."""
+    left = len(rows) - _MOST_FAILURES
+    more = f" {left} more stand in the list of runs and in the table of the sweep." if left > 0 else ""
+    return Table(f"Failed {what}.{more}", header, [literals(row) for row in rows[:_MOST_FAILURES]])
 
 
 def causes_of_failure(subject: Subject) -> str:

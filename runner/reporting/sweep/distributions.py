@@ -98,9 +98,9 @@ def extremes_section(subject: Subject, low: Run, high: Run) -> Section:
     """
     ranked = subject.ranked
     ends = [ranked[0], ranked[-1]] if len(ranked) > 1 else [ranked[0]]
-    sections = [_motion(f"Lowest: {subject.cell_name(ranked[0])}", low)]
+    sections = [Section(f"Lowest: {subject.cell_name(ranked[0])}", motion_blocks(low))]
     if len(ranked) > 1:
-        sections.append(_motion(f"Highest: {subject.cell_name(ranked[-1])}", high))
+        sections.append(Section(f"Highest: {subject.cell_name(ranked[-1])}", motion_blocks(high)))
     return Section("Lowest and highest median", (_medians(subject, ends),), sections)
 
 
@@ -134,12 +134,12 @@ def _with_interval(values: np.ndarray, unit: str) -> str:
     return f"{text} (n = {interval.n})" if interval.low is None else f"{text} ({ends}, n = {interval.n})"
 
 
-def _motion(title: str, run: Run) -> Section:
+def motion_blocks(run: Run) -> list[Block]:
+    """Return the torques, the error and the motion of repetition 0, or the reason why it has none."""
     try:
-        blocks: list[Block] = [
+        return [
             torque_and_error(run, "Torque of each joint and tip position error, repetition 0."),
             playback(run, "The motion of repetition 0."),
         ]
     except StoreError as error:
-        blocks = [Notice("warning", "No motion to show", literal(str(error)))]
-    return Section(title, blocks)
+        return [Notice("warning", "No motion to show", literal(str(error)))]

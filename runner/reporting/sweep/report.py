@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.sanitize import one_line
 from runner.reporting.answers import Answer, sentences
@@ -32,7 +34,7 @@ from runner.reporting.sweep.question import (
 )
 from runner.reporting.sweep.subject import Subject, choose
 from runner.store import Sweep
-from runner.sweeps.measurements import measure_sweep
+from runner.sweeps.measurements import Measurements, measure_sweep
 
 MOST_RUNS = 5000
 """Runs that the list of a report holds; of more, those at both ends of the order."""
@@ -83,7 +85,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         low, high = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
         sections.append(distributions.extremes_section(subject, low, high))
     sections.append(_all_runs(subject, sweep, runs_address))
-    sections.append(Section("Provenance", (Provenance(_made_by(subject, sweep)),)))
+    sections.append(made_by(measurements, ("sweep", sweep.folder.name)))
     return Document(
         title=_title(subject),
         subtitle=", ".join(measurements.fixed),
@@ -155,21 +157,10 @@ def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
         counts = np.array([len(found) for found in measurements.caveats], dtype=float)
         medians.insert(len(subject.metrics), counts[order])
         shown.insert(len(subject.metrics), ("caveats", "1"))
-    values = np.column_stack(medians) if medians else np.zeros((len(order), 0))
-    cells = order.tolist()
     named = [(axis, *np.unique(axis.level[order], return_inverse=True)) for axis in subject.axes]
-    levels = np.column_stack([level for *_, level in named] or [np.zeros((len(order), 0), dtype=np.intp)])
-    listing = RunList(
-        caption,
-        [(axis.name, [axis.text(level) for level in some.tolist()]) for axis, some, _ in named],
-        levels,
-        shown,
-        np.where(np.isfinite(values), values, np.nan),
-        subject.hashes(cells),
-        [measurements.failures[cell] for cell in cells],
-        [_command(sweep.overrides[cell]) for cell in cells],
-        [f"{address}{name}/" if (sweep.outputs / "runs" / name).is_dir() else "" for name in subject.hashes(cells)],
-    )
+    axes = [(axis.name, [axis.text(level) for level in some.tolist()], level) for axis, some, level in named]
+    columns = [(*head, column) for head, column in zip(shown, medians, strict=True)]
+    listing = list_runs(sweep, caption, order.tolist(), columns, measurements.failures, address, axes)
     text = Text(
         "In the HTML report: filter by value, plot any two quantities against each other, sort by a column; a click on "
         "a point, here or in any figure, shows its run. The command runner table writes all numbers as Parquet and CSV."
@@ -177,9 +168,45 @@ def _all_runs(subject: Subject, sweep: Sweep, address: str) -> Section:
     return Section("All runs", (text, listing))
 
 
-def _made_by(subject: Subject, sweep: Sweep) -> list[tuple[str, str]]:
-    rows = [(name, ", ".join(_some(values))) for name, values in subject.measurements.provenance.items()]
-    return [*rows, ("sweep", sweep.folder.name)]
+def list_runs(
+    sweep: Sweep,
+    caption: str,
+    cells: Sequence[int],
+    columns: Sequence[tuple[str, str, FloatArray]],
+    failures: Sequence[str],
+    address: str,
+    axes: Sequence[tuple[str, Sequence[str], NDArray[np.intp]]] = (),
+) -> RunList:
+    """Return the list of some runs of a sweep.
+
+    Args:
+        sweep: The sweep.
+        caption: Caption.
+        cells: The cells, in order.
+        columns: Name, unit and value in each of these cells, such as the median of a metric.
+        failures: Reason of the failure of each cell of the sweep; empty for a successful one.
+        address: Address of the folder of runs, seen from the report, ending in a slash.
+        axes: Name, names of the values, and index of the value of each of these cells.
+    """
+    hashes = [sweep.hashes[cell] for cell in cells]
+    values = np.column_stack([column for *_, column in columns] or [np.zeros((len(hashes), 0))])
+    return RunList(
+        caption,
+        [(name, names) for name, names, _ in axes],
+        np.column_stack([level for *_, level in axes] or [np.zeros((len(hashes), 0), dtype=np.intp)]),
+        [(name, unit) for name, unit, _ in columns],
+        np.where(np.isfinite(values), values, np.nan),
+        hashes,
+        [failures[cell] for cell in cells],
+        [run_command(sweep.overrides[cell]) for cell in cells],
+        [f"{address}{name}/" if (sweep.outputs / "runs" / name).is_dir() else "" for name in hashes],
+    )
+
+
+def made_by(measurements: Measurements, name: tuple[str, str]) -> Section:
+    """Return the provenance of the runs, and the name of their sweep or tuning."""
+    rows = [(what, ", ".join(_some(values))) for what, values in measurements.provenance.items()]
+    return Section("Provenance", (Provenance([*rows, name]),))
 
 
 def _some(values: Sequence[str]) -> Sequence[str]:
@@ -187,5 +214,6 @@ def _some(values: Sequence[str]) -> Sequence[str]:
     return values if len(values) <= _MOST_VALUES else [*values[:3], f"... ({len(values)} values)", values[-1]]
 
 
-def _command(overrides: Sequence[str]) -> str:
+def run_command(overrides: Sequence[str]) -> str:
+    """Return the command of a run."""
     return shlex.join(["runner", *(text for text in overrides if split_override(text)[0] != "outputs")])

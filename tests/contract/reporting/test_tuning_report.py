@@ -9,8 +9,7 @@ import pytest
 from runner.base.errors import StoreError
 from runner.reporting.document import Curves, Notice, Playback, RunList, Table, Text
 from runner.reporting.markup import literal
-from runner.reporting.tuning.report import tuning_document
-from runner.reporting.tuning.sections import Subject, history_section
+from runner.reporting.sweep.tuning import Trials, history_section, tuning_document
 from runner.sweeps.tuning.objective import Objective, Trial
 from runner.sweeps.tuning.run import tune
 from runner.sweeps.tuning.study import at_ends
@@ -66,6 +65,7 @@ def test_the_report_has_its_parts(tuning):
         "Trade-off",
         "Keys",
         "Chosen by each objective",
+        "Caveats",
         "All runs",
         "Provenance",
     ]
@@ -105,7 +105,7 @@ def test_the_first_paragraph_says_which_key_ends_at_the_end_of_its_range(tuning)
 
 
 def test_the_history_never_gets_worse(tuning):
-    less, more = blocks(history_section(Subject(tuning)), Curves)[0].panels
+    less, more = blocks(history_section(Trials(tuning)), Curves)[0].panels
     for panel, sign in ((less, 1.0), (more, -1.0)):
         trials, so_far = panel.series
         assert (np.diff(sign * so_far.y) <= 0).all()
@@ -117,7 +117,7 @@ def test_the_front_holds_what_its_table_lists(tuning):
     part = section(document(tuning), "Trade-off")
     _, front = blocks(part, Curves)[0].panels[0].series
     (table,) = blocks(part, Table)
-    assert [int(row[0]) for row in table.rows] == Subject(tuning).best
+    assert [int(row[0]) for row in table.rows] == Trials(tuning).best
     assert len(front.x) == len(table.rows) > 1
     assert (np.diff(front.x) > 0).all()
     assert (np.diff(front.y) > 0).all()  # less of one costs more of the other
@@ -162,7 +162,7 @@ def test_every_run_is_listed_with_its_trial_keys_and_address(tuning):
 def test_a_tuning_in_which_all_failed_has_a_report(tuning):
     lost = replace(tuning, trials=[replace(trial, failure="diverged") for trial in tuning.trials])
     assert document(lost).key_numbers == [("trials", "22", "22 of them failed")]
-    assert titles(document(lost)) == ["What was tuned", "Failed trials", "All runs", "Provenance"]
+    assert titles(document(lost)) == ["What was tuned", "Failed trials", "Caveats", "All runs", "Provenance"]
 
 
 def test_a_run_that_is_gone_is_told(tuning, monkeypatch):

@@ -1,1 +1,0 @@
-"""Report on a tuning: history, Pareto front, keys and best trials."""
