@@ -1,48 +1,32 @@
 """Figure, tables and numbers of the precision study."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from runner.base.quantities import number, quantity
-from runner.reporting.document import Curves, Origin, Panel, Series, Table
+from runner.reporting.document import Curves, Panel, Series, Table
 from runner.reporting.figures import origin
 from runner.store import Run
-from runner.studies.precision.tried import (
-    COMPILED,
-    PLANTS,
-    Tried,
-    allowed_error,
-    by_steps,
-    knee,
-    large_enough,
-    order,
-    solutions,
-)
+from runner.studies.precision.tried import COMPILED, PLANTS, Tried, allowed_error, by_steps, knee, order, solutions
 from runner.study.measured import Measured
 
 _ARMS = {"macro": "Macro", "combined": "Mini on Macro", "xarm7": "xArm7"}
 _CASES = {"free": "free", "control": "under control"}
-_PAIRS = [(arm, case) for arm in _ARMS for case in _CASES]
-_STORED = PLANTS[:3]
+_PAIRS = [(case, arm) for arm in _ARMS for case in _CASES]
 _LABELLED = {"PyBullet": -1, "MuJoCo": 0, COMPILED: 0}  # places of the steps named in the figure
 _ROOM = (0.1, 100.0)  # around the errors, for what stands above a line
 
 
-def first_order_plants() -> tuple[str, ...]:
-    """Return the plants by Euler's scheme."""
-    return PLANTS[:2]
-
-
-def ours() -> tuple[str, ...]:
-    """Return the Runge-Kutta plant, compiled and by Pinocchio."""
-    return PLANTS[2:]
+def plants(first: int, last: int) -> tuple[str, ...]:
+    """Return some plants: 0 to 2 are those by Euler's scheme, 2 to 4 is Runge-Kutta, compiled and by Pinocchio."""
+    return PLANTS[first:last]
 
 
 def accuracy(runs: Mapping[str, Run], caption: str) -> Curves:
     """Return the tip's error over the computing time, a panel for each arm and case, a line for each plant."""
     panels = []
-    for arm, case in _PAIRS:
+    for case, arm in _PAIRS:
         series: list[Series] = []
         for color, plant in enumerate(PLANTS):
             tried = by_steps(runs, case, arm, plant)
@@ -58,140 +42,139 @@ def accuracy(runs: Mapping[str, Run], caption: str) -> Curves:
         ends = (_ROOM[0] * float(known.min()), _ROOM[1] * float(known.max())) if known.size else None
         title = f"{_ARMS[arm]}, {_CASES[case]}"
         panels.append(Panel(title, "computing time (s)", "tip error (m)", series, True, True, y_range=ends))
-    return Curves(caption, panels, 2, _origin(runs))
+    return Curves(caption, panels, 2, origin(next(iter(runs.values()))))
 
 
 def reference_table(runs: Mapping[str, Run], caption: str) -> Table:
     """Return how far the ways to the solution are from each other."""
-    header = ["arm", "moves", "another method (rad)", "coarser tolerance (rad)", "energy"]
-    rows = []
-    for arm, case in _PAIRS:
+    header = ["another method (rad)", "coarser tolerance (rad)", "energy"]
+
+    def cells(case: str, arm: str) -> list[str]:
         own = solutions(runs)[f"{case}/{arm}"]
-        told = (own["apart"]["collocation"], own["apart"]["tolerance"], own["energy"])
-        rows.append([_ARMS[arm], _CASES[case], *(number(value, 2) for value in told)])
-    return Table(caption, header, rows, (2, 3, 4), _origin(runs))
+        return [number(value, 2) for value in (own["apart"]["collocation"], own["apart"]["tolerance"], own["energy"])]
+
+    return _table(runs, caption, header, cells, (2, 3, 4))
 
 
 def orders_table(runs: Mapping[str, Run], caption: str) -> Table:
     """Return the order of each plant."""
-    header = ["arm", "moves", *PLANTS]
-    rows = [
-        [
-            _ARMS[arm],
-            _CASES[case],
-            *(number(order(by_steps(runs, case, arm, plant)), 3, zeros=True) for plant in PLANTS),
-        ]
-        for arm, case in _PAIRS
-    ]
-    return Table(caption, header, rows, (2, 3, 4, 5), _origin(runs))
+    return _by_plant(runs, caption, lambda tried, _: number(order(tried), 3, zeros=True), numeric=(2, 3, 4, 5))
 
 
 def errors(runs: Mapping[str, Run], caption: str) -> Table:
     """Return the largest joint error of each plant by its largest and its smallest step."""
-    header = ["arm", "moves", *(f"{plant} (rad)" for plant in _STORED)]
-    rows = []
-    for arm, case in _PAIRS:
-        tried = [by_steps(runs, case, arm, plant) for plant in _STORED]
-        texts = [f"{number(each[0].joints, 2)} to {number(each[-1].joints, 2)}" for each in tried]
-        rows.append([_ARMS[arm], _CASES[case], *texts])
-    return Table(caption, header, rows, (), _origin(runs))
+    header = [f"{plant} (rad)" for plant in PLANTS[:3]]
+
+    def cells(case: str, arm: str) -> list[str]:
+        tried = [by_steps(runs, case, arm, plant) for plant in PLANTS[:3]]
+        return [f"{number(each[0].joints, 2)} to {number(each[-1].joints, 2)}" for each in tried]
+
+    return _table(runs, caption, header, cells)
 
 
 def knees(runs: Mapping[str, Run], caption: str) -> Table:
     """Return below which step of each plant a smaller one is not worth its price, and the joint error left there."""
-    rows = []
-    for arm, case in _PAIRS:
-        row = [_ARMS[arm], _CASES[case]]
-        for plant in PLANTS:
-            at = knee(by_steps(runs, case, arm, plant))
-            row.append("beyond" if at is None else f"{quantity(at.step, 's')}: {number(at.joints, 2)}")
-        rows.append(row)
-    return Table(caption, ["arm", "moves", *PLANTS], rows, (), _origin(runs))
+
+    def cell(tried: list[Tried], _: float) -> str:
+        at = knee(tried)
+        return "beyond" if at is None else f"{quantity(at.step, 's')}: {number(at.joints, 2)}"
+
+    return _by_plant(runs, caption, cell)
 
 
 def recommended(runs: Mapping[str, Run], caption: str) -> Table:
     """Return the largest step of each plant whose error is small enough, and its computing time."""
-    rows = []
-    for arm, case in _PAIRS:
-        row = [_ARMS[arm], _CASES[case], quantity(allowed_error(runs, case, arm), "m")]
-        for plant in PLANTS:
-            at = _large_enough(runs, case, arm, plant)
-            row.append("none" if at is None else f"{quantity(at.step, 's')}: {quantity(at.seconds, 's', 2)}")
-        rows.append(row)
-    return Table(caption, ["arm", "moves", "error allowed", *PLANTS], rows, (), _origin(runs))
+
+    def cell(tried: list[Tried], allowed: float) -> str:
+        at = large_enough(tried, allowed)
+        return "none" if at is None else f"{quantity(at.step, 's')}: {quantity(at.seconds, 's', 2)}"
+
+    return _by_plant(runs, caption, cell, "error allowed")
 
 
-def distances(runs: Mapping[str, Run], words: str, way: str) -> list[Measured]:
-    """Return how far another way to the solution of each case and arm is from it, in rad."""
-    return [Measured(f"{words}: {name}", float(own["apart"][way]), "rad") for name, own in solutions(runs).items()]
-
-
-def drifts(runs: Mapping[str, Run], words: str) -> list[Measured]:
-    """Return the change of energy along the solution of each free motion, over its largest kinetic energy."""
-    known = {name: own["energy"] for name, own in solutions(runs).items() if own["energy"] is not None}
-    return [Measured(f"{words}: {name}", float(energy)) for name, energy in known.items()]
+def of_solutions(runs: Mapping[str, Run], words: str, key: str, way: str = "", unit: str = "1") -> list[Measured]:
+    """Return a number of the solution of each case and arm that has it, such as its distance from another way to it."""
+    known = {name: own[key][way] if way else own[key] for name, own in solutions(runs).items()}
+    return [Measured(f"{words}: {name}", float(own), unit) for name, own in known.items() if own is not None]
 
 
 def orders(runs: Mapping[str, Run], words: str, *plants: str) -> list[Measured]:
     """Return the order of some plants on each arm and case."""
-    return [
-        Measured(_named(words, arm, case, plant), order(by_steps(runs, case, arm, plant)))
-        for plant in plants
-        for arm, case in _PAIRS
-    ]
-
-
-def compiled_apart(runs: Mapping[str, Run], words: str) -> list[Measured]:
-    """Return how far the errors of Runge-Kutta, compiled and by Pinocchio, are from each other, in rad."""
-    told = []
-    for arm, case in _PAIRS:
-        ways = (by_steps(runs, case, arm, plant) for plant in ours())
-        most = max(abs(one.joints - other.joints) for one, other in zip(*ways, strict=True))
-        told.append(Measured(_named(words, arm, case), most, "rad"))
-    return told
+    return _each(runs, words, "1", lambda tried, _: order(tried), *plants)
 
 
 def left_at_finest(runs: Mapping[str, Run], words: str, *plants: str) -> list[Measured]:
     """Return the joint error of some plants on each arm and case by their smallest step, in rad."""
-    return [
-        Measured(_named(words, arm, case, plant), by_steps(runs, case, arm, plant)[-1].joints, "rad")
-        for plant in plants
-        for arm, case in _PAIRS
-    ]
+    return _each(runs, words, "rad", lambda tried, _: tried[-1].joints, *plants)
 
 
 def by_whole_periods(runs: Mapping[str, Run], words: str) -> list[Measured]:
     """Return the tip's error over that allowed, of Runge-Kutta by its largest step."""
-    return [
-        Measured(_named(words, arm, case), by_steps(runs, case, arm, COMPILED)[0].tip / allowed_error(runs, case, arm))
-        for arm, case in _PAIRS
-    ]
+    return _each(runs, words, "1", lambda tried, allowed: tried[0].tip / allowed, COMPILED)
+
+
+def compiled_apart(runs: Mapping[str, Run], words: str) -> list[Measured]:
+    """Return the largest difference between the errors of Runge-Kutta, compiled and by Pinocchio, in rad."""
+
+    def apart(case: str, arm: str) -> float:
+        both = (by_steps(runs, case, arm, plant) for plant in PLANTS[2:])
+        return max(abs(one.joints - other.joints) for one, other in zip(*both, strict=True))
+
+    return [Measured(f"{words}: {_ARMS[arm]}, {_CASES[case]}", apart(case, arm), "rad") for case, arm in _PAIRS]
 
 
 def without_knee(runs: Mapping[str, Run], words: str, *plants: str) -> Measured:
-    """Return how often some plants gain by every smaller step that was tried."""
-    found = [knee(by_steps(runs, case, arm, plant)) for plant in plants for arm, case in _PAIRS]
-    return Measured(words, found.count(None))
+    """Return the number of arms and cases in which some plants gain by every smaller step that was tried."""
+    return _count(runs, words, lambda tried, _: knee(tried), *plants)
 
 
 def without_step(runs: Mapping[str, Run], words: str, *plants: str) -> Measured:
-    """Return how often no step of some plants leaves an error that is small enough."""
-    found = [_large_enough(runs, case, arm, plant) for plant in plants for arm, case in _PAIRS]
+    """Return the number of arms and cases in which no step of some plants leaves an error that is small enough."""
+    return _count(runs, words, large_enough, *plants)
+
+
+def large_enough(tried: list[Tried], allowed: float) -> Tried | None:
+    """Return the largest step with a tip error, in m, below what is allowed; None if there is none."""
+    return next((each for each in tried if each.tip < allowed), None)
+
+
+def _each(
+    runs: Mapping[str, Run], words: str, unit: str, of: Callable[[list[Tried], float], float | None], *plants: str
+) -> list[Measured]:
+    return [
+        Measured(f"{words}: {plant}, {_ARMS[arm]}, {_CASES[case]}", of(*_tried(runs, case, arm, plant)), unit)
+        for plant in plants
+        for case, arm in _PAIRS
+    ]
+
+
+def _count(
+    runs: Mapping[str, Run], words: str, of: Callable[[list[Tried], float], Tried | None], *plants: str
+) -> Measured:
+    found = [of(*_tried(runs, case, arm, plant)) for plant in plants for case, arm in _PAIRS]
     return Measured(words, found.count(None))
 
 
-def cases_of(*plants: str) -> int:
-    """Return how many arms and cases there are of some plants."""
-    return len(_PAIRS) * len(plants)
+def _tried(runs: Mapping[str, Run], case: str, arm: str, plant: str) -> tuple[list[Tried], float]:
+    return by_steps(runs, case, arm, plant), allowed_error(runs, case, arm)
 
 
-def _large_enough(runs: Mapping[str, Run], case: str, arm: str, plant: str) -> Tried | None:
-    return large_enough(by_steps(runs, case, arm, plant), allowed_error(runs, case, arm))
+def _by_plant(
+    runs: Mapping[str, Run], caption: str, cell: Callable[[list[Tried], float], str], allowed: str = "",
+    numeric: Sequence[int] = (),
+) -> Table:  # fmt: skip
+    """Return a table with a column for each plant, behind one for the error that is allowed if it has a title."""
+
+    def cells(case: str, arm: str) -> list[str]:
+        first = [quantity(allowed_error(runs, case, arm), "m")] if allowed else []
+        return [*first, *(cell(*_tried(runs, case, arm, plant)) for plant in PLANTS)]
+
+    return _table(runs, caption, [allowed, *PLANTS] if allowed else PLANTS, cells, numeric)
 
 
-def _named(words: str, arm: str, case: str, plant: str = "") -> str:
-    return f"{words}: {', '.join(text for text in (plant, _ARMS[arm], _CASES[case]) if text)}"
-
-
-def _origin(runs: Mapping[str, Run]) -> Origin:
-    return origin(next(iter(runs.values())))
+def _table(
+    runs: Mapping[str, Run], caption: str, header: Sequence[str], cells: Callable[[str, str], list[str]],
+    numeric: Sequence[int] = (),
+) -> Table:  # fmt: skip
+    rows = [[_ARMS[arm], _CASES[case], *cells(case, arm)] for case, arm in _PAIRS]
+    return Table(caption, ["arm", "moves", *header], rows, numeric, origin(next(iter(runs.values()))))

@@ -71,11 +71,6 @@ def knee(tried: list[Tried]) -> Tried | None:
     return None
 
 
-def large_enough(tried: list[Tried], allowed: float) -> Tried | None:
-    """Return the largest step by which the tip's error, in m, is below what is allowed; None where there is none."""
-    return next((each for each in tried if each.tip < allowed), None)
-
-
 def allowed_error(runs: Mapping[str, Run], case: str, arm: str) -> float:
     """Return which error of the tip is taken as small enough, in m."""
     run = found(runs, f"{case}/{arm}/{{plant={PLANT}}}/{{step}}")[0].run

@@ -19,6 +19,7 @@ from runner.robots.model import RobotModel
 from runner.store import Run
 from runner.studies.precision import measure, tried
 from runner.studies.precision.exact import Adaptive, Collocation, energy_drift
+from runner.studies.precision.figures import large_enough
 from runner.study.job import MissingError
 from runner.study.study import load_study
 
@@ -130,11 +131,11 @@ def test_the_knee_is_where_the_error_no_longer_falls_in_proportion(errors: dict[
 
 def test_the_largest_step_that_does_is_found() -> None:
     steps = tried_by({0.4: 3.0, 0.2: 1.5, 0.1: 0.7})
-    at = tried.large_enough(steps, 2.0)
+    at = large_enough(steps, 2.0)
     assert at is not None
     assert at.step == 0.2
-    assert tried.large_enough(steps, 0.7) is None
-    assert tried.large_enough(tried_by({0.4: np.nan}), 1.0) is None
+    assert large_enough(steps, 0.7) is None
+    assert large_enough(tried_by({0.4: np.nan}), 1.0) is None
 
 
 def test_errors_are_those_of_the_motions(runs: Mapping[str, Run]) -> None:
