@@ -33,9 +33,6 @@ SHARED = (blocks, signals, tables, plots)
 _FIGURES = "figures"  # the module whose functions all chapters of a study may call
 _SECTION = "section"  # the function of a chapter that is Python
 
-Concluded = Callable[[str], tuple[list[Finding], Mapping[str, Any]]]
-"""Gives the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
-
 
 class Chapters:
     """The chapters of a study, made from its stored runs and calibrations; each file is read once.
@@ -70,11 +67,12 @@ class Chapters:
         progress.begin("writing chapters", _count(self._manifest.chapters), "chapters")
         return self._each(self._manifest.chapters)
 
-    def concluded(self, name: str) -> tuple[list[Finding], Mapping[str, Any]]:
-        """Return the findings of a chapter in Markdown, and the values to which it gives a name, by that."""
-        made = self.reading(name)
+    def said(self, stem: str) -> dict[str, Any]:
+        """Return the named numbers and strings of a chapter in Markdown, and as `holds` whether its findings hold."""
+        made = self.reading(stem)
         everything = [block for each in number_sections([made.section]) for block in each.section.blocks]
-        return [block for block in everything if isinstance(block, Finding)], made.values.named
+        holds = all(each.holds for each in everything if isinstance(each, Finding))
+        return {"holds": holds, **{name: value for name, value in made.values.named.items() if _is_plain(value)}}
 
     def reading(self, stem: str) -> Reading:
         """Return what the file of a chapter in Markdown makes.
@@ -99,7 +97,7 @@ class Chapters:
 
         These are the shared blocks, which find calibrations among the runs; the public functions of `figures.py` and of
         the module that bears the chapter's name; and what study.yaml, runs.yaml and claims.yaml hold. A function whose
-        first argument is `runs`, `calibrations` or `concluded` gets the runs, the calibrations, or the method above.
+        first argument is `runs` or `calibrations` gets these.
         """
         presets, tunings = self._manifest.presets, self._grids.tunings
         found: dict[str, Any] = {
@@ -113,10 +111,11 @@ class Chapters:
             "verdict_rule": self._legend(),
             "verdict_factor": FACTOR,
             "equations": self._equations,
+            "said": self.said,
         }
         for module in SHARED:
             found |= _filled(public_functions(module), {"runs": self._stored()})
-        own = {"runs": self._runs, "calibrations": self._calibrations, "concluded": self.concluded}
+        own = {"runs": self._runs, "calibrations": self._calibrations}
         for name in (_FIGURES, stem):
             found |= _filled(self._code.functions(name), own)
         return found
@@ -193,6 +192,12 @@ def chapter_text(path: Path) -> str:
 def _count(chapters: Sequence[str | Part]) -> int:
     """Return the number of files that some chapters have."""
     return sum(len(each.sections) if isinstance(each, Part) else 1 for each in chapters)
+
+
+def _is_plain(value: Any) -> bool:
+    if isinstance(value, Mapping | list | tuple):
+        return all(map(_is_plain, value.values() if isinstance(value, Mapping) else value))
+    return isinstance(value, Measured | str | int | float)
 
 
 def _filled(functions: Mapping[str, Callable[..., Any]], given: Mapping[str, Any]) -> dict[str, Callable[..., Any]]:

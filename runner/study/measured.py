@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from runner.base.quantities import above_rounding, number, quantity
+from runner.base.quantities import ROUNDING as SMALLEST
+from runner.base.quantities import number, quantity
 from runner.reporting.document import Document, Notice, NoticeKind
 from runner.reporting.outline import chapters
 
@@ -49,13 +50,17 @@ class Measured:
     parts: tuple[Measured, ...] = ()
 
     def __str__(self) -> str:
-        """Return it as it stands in a sentence, with its unit."""
-        return above_rounding(self.value, self.unit)
+        """Return the value in a sentence, with its unit: "less than 1·10⁻¹² m" for the size of rounding errors."""
+        return self._above(SMALLEST)
 
     @property
     def shown(self) -> str:
-        """It as it stands in a sentence on what must vanish: "0 (rounding)" where it does."""
-        return quantity(self.value, self.unit, rounding=100.0 * ROUNDING if self.unit == "%" else ROUNDING)
+        """The value in a sentence on a number that must vanish: "less than 1 nm" if it does."""
+        return self._above(100.0 * ROUNDING if self.unit == "%" else ROUNDING)
+
+    def _above(self, limit: float) -> str:
+        small = self.value is not None and 0.0 < abs(self.value) < limit
+        return f"less than {quantity(limit, self.unit)}" if small else quantity(self.value, self.unit)
 
     def __mul__(self, factor: float) -> Measured:
         """Return it so many times."""

@@ -20,7 +20,6 @@ from runner.reporting.figures import AXES
 from runner.reporting.published_claims import Verdict, load_statements
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
-from runner.study.chapters import Concluded
 from runner.study.claims import judged_statements
 from runner.study.measured import ROUNDING, Measured
 from runner.study.prose.tables import Column
@@ -283,8 +282,8 @@ def direction(calibrations: Calibrations, worst: str) -> dict[str, Measured]:
     R = alignment(*alignment_angles(t))
     off = [float(np.degrees(np.arccos(np.clip(along @ t, -1.0, 1.0)))) for along in (R.T[:, 2], R[:, 2])]
     return {
-        "alpha": Measured("true alpha", float(np.degrees(base.derivation["alpha"])), "°"),
-        "beta": Measured("true beta", float(np.degrees(base.derivation["beta"])), "°"),
+        "alpha": Measured("true alpha", float(np.degrees(base.truth["alpha"])), "°"),
+        "beta": Measured("true beta", float(np.degrees(base.truth["beta"])), "°"),
         "printed": Measured("angle to the tool, read as printed", off[0], "°"),
         "described": Measured("angle to the tool, read as described", off[1], "°"),
         "inserted": Measured("way of insertion", 1e3 * _INSERTED, "mm"),
@@ -297,12 +296,6 @@ _LEGEND = (
     "A statement matches when every condition of the findings on it is met, and differs when one is not. It is "
     "undecided when nothing here measures it. Equations are correct or wrong as printed by the audit."
 )
-
-
-def said(concluded: Concluded, chapter: str) -> Mapping[str, Any]:
-    """Return the values that a chapter gives a name, and as `holds` whether all of its findings do."""
-    findings, values = concluded(chapter)
-    return {**values, "holds": all(each.holds for each in findings)}
 
 
 def verdict(*holds: bool) -> Verdict:

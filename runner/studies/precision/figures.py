@@ -118,7 +118,7 @@ def compiled_apart(runs: Mapping[str, Run], words: str) -> list[Measured]:
 
     def apart(case: str, arm: str) -> float:
         both = (by_steps(runs, case, arm, plant) for plant in PLANTS[2:])
-        return max(abs(one.joints - other.joints) for one, other in zip(*both, strict=True))
+        return max(abs(float(one.joints - other.joints)) for one, other in zip(*both, strict=True))
 
     return [Measured(f"{words}: {_ARMS[arm]}, {_CASES[case]}", apart(case, arm), "rad") for case, arm in _PAIRS]
 

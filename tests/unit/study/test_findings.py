@@ -44,10 +44,10 @@ def test_what_has_no_value_makes_every_condition_false(nothing):
 
 def test_what_is_of_the_size_of_rounding_errors_is_told_as_such():
     tiny = Measured("distance from the line", 5.6e-17, "m")
-    assert str(tiny) == "0 (rounding)"
+    assert str(tiny) == "less than 1·10⁻¹² m"
     condition = tiny < 1e-13
     assert condition.text == "distance from the line < 1·10⁻¹³ m"
-    assert condition.measured == "distance from the line: 0 (rounding)"
+    assert condition.measured == "distance from the line: less than 1·10⁻¹² m"
 
 
 def test_a_condition_chooses_no_words():
