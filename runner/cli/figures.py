@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
+from runner.base.paths import STUDY_FILE
 from runner.cli.arguments import Parser, Stored
 from runner.config.compose.files import outputs_dir
 from runner.study.names import study_names
@@ -23,7 +24,7 @@ _NARROWEST, _WIDEST = 60.0, 400.0  # mm
 
 
 class _Drawn(Stored):
-    """Argument type: the folder of a stored result, or a study by its name or its report's folder."""
+    """Argument type: the folder of a stored result, or a study by its name, its folder or its report's folder."""
 
     def __call__(self, text: str) -> Path:
         path = Path(text)
@@ -34,7 +35,7 @@ def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     drawn = _Drawn("run", "sweep", "tuning")
     parser.add_argument(
-        "folder", type=drawn, metavar="DIR", help="a run, sweep or tuning; a study's name or report; or latest"
+        "folder", type=drawn, metavar="DIR", help="a run, sweep or tuning; a study's name or folder; or latest"
     )
     parser.add_shared(output="folder to write (default: figures/ in the report's folder)")
     parser.add_argument(
@@ -73,7 +74,9 @@ def _millimetres(text: str) -> float:
 
 
 def _study_of(path: Path) -> tuple[str, Path] | None:
-    """Return the study of a name or of a report's folder, and its outputs folder; None if there is no such study."""
+    """Return a study by its name, its folder or its report's folder, and its outputs folder; None for anything else."""
+    if (path / STUDY_FILE).is_file():
+        return str(path), outputs_dir()
     if path.name not in study_names():
         return None
     if not path.is_dir() and path == Path(path.name):
@@ -96,7 +99,7 @@ def _document(path: Path) -> "tuple[Document, Path]":
 
 
 def _of_study(name: str, outputs: Path) -> "tuple[Document, Path]":
-    folder, mend = outputs / "reports" / name, f"`runner reproduce {name} --output {outputs}` makes"
+    folder, mend = outputs / "reports" / Path(name).name, f"`runner reproduce {name} --output {outputs}` makes"
     if not folder.is_dir():
         raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
     from runner.study.execute import count_missing, make_all

@@ -19,6 +19,13 @@ def test_the_study_that_is_written_is_the_example_and_stands(cli, tmp_path):
     page = (tmp_path / "outputs" / "reports" / "mine" / "report.html").read_text()
     assert "Half the natural frequency more than doubles the settling time" in page
     assert "runner --config-dir mine robot=macro" in page
+    drawn = cli("figures", "mine")
+    assert drawn.code == 0, drawn.err
+    assert drawn.out.splitlines()[-1] == "outputs/reports/mine/figures"
+    assert {path.suffix for path in (tmp_path / "outputs" / "reports" / "mine" / "figures").iterdir()} >= {
+        ".svg",
+        ".csv",
+    }
 
 
 def test_the_page_of_the_docs_shows_the_example():
