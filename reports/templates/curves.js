@@ -10,6 +10,8 @@ const config = {
   modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "sendDataToCloud", "editInChartStudio"],
 };
 const BELOW = 46;
+const MANY = 6; // panels, of more a phone shows one
+const phone = window.matchMedia("(max-width: 44rem)");
 const plots = [];
 
 async function collectPlots() {
@@ -32,6 +34,29 @@ async function collectPlots() {
       if (plot.drawn) draw(plot);
     });
   }
+}
+
+// On a phone a figure of many panels shows one of them, which the reader chooses.
+function choosePanel(figure) {
+  const panels = [...figure.querySelectorAll(".panel")];
+  if (panels.length <= MANY) return;
+  const names = panels.map((panel, at) => panel.querySelector(".panel-title")?.textContent ?? `Panel ${at + 1}`);
+  const select = document.createElement("select");
+  select.append(...names.map((name, at) => new Option(name, at)));
+  const label = Object.assign(document.createElement("label"), { className: "panel-choice", textContent: `Panel of ${panels.length} ` });
+  label.append(select);
+  figure.querySelector(".panels").before(label);
+  const show = () => {
+    label.hidden = !phone.matches;
+    panels.forEach((panel, at) => { panel.hidden = phone.matches && at !== Number(select.value); });
+    for (const plot of plots.filter((one) => one.figure === figure)) {
+      plot.single = phone.matches;
+      if (plot.drawn && plot.element.clientWidth) draw(plot);
+    }
+  };
+  select.addEventListener("change", show);
+  phone.addEventListener("change", show);
+  show();
 }
 
 // Panels of a figure that have the same x axis are zoomed together.
@@ -74,9 +99,13 @@ function leadToRun(event) {
   document.dispatchEvent(new Event("run"));
 }
 
+// Enlarged panels fill the window: its height less the button, the titles and the legends.
 function baseHeight(plot) {
-  const most = plot.element.closest("dialog") ? 0.7 * window.innerHeight : 400;
-  return Math.round(Math.min(most, Math.max(230, 0.64 * plot.width)));
+  const panels = plot.element.closest("dialog .panels");
+  if (!panels) return Math.round(Math.min(400, Math.max(230, 0.64 * plot.width)));
+  const shown = [...panels.children].filter((panel) => !panel.hidden).length;
+  const rows = Math.ceil(shown / getComputedStyle(panels).gridTemplateColumns.split(" ").length);
+  return Math.round(Math.max(230, (window.innerHeight - 80) / rows - 50 - plot.legend));
 }
 
 function themed(plot, dark = isDark()) {
@@ -110,7 +139,7 @@ function themed(plot, dark = isDark()) {
   });
   const layout = {
     ...plot.panel.layout,
-    showlegend: plot.panel.layout.showlegend && plot.panel.legend !== false,
+    showlegend: plot.panel.layout.showlegend && (plot.panel.legend !== false || plot.single === true),
     xaxis: axis(plot.panel.layout.xaxis),
     yaxis: axis(plot.panel.layout.yaxis),
     width: plot.width,
@@ -141,6 +170,7 @@ function fitLegend(plot) {
 
 function draw(plot) {
   plot.width ||= plot.element.clientWidth;
+  if (!plot.width) return;
   if (!plot.drawn) {
     window.Plotly.newPlot(plot.element, ...themed(plot), config);
     plot.element.on("plotly_afterplot", () => fitLegend(plot));
@@ -151,6 +181,7 @@ function draw(plot) {
     plot.element.classList.add("drawn");
     plot.drawn = true;
     fitLegend(plot);
+    followCursor(plot);
   } else {
     window.Plotly.react(plot.element, ...themed(plot), config);
   }
@@ -167,6 +198,7 @@ function resize(plot, width) {
 async function startPlots() {
   await collectPlots();
   if (!plots.length) return;
+  document.querySelectorAll("figure.curves").forEach(choosePanel);
   const script = document.createElement("script");
   script.textContent = await inflate("plotly");
   document.head.append(script);

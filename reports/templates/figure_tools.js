@@ -35,7 +35,16 @@ function rowsOfMap(panel, title) {
   ]));
 }
 
+function rowsOfMotion({ runs }) {
+  const names = ["run", "time (s)", ...["tip", "desired"].flatMap((what) => ["x", "y", "z"].map((axis) => `${what} ${axis} (m)`))];
+  return [names, ...runs.flatMap((run) => points(run.tip).map((tip, at) => [
+    run.name, run.times[at], ...tip, ...run.target.subarray(3 * at, 3 * at + 3),
+  ]))];
+}
+
 function rowsOf(figure) {
+  const motion = motions.find((one) => one.figure === figure);
+  if (motion) return rowsOfMotion(motion);
   const table = figure.querySelector("table");
   if (table) return [...table.rows].map((row) => [...row.cells].map((one) => one.innerText.trim().replace(/\s+/g, " ")));
   const panels = [...figure.querySelectorAll(".panel")].map((panel) => [
@@ -80,7 +89,7 @@ async function pictureOfCurves(figure) {
 /* ---- enlarged ---- */
 
 function enlarge(figure) {
-  const shown = figure.querySelector(".panels") ?? figure.querySelector("img.still");
+  const shown = figure.querySelector(".panels, .live") ?? figure.querySelector("img.still");
   const place = document.createComment("");
   const dialog = document.createElement("dialog");
   const close = Object.assign(document.createElement("button"), { type: "button", className: "copy", textContent: "Close" });
@@ -112,4 +121,9 @@ const actions = {
 for (const button of document.querySelectorAll("button[data-do]")) {
   const figure = button.closest("figure");
   button.addEventListener("click", () => actions[button.dataset.do](figure, figure.id || "figure"));
+}
+
+for (const button of document.querySelectorAll("button[data-save]")) {
+  const text = button.parentElement.querySelector("code").textContent;
+  button.addEventListener("click", () => save(button.dataset.save, "text/plain", text));
 }

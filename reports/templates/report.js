@@ -1,4 +1,4 @@
-/* What every page does: theme, libraries, playbacks, filters, commands, contents, pictures. */
+/* What every page does: theme, libraries, filters, commands, contents, pictures. */
 const palette = JSON.parse(document.getElementById("palette").textContent);
 const darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
 const narrowScreen = window.matchMedia("(max-width: 64rem)");
@@ -10,28 +10,6 @@ const isDark = () => darkScreen.matches && !printing;
 async function inflate(id) {
   const packed = await fetch("data:application/gzip;base64," + document.getElementById(id).textContent);
   return new Response(packed.body.pipeThrough(new DecompressionStream("gzip"))).text();
-}
-
-/* ---- playbacks ---- */
-
-let player = null;
-
-async function play(figure) {
-  const stage = figure.querySelector(".stage");
-  stage.classList.add("loading");
-  player ??= inflate("player");
-  const frame = document.createElement("iframe");
-  frame.title = stage.querySelector("img").alt;
-  frame.dataset.scene = figure.querySelector("script").textContent.trim();
-  frame.dataset.dark = isDark();
-  frame.srcdoc = await player;
-  stage.append(frame);
-  stage.classList.remove("loading");
-  stage.classList.add("playing");
-}
-
-for (const figure of document.querySelectorAll("figure.playback")) {
-  figure.querySelector("button.play").addEventListener("click", () => play(figure), { once: true });
 }
 
 /* ---- audited equations ---- */
@@ -114,7 +92,7 @@ document.querySelectorAll("main section").forEach((section) => reading.observe(s
 const rest = document.querySelector("details.rest");
 if (rest) {
   const unfold = () => {
-    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)).split(":")[0]);
     if (!target || !rest.contains(target) || rest.open) return;
     rest.open = true;
     target.scrollIntoView();

@@ -51,6 +51,12 @@ def playback_bodies(urdf_text: str, model: RobotModel, q: FloatArray) -> list[Bo
     ]
 
 
+def joint_places(model: RobotModel, q: FloatArray) -> dict[str, FloatArray]:
+    """Return the position of each joint at each instant, shape (T, 3), in m, for joint positions of shape (T, nq)."""
+    poses = np.array([model.frame_poses(row, model.joint_names) for row in q])
+    return {name: poses[:, place, :3, 3] for place, name in enumerate(model.joint_names)}
+
+
 def _shapes(link: ET.Element) -> tuple[list[Segment], list[Ball]]:
     segments: list[Segment] = []
     balls: list[Ball] = []

@@ -6,7 +6,7 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.doctor.examination import Examination
 from runner.doctor.finding import GRADES
-from runner.reporting.bodies import playback_bodies
+from runner.reporting.bodies import joint_places, playback_bodies
 from runner.reporting.charts.arm import arm_motion
 from runner.reporting.document import Document, Notice, Playback, Provenance, Section, Table
 from runner.reporting.markup import literal, literals
@@ -63,7 +63,7 @@ def _swings(found: Examination, model: RobotModel, home: FloatArray) -> Playback
     caption = (
         "At the home proposed, and each joint in turn, swung about it; links without simple shapes are drawn as bones."
     )
-    return Playback(caption, times, bodies, model.tip_positions(q), None, still)
+    return Playback(caption, times, bodies, model.tip_positions(q), None, still, joints=joint_places(model, q))
 
 
 def _joints(model: RobotModel) -> Table:

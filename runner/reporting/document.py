@@ -44,10 +44,16 @@ class Items:
 
 @dataclass(frozen=True)
 class Code:
-    """A text that is shown as it is typed, and can be copied."""
+    """A text that is shown as it is typed, and can be copied.
+
+    Attributes:
+        text: The text.
+        name: Name of the file that HTML saves it as; then HTML shows it only on a click, and paper does not at all.
+    """
 
     block: ClassVar[str] = "code"
     text: str
+    name: str = ""
 
 
 NoticeKind = Literal["finding", "warning", "failure", "stands", "falls", "turns", "why"]
@@ -268,7 +274,7 @@ class Body:
 
 @dataclass(frozen=True)
 class Playback:
-    """The motion in three dimensions: played, paused and scrubbed in HTML, a still picture in the PDF.
+    """The motion of an arm, and of further ones: played, paused and turned in HTML, a still picture in the PDF.
 
     Attributes:
         caption: What moves.
@@ -278,6 +284,12 @@ class Playback:
         desired: Desired path, shape (M, 3), or None.
         still: The motion as a still SVG picture (several instants in one), for the PDF.
         origin: Its number in the source, command and commit.
+        name: Name of the run among several.
+        ends: Remark if the run ended early, such as "failed at 0.1 s", or "".
+        tip: Position of the tip at each instant, shape (T, 3), in m; empty if its error is not shown.
+        target: Desired position of the tip at each instant, shape (T, 3), in m.
+        joints: Name and position of each joint at each instant, shape (T, 3), in m.
+        others: Motions of further runs, which can be chosen or shown as a ghost.
     """
 
     block: ClassVar[str] = "playback"
@@ -288,6 +300,12 @@ class Playback:
     desired: FloatArray | None
     still: str
     origin: Origin = field(default_factory=Origin)
+    name: str = ""
+    ends: str = ""
+    tip: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    target: FloatArray = field(default_factory=lambda: np.zeros((0, 3)))
+    joints: Mapping[str, FloatArray] = field(default_factory=dict)
+    others: Sequence["Playback"] = ()
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,21 @@
-"""Figures of a stored run in the layout of the thesis, and its picture on the first screen."""
+"""Figures of stored runs: curves, motions, and the picture on the first screen."""
+
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from runner.reporting.bodies import playback_bodies
+from runner.base.quantities import quantity
+from runner.reporting.bodies import joint_places, playback_bodies
 from runner.reporting.charts.arm import arm_motion, moving_arm
 from runner.reporting.charts.figure import spaced_indices
-from runner.reporting.document import Cover, Curves, Origin, Panel, Playback, Series
+from runner.reporting.document import Block, Cover, Curves, Origin, Panel, Playback, Series
 from runner.store import Calibration, Run
 
 AXES = ("x", "y", "z")
 _STILLS = 6  # instants in the still picture of a motion
 _FRAMES = 60
+_MOST_JOINTS = 5  # panels of torques of several runs
 
 
 def origin(job: Run | Calibration, number: str = "") -> Origin:
@@ -92,7 +97,45 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
     moving = bool(np.ptp(desired, axis=0).any())
     path = desired if moving else np.vstack([tip[0], desired[0]])
     still = arm_motion(model, q[stills], t[stills].tolist(), path=tip, desired=path, goal=desired[-1])
-    return Playback(caption, t[shown], playback_bodies(run.urdf, model, q[shown]), tip, path, still, origin(run))
+    return Playback(
+        caption,
+        t[shown],
+        playback_bodies(run.urdf, model, q[shown]),
+        tip,
+        path,
+        still,
+        origin(run),
+        ends=f"failed at {quantity(failure['time'], 's')}" if (failure := run.failure_record) else "",
+        tip=tip[shown],
+        target=desired[shown],
+        joints=joint_places(model, q[shown]),
+    )
+
+
+def overlaid(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
+    """Return the tip error and the torque of each joint, runs in the same axes, and their motions; repetition 0.
+
+    Args:
+        runs: The runs, up to eight, so that colours tell them apart.
+        names: Name of each.
+    """
+    shown = list(zip(runs, names, strict=True))
+    error = [Series(name, run.t, np.linalg.norm(run.vector("error"), axis=1), color=place)
+             for place, (run, name) in enumerate(shown)]  # fmt: skip
+    panels = [Panel("Tip error", "time (s)", "tip error (m)", error)]
+    joints = min(len(run.provenance["joints"]) for run in runs)
+    units = {run.units[f"tau{joint + 1}"] for run in runs for joint in range(joints)}
+    for joint in range(min(joints, _MOST_JOINTS)) if len(units) == 1 else ():
+        (unit,) = units
+        what = "Force" if unit == "N" else "Torque"
+        torques = [Series(name, run.t, run.joints("tau")[:, joint], color=place)
+                   for place, (run, name) in enumerate(shown)]  # fmt: skip
+        label = f"{what.lower()} of {runs[0].provenance['joints'][joint]}"
+        panels.append(Panel(f"{what}{label[len(what) :]}", "time (s)", f"{label} ({unit})", torques))
+    caption = "Distance of the tip from its desired position, and torques; repetition 0."
+    first, *others = [replace(playback(run, ""), name=name) for run, name in shown]
+    told = "The motions of repetition 0." if others else "The motion of repetition 0."
+    return [Curves(caption, panels, origin=origin(runs[0])), replace(first, caption=told, others=others)]
 
 
 def cover(run: Run, caption: str, until: float | None = None) -> Cover:

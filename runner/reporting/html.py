@@ -4,7 +4,6 @@ import base64
 import gzip
 import hashlib
 import json
-import re
 from collections.abc import Sequence
 from functools import cache, lru_cache
 from importlib import resources
@@ -12,19 +11,18 @@ from urllib.parse import quote
 
 from runner.base import progress
 from runner.base.paths import templates_dir
-from runner.reporting import formulas, outline, playback
+from runner.reporting import formulas, outline
 from runner.reporting.charts import palette
 from runner.reporting.charts.interactive import plotly_spec
 from runner.reporting.document import Curves, Document, Maps, Playback, RunList
 from runner.reporting.outline import Places
+from runner.reporting.playback import playback_spec
 from runner.reporting.run_list import run_list_spec
 from runner.reporting.tally import tallies
 from runner.reporting.templating import Code, html_environment
 
-_SCRIPT = re.compile(r"<script\b[^>]*>(.*?)</script>", re.DOTALL)
-_OF_PLAYER = ("blob:", "'wasm-unsafe-eval'")  # it unpacks its code by WebAssembly, and runs it from an address
 _OF_PLOTS = ("plot_keys", "curves")
-_SCRIPTS = ("report", *_OF_PLOTS, "figure_tools")
+_SCRIPTS = ("report", *_OF_PLOTS, "motion", "figure_tools")
 
 
 def render(document: Document) -> str:
@@ -35,7 +33,8 @@ def render(document: Document) -> str:
         any(isinstance(block, kinds) for block in outline.blocks(document))
         for kinds in ((Curves, Maps, RunList), RunList, Playback)
     )
-    library, player = _plotly() if has_plots else "", playback.player() if has_playback else ""
+    library = _plotly() if has_plots else ""
+    left_out = (() if has_plots else _OF_PLOTS) + (() if has_plots or has_playback else ("motion",))
     return (
         html_environment()
         .get_template("report.html.j2")
@@ -51,13 +50,12 @@ def render(document: Document) -> str:
             places=Places(document),
             plots=_Pack(),
             pictures=_Pack(),
-            scene=playback.record,
-            player=compress_text(player) if player else "",
+            playback_spec=playback_spec,
             plotly=compress_text(library) if library else "",
-            script_sources=lambda own: script_policy([*own, *([library] if library else [])], player),
+            script_sources=lambda own: script_policy([*own, *([library] if library else [])]),
             palette={"light": palette.LIGHT, "dark": palette.DARK},
             style=asset("style.css"),
-            scripts=[asset(f"{name}.js") for name in _SCRIPTS if has_plots or name not in _OF_PLOTS],
+            scripts=[asset(f"{name}.js") for name in _SCRIPTS if name not in left_out],
             run_list_script=asset("run_list.js") if has_run_list else "",
         )
     )
@@ -100,10 +98,9 @@ def _math_font() -> str:
     return base64.b64encode((templates_dir() / "maths.woff2").read_bytes()).decode("ascii")
 
 
-def script_policy(scripts: Sequence[str], player: str = "") -> Code:
-    """Return what a policy calls some scripts, and those of a player's page, which unpacks its code itself."""
-    known = [f"'sha256-{_sha256(script)}'" for script in (*scripts, *_SCRIPT.findall(player))]
-    return Code(" ".join([*known, *(_OF_PLAYER if player else ())]))
+def script_policy(scripts: Sequence[str]) -> Code:
+    """Return what a policy calls some scripts."""
+    return Code(" ".join(f"'sha256-{_sha256(script)}'" for script in scripts))
 
 
 def _sha256(text: str) -> str:

@@ -5,11 +5,13 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import yaml
+
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.config.compose.compose import compose
 from runner.metrics.caveats import changes_since
-from runner.reporting.document import Block, Cover, Document, Notice, Provenance, Section, Table, Text
+from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import cover, desired_motion, playback, torque_and_error
 from runner.reporting.key_metrics import key_metrics
 from runner.reporting.markup import literal, literals
@@ -171,15 +173,20 @@ def _of_step(worth: Mapping[str, Any], metric: str) -> list[str]:
 def config_blocks(run: Run) -> list[Block]:
     """Return the keys that were changed, and then all of them; of a config that no group here makes all alone."""
     changed = changed_keys(run)
-    rows = [literals([key, _yaml(value)]) for key, value in flatten(run.config).items() if key != "outputs"]
-    everything = Table("All keys and their values.", ["key", "value"], rows, code=(0, 1), folded=changed is not None)
+    resolved = {key: value for key, value in run.config.items() if key != "outputs"}
+    rows = [literals([key, _yaml(value)]) for key, value in flatten(resolved).items()]
+    file = Code(yaml.safe_dump(resolved, sort_keys=False, allow_unicode=True), "config.yaml")
+    everything: list[Block] = [
+        Table("All keys and their values.", ["key", "value"], rows, code=(0, 1), folded=changed is not None),
+        file,
+    ]
     if changed is None:
-        return [everything]
+        return everything
     own = [literals([key, _yaml(value), _yaml(before)]) for key, (before, value) in changed.items()]
     if not own:
-        return [Text("Every key has the value that its group gives it."), everything]
+        return [Text("Every key has the value that its group gives it."), *everything]
     header = ["key", "value", "in its group"]
-    return [Table("Keys that were changed against the groups chosen.", header, own, code=(0, 1, 2)), everything]
+    return [Table("Keys that were changed against the groups chosen.", header, own, code=(0, 1, 2)), *everything]
 
 
 def provenance(runs: Sequence[Run]) -> Provenance:

@@ -10,8 +10,8 @@ from runner.reporting.answers import sentences
 from runner.reporting.comparison.differences import ConfigDifferences, find_differences
 from runner.reporting.comparison.pairs import match
 from runner.reporting.comparison.sweeps import compare_runs, letter
-from runner.reporting.document import Block, Curves, Document, Notice, Panel, Section, Series, Table
-from runner.reporting.figures import origin
+from runner.reporting.document import Block, Document, Notice, Section, Table
+from runner.reporting.figures import overlaid
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import title, whole_metrics
 from runner.reporting.run_report import config_blocks, provenance, run_blocks, run_name
@@ -19,7 +19,6 @@ from runner.reporting.spec_blocks import spec_of_several
 from runner.store import Run
 from runner.sweeps.measurements import measure_run
 
-_MOST_JOINTS = 5  # panels of torques
 _MOST_CURVES = 8  # runs in one panel
 
 
@@ -79,22 +78,8 @@ def _metrics(runs: Sequence[Run], names: Sequence[str]) -> Table:
 
 
 def _curves(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
-    """Return the tip error and the torque of each joint, all runs in the same axes, repetition 0."""
-    shown = list(zip(runs, names, strict=True))[:_MOST_CURVES]
-    error = [Series(name, run.t, np.linalg.norm(run.vector("error"), axis=1), color=place)
-             for place, (run, name) in enumerate(shown)]  # fmt: skip
-    panels = [Panel("Tip error", "time (s)", "error (m)", error)]
-    joints = min(len(run.provenance["joints"]) for run, _ in shown)
-    units = {run.units[f"tau{joint + 1}"] for run, _ in shown for joint in range(joints)}
-    for joint in range(min(joints, _MOST_JOINTS)) if len(units) == 1 else ():
-        (unit,) = units
-        what = "Force" if unit == "N" else "Torque"
-        torques = [Series(name, run.t, run.joints("tau")[:, joint], color=place)
-                   for place, (run, name) in enumerate(shown)]  # fmt: skip
-        label = str(shown[0][0].provenance["joints"][joint])
-        panels.append(Panel(f"{what} of {label}", "time (s)", f"{what.lower()} ({unit})", torques))
-    caption = "Distance of the tip from its desired position, and torques; repetition 0."
-    blocks: list[Block] = [Curves(caption, panels, origin=origin(runs[0]))]
-    if len(runs) > len(shown):
-        blocks.append(Notice("warning", f"{len(runs) - len(shown)} runs are not drawn", "The first ones are drawn."))
+    """Return the curves and motions of the first runs."""
+    blocks = overlaid(runs[:_MOST_CURVES], names[:_MOST_CURVES])
+    if len(runs) > _MOST_CURVES:
+        blocks.append(Notice("warning", f"{len(runs) - _MOST_CURVES} runs are not drawn", "The first ones are drawn."))
     return blocks

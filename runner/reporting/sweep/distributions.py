@@ -1,6 +1,6 @@
 """Distributions of a metric, and the cells with the lowest and the highest median."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from runner.base.errors import StoreError
 from runner.base.quantities import with_ends
 from runner.reporting.charts.figure import POINTS, spaced_indices
 from runner.reporting.document import Block, Curves, Notice, Panel, Section, Series, Table
-from runner.reporting.figures import playback, torque_and_error
+from runner.reporting.figures import overlaid, playback, torque_and_error
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, group_levels, spans_decades
@@ -88,20 +88,17 @@ def _in_order(subject: Subject, metric: str) -> Curves:
     )
 
 
-def extremes_section(subject: Subject, low: Run, high: Run) -> Section:
-    """Return the cells with the lowest and the highest median of the first metric, and their motion.
+def extremes_section(subject: Subject, shown: Mapping[int, Run]) -> Section:
+    """Return the cells with the lowest and the highest median of the first metric, and some motions.
 
     Args:
         subject: The sweep, with at least one ranked cell.
-        low: Run of the first ranked cell.
-        high: Run of the last ranked cell.
+        shown: The run of each cell that is shown, by ascending median.
     """
     ranked = subject.ranked
     ends = [ranked[0], ranked[-1]] if len(ranked) > 1 else [ranked[0]]
-    sections = [Section(f"Lowest: {subject.cell_name(ranked[0])}", motion_blocks(low))]
-    if len(ranked) > 1:
-        sections.append(Section(f"Highest: {subject.cell_name(ranked[-1])}", motion_blocks(high)))
-    return Section("Lowest and highest median", (_medians(subject, ends),), sections)
+    motions = motion_blocks({subject.cell_name(cell): run for cell, run in shown.items()})
+    return Section("Lowest and highest median", (_medians(subject, ends), *motions))
 
 
 def _medians(subject: Subject, cells: Sequence[int]) -> Table:
@@ -134,12 +131,13 @@ def _with_interval(values: np.ndarray, unit: str) -> str:
     return f"{text} (n = {interval.n})" if interval.low is None else f"{text} ({ends}, n = {interval.n})"
 
 
-def motion_blocks(run: Run) -> list[Block]:
-    """Return the torques, the error and the motion of repetition 0, or the reason why it has none."""
+def motion_blocks(runs: Mapping[str, Run]) -> list[Block]:
+    """Return curves and motions of repetition 0 of some runs by their names, or the reason why there are none."""
     try:
-        return [
-            torque_and_error(run, "Torque of each joint and tip position error, repetition 0."),
-            playback(run, "The motion of repetition 0."),
-        ]
+        if len(runs) == 1:
+            (run,) = runs.values()
+            curves = torque_and_error(run, "Torque of each joint and tip position error, repetition 0.")
+            return [curves, playback(run, "The motion of repetition 0.")]
+        return overlaid(list(runs.values()), list(runs))
     except StoreError as error:
         return [Notice("warning", "No motion to show", literal(str(error)))]

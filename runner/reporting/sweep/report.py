@@ -11,6 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.sanitize import one_line
 from runner.reporting.answers import Answer, sentences
+from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.sweeps import NOISE_ALONE, noise_alone
 from runner.reporting.document import Document, Provenance, RunList, Section, Text
 from runner.reporting.markup import literal
@@ -41,6 +42,7 @@ MOST_RUNS = 5000
 
 _MOST_VALUES = 100  # of what made the runs
 _MOST_CHOICES = 4  # that the title names
+_MOST_MOTIONS = 6  # that are laid over each other, from the lowest to the highest median
 _NAMED = 3  # cells that failed, on the first screen
 
 
@@ -82,8 +84,9 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         sections.append(tradeoff.section(subject, traded))
     if ranked:
         sections.append(distributions.section(subject))
-        low, high = replace(sweep, hashes=[measurements.hashes[cell] for cell in (ranked[0], ranked[-1])]).runs()
-        sections.append(distributions.extremes_section(subject, low, high))
+        cells = [ranked[place] for place in spaced_indices(len(ranked), _MOST_MOTIONS)]
+        runs = replace(sweep, hashes=subject.hashes(cells)).runs()
+        sections.append(distributions.extremes_section(subject, dict(zip(cells, runs, strict=True))))
     sections.append(_all_runs(subject, sweep, runs_address))
     sections.append(made_by(measurements, ("sweep", sweep.folder.name)))
     return Document(

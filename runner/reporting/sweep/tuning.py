@@ -312,7 +312,7 @@ def _trial(trials: Trials, place: int, run: Run) -> list[Block]:
     told = "Medians, in brackets smallest and largest over the repetitions."
     return [
         Table("Tuned keys.", ["key", "value", "range"], rows, (1, 2), Origin(command=trials.command(place))),
-        *motion_blocks(run),
+        *motion_blocks({"": run}),
         Table(told, ["metric", "value"], metrics, (1,)),
     ]
 

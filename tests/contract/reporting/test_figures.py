@@ -40,9 +40,9 @@ def test_joint_signals_leave_out_signals_with_the_same_beginning(stored):
 def test_torque_and_error_are_the_trace(stored):
     figure = torque_and_error(stored, "caption", "figure 3.9")
     torque, error = figure.panels
-    assert [series.name for series in torque.series] == ["1", "2", "3"]
+    assert [series.name for series in torque.series] == ["q1", "q2", "q3"]
     assert [series.name for series in error.series] == ["x", "y", "z"]
-    assert (torque.y_label, error.y_label) == ("torque (N m)", "error (m)")
+    assert (torque.y_label, error.y_label) == ("torque (N m)", "tip error (m)")
     assert np.array_equal(torque.series[1].y, stored.trace()["tau2"])
     assert np.array_equal(error.series[2].y, stored.trace()["desired_z"] - stored.trace()["tip_z"])
 
@@ -54,7 +54,9 @@ def test_a_figure_ends_where_it_is_told_to(stored):
 
 def test_desired_motion_ends_with_the_motion_and_keeps_the_colour_of_its_axis(stored):
     figure = desired_motion(stored, "caption", "figure 3.6", ("y",))
-    assert [panel.y_label for panel in figure.panels] == ["position (m)", "velocity (m/s)", "acceleration (m/s²)"]
+    assert [panel.y_label for panel in figure.panels] == [
+        "desired position (m)", "desired velocity (m/s)", "desired acceleration (m/s²)",
+    ]  # fmt: skip
     for panel in figure.panels:
         (series,) = panel.series
         assert series.x[-1] == pytest.approx(1.0)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from support.sample_sweep import measurements, noisy, two_axes
 
-from runner.reporting.document import Section, Table
+from runner.reporting.document import Table
 from runner.reporting.sweep import distributions, question
 from runner.reporting.sweep.subject import choose
 
@@ -91,8 +91,8 @@ def test_missing_repetitions_are_left_out_and_failed_ones_are_beyond_every_numbe
 @pytest.fixture(name="blocks")
 def _blocks(monkeypatch):
     """Return the blocks on the first and the last cell, whose runs are not stored: no motion is shown."""
-    monkeypatch.setattr(distributions, "_motion", lambda title, _: Section(title, ()))
-    return lambda subject: distributions.extremes_section(subject, None, None).blocks
+    monkeypatch.setattr(distributions, "motion_blocks", lambda _: [])
+    return lambda subject: distributions.extremes_section(subject, {}).blocks
 
 
 def test_n_stands_beside_the_intervals_of_both_ends(blocks):

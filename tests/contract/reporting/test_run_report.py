@@ -3,13 +3,14 @@
 from types import SimpleNamespace
 
 import pytest
+import yaml
 from fixtures.stored import RUNS
 from support.engines import ASKED
 
 from runner.base.quantities import quantity
 from runner.reporting import outline
 from runner.reporting.comparison.runs import runs_document
-from runner.reporting.document import Curves, Notice, Playback, Provenance, Table, Text
+from runner.reporting.document import Code, Curves, Notice, Playback, Provenance, Table, Text
 from runner.reporting.formulas import faulty
 from runner.reporting.metric_titles import title
 from runner.reporting.render import write_report
@@ -46,6 +47,7 @@ def test_a_finished_run_is_told_whole(finished):
         Text,
         Table,
         Table,
+        Code,
         Provenance,
     ]
     metrics, changed, config = blocks_of(document, Table)
@@ -55,6 +57,8 @@ def test_a_finished_run_is_told_whole(finished):
     assert ["controller.natural_frequency", "30.0"] in [list(row) for row in config.rows]
     assert ["trajectory.duration", "1", "3.0"] in [list(row) for row in changed.rows]
     assert "outputs" not in [row[0] for row in config.rows]
+    (file,) = blocks_of(document, Code)
+    assert yaml.safe_load(file.text) == {key: value for key, value in finished.config.items() if key != "outputs"}
     (block,) = blocks_of(document, Provenance)
     rows = dict(block.rows)
     assert rows["plant"] == f"{PLANT[ASKED.removeprefix('plant=')]} in steps of 1 ms"

@@ -6,7 +6,7 @@ import pytest
 from fixtures.stored import GRID, NOISY
 
 from runner.reporting import outline
-from runner.reporting.document import Maps, Playback, RunList
+from runner.reporting.document import Curves, Maps, Playback, RunList
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
 from runner.reporting.sweep.report import sweep_document
@@ -66,12 +66,18 @@ def test_the_line_of_theory_parts_the_failed_cells_from_the_others(document):
     assert cells.failed.tolist() == [[product > 1.0 for product in row] for row in products]
 
 
-def test_both_ends_move(document, sweep12):
-    low, high = blocks_of(document, Playback)
-    assert low.origin.command != high.origin.command
+def test_motions_from_the_lowest_to_the_highest_median_are_laid_over_each_other(document, sweep12):
+    (motion,) = blocks_of(document, Playback)
+    names = [run.name for run in (motion, *motion.others)]
+    ok = [found for found in sweep12.runs() if found.status == "ok"]
+    assert len(names) == len(set(names)) == min(6, len(ok))
+    (curves,) = [block for block in blocks_of(document, Curves) if block.origin == motion.origin]
+    assert [series.name for series in curves.panels[0].series] == names
     listing = blocks_of(document, RunList)[0]
-    assert listing.commands[0] == low.origin.command.partition(" outputs=")[0].removesuffix(" plant=mujoco_fallback")
-    assert listing.hashes[0] in {found.hash for found in sweep12.runs() if found.status == "ok"}
+    commands = [run.origin.command for run in (motion, *motion.others)]
+    assert commands[0] != commands[-1]
+    assert listing.commands[0] == commands[0].partition(" outputs=")[0].removesuffix(" plant=mujoco_fallback")
+    assert listing.hashes[0] in {found.hash for found in ok}
 
 
 def test_every_run_is_listed_with_its_folder(document, sweep12):
@@ -150,4 +156,4 @@ def test_a_run_without_a_trace_says_how_to_get_one(sweep12, tmp_path):
     document = sweep_document(open_sweep(copied / "sweeps" / sweep12.folder.name))
     assert not blocks_of(document, Playback)
     titles = [getattr(block, "title", "") for block in outline.blocks(document)]
-    assert titles.count("No motion to show") == 2
+    assert titles.count("No motion to show") == 1
