@@ -41,13 +41,59 @@ for (const figure of document.querySelectorAll("figure.equations")) {
 }
 
 // A formula that is wider than the page is scrolled by keys, too.
-const wide = new ResizeObserver((entries) => {
-  for (const { target } of entries) {
-    if (target.scrollWidth > target.clientWidth) target.tabIndex = 0;
-    else target.removeAttribute("tabindex");
+const reach = (formula) => {
+  if (formula.scrollWidth > formula.clientWidth) formula.tabIndex = 0;
+  else formula.removeAttribute("tabindex");
+};
+const wide = new ResizeObserver((entries) => entries.forEach(({ target }) => reach(target)));
+// A folded formula is not observed, and the font of mathematics changes the width of its content.
+document.fonts.ready.then(() => document.querySelectorAll(".equation, .form-math").forEach((formula) => {
+  reach(formula);
+  wide.observe(formula);
+}));
+
+/* ---- formulas ---- */
+
+// A copied formula pastes as a line of text; by itself a browser puts each sign on its own line.
+function linear(node) {
+  const parts = [...node.children].map(linear);
+  const group = (text) => ([...text].length > 1 ? `(${text})` : text);
+  const script = (sign, text) => (text ? sign + group(text) : "");
+  switch (node.localName) {
+    case "msub": return parts[0] + script("_", parts[1]);
+    case "msup": return parts[0] + script("^", parts[1]);
+    case "msubsup": return parts[0] + script("_", parts[1]) + script("^", parts[2]);
+    case "mmultiscripts": { // of frames: below and above, then those before the letter
+      const [letter, below, above, , low, high] = parts;
+      return script("^", high) + script("_", low) + letter + script("_", below) + script("^", above);
+    }
+    case "mfrac": return `${group(parts[0])}/${group(parts[1])}`;
+    case "msqrt": return `√${group(parts.join(""))}`;
+    case "mtable": return `[${parts.join("; ")}]`;
+    case "mtr": return parts.join(", ");
+    case "mo": return /^[=≈≤≥]$/.test(node.textContent) ? ` ${node.textContent} ` : node.textContent;
+    default: return parts.length ? parts.join("") : node.textContent;
   }
+}
+
+document.addEventListener("copy", (event) => {
+  const selection = window.getSelection();
+  const copied = document.createElement("div");
+  for (let i = 0; i < selection.rangeCount; i += 1) {
+    const range = selection.getRangeAt(i);
+    const around = range.commonAncestorContainer;
+    const formula = (around.closest ? around : around.parentElement).closest("math");
+    copied.append(formula ? formula.cloneNode(true) : range.cloneContents());
+  }
+  const formulas = copied.querySelectorAll("math");
+  if (!formulas.length) return;
+  event.preventDefault();
+  event.clipboardData.setData("text/html", copied.innerHTML);
+  formulas.forEach((formula) => formula.replaceWith(linear(formula)));
+  document.body.append(copied); // lines are broken as they are drawn
+  event.clipboardData.setData("text/plain", copied.innerText);
+  copied.remove();
 });
-document.querySelectorAll(".equation, .form-math").forEach((equation) => wide.observe(equation));
 
 /* ---- commands, contents ---- */
 
