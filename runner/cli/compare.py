@@ -47,7 +47,7 @@ def add_arguments(parser: Parser) -> None:
         json="print JSON, one object for each row",
         by="compare the levels of these axes of one sweep",
         within="within each level of these axes (default: over all, then the strongest)",
-        where="only cells with this value; repeat for more",
+        where="only cells with this value of a key; repeat for more",
         output="recording: folder of the report",
     )
     parser.add_argument("--all", action="store_true", help="print every metric and the method")

@@ -31,7 +31,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_shared(
         metrics="metrics (default: all)",
         by="one row for each combination of these axes",
-        where="only the cells with this value; repeat for more",
+        where="only cells with this value, swept or in the config; repeat for more",
         output="file to write (default: standard output)",
     )
 
@@ -41,22 +41,23 @@ def run(options: Namespace) -> int:
     chosen = _format(options)
     from runner import store
     from runner.store.kinds import kind_of
-    from runner.sweeps.measurements import measure_sweep
+    from runner.sweeps.measurements import limit_sweep, measure_sweep, split_where
 
     if kind_of(options.folder) == "run":
         return _of_run(options, chosen)
     sweep = store.open_sweep(options.folder)
-    measurements = measure_sweep(sweep)
+    swept, others = split_where(sweep, options.where)
+    measurements = measure_sweep(limit_sweep(sweep, others))
     if not (chosen or options.metrics or options.by or options.where):
         return _whole(options.folder, measurements)
     if chosen in _FOR_PAPER:
         from runner.reporting.export.paper_table import of_sweep
 
-        table = of_sweep(measurements, sweep.command, options.metrics, options.by, options.where)
+        table = of_sweep(measurements, sweep.command, options.metrics, options.by, swept)
         return _put(_for_paper(table, chosen), options.output)
     from runner.reporting.export.pooling import as_csv, as_parquet, selection
 
-    frame = selection(measurements, options.metrics, options.by, options.where)
+    frame = selection(measurements, options.metrics, options.by, swept)
     return _put(as_parquet(frame, measurements) if chosen == "parquet" else as_csv(frame), options.output)
 
 

@@ -166,6 +166,12 @@ def explain_quantity(text: str, units: Sequence[str]) -> str:
     unit = quantity.unit if quantity is not None else ""
     if not units:
         return f"has no unit; found {quoted(text)}; write only the number"
+    if quantity is not None and any(quantity.in_unit(own) is not None for own in units):
+        fits, other = ("revolute", "prismatic")[:: 1 if quantity.in_unit(units[0]) is not None else -1]
+        allowed = (
+            f"write {units[0]} for revolute joints, {units[-1]} for prismatic ones, a number without unit for both"
+        )
+        return f"{quoted(text)} has a unit of {fits} joints, and sets a {other} joint; {allowed}"
     allowed = " or ".join(f"{own} (written {', '.join(WRITTEN[own])})" for own in units)
     known = [written for all_written in WRITTEN.values() for written in all_written]
     what = "" if unit in known else f"; '{unit}' is not a unit{nearest(unit, known)}"

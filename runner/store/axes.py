@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -290,8 +290,8 @@ def axes_of(overrides: Sequence[Sequence[str]]) -> tuple[list[Axis], list[str]]:
         if isinstance(values, str):
             fixed.append(f"{key}={values}")
         else:
-            found, level = _levels(values)
-            axes.append(Axis(key, found, np.resize(np.repeat(level, times), len(overrides))))
+            axis = make_axis(key, values)
+            axes.append(replace(axis, level=np.resize(np.repeat(axis.level, times), len(overrides))))
     return axes, fixed
 
 
@@ -314,14 +314,14 @@ def _of_jobs(overrides: Sequence[Sequence[str]]) -> Iterator[tuple[str, Sequence
         yield key, texts[0] if len(set(texts)) == 1 else texts if None in numbers else numbers, 1
 
 
-def _levels(values: Sequence[Any]) -> tuple[Sequence[float] | Sequence[str], NDArray[np.intp]]:
-    """Return the distinct values, and the index of each value among them, shape (n,)."""
+def make_axis(name: str, values: Sequence[Any]) -> Axis:
+    """Return the axis of a key with its value in each cell, shape (cells,)."""
     if isinstance(values, range) or all(type(value) in (int, float) and np.isfinite(value) for value in values):
         numbers, level = np.unique(np.array(values, dtype=float), return_inverse=True)
-        return numbers.tolist(), level
+        return Axis(name, numbers.tolist(), level)
     texts = [value.strip("'\"") if isinstance(value, str) else override_value(value) for value in values]
     place = {text: index for index, text in enumerate(dict.fromkeys(texts))}
-    return list(place), np.array([place[text] for text in texts], dtype=np.intp)
+    return Axis(name, list(place), np.array([place[text] for text in texts], dtype=np.intp))
 
 
 def _number(text: str) -> float | None:

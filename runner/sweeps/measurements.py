@@ -1,7 +1,7 @@
 """Measurements of a sweep by cell: swept axes, status, and every metric in every repetition."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,7 +14,7 @@ from runner.base import progress
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get, split_override
 from runner.base.errors import RunnerError, StoreError, unknown
-from runner.store.axes import Axis, axes_of, find_cells
+from runner.store.axes import Axis, axes_of, find_cells, make_axis
 from runner.store.finished import Finished, finer_names, read_finer
 from runner.store.run import Run
 from runner.store.seal import DamagedError
@@ -203,6 +203,11 @@ def measure_sweep(sweep: Sweep) -> Measurements:
     Raises:
         StoreError: If a run is missing or damaged.
     """
+    measured = _with_finer(_measured(sweep.overrides, _gather(sweep)), sweep.outputs)
+    return replace(measured, folder=sweep.folder, command=sweep.command)
+
+
+def _gather(sweep: Sweep) -> Gathered:
     gathered = Gathered(len(sweep.hashes))
     progress.begin("reading runs", len(sweep.hashes), "cells")
     try:
@@ -219,8 +224,7 @@ def measure_sweep(sweep: Sweep) -> Measurements:
         raise StoreError(
             f"{left} of {len(sweep.hashes)} cells of {sweep.folder} are not stored; continue with: {sweep.command}"
         ) from error
-    measured = _with_finer(_measured(sweep.overrides, gathered), sweep.outputs)
-    return replace(measured, folder=sweep.folder, command=sweep.command)
+    return gathered
 
 
 def measure_stored(sweep: Sweep, name: str = "") -> Measurements:
@@ -249,9 +253,32 @@ def stored_part(sweep: Sweep) -> tuple[Sweep, Sequence[str]]:
 
 
 def limit_sweep(sweep: Sweep, where: Sequence[str]) -> Sweep:
-    """Return a sweep reduced to the cells that have some values; see `find_cells`."""
+    """Return a sweep reduced to the cells that have some values, swept or in their configs; see `find_cells`."""
+    if not where:
+        return sweep
     axes, _ = axes_of(sweep.overrides)
-    return _part(sweep, find_cells(axes, where, len(sweep.hashes)).tolist()) if where else sweep
+    _, others = split_where(sweep, where)
+    if others:
+        axes = [*axes, *_config_axes(_gather(sweep), {text.partition("=")[0] for text in others})]
+    return _part(sweep, find_cells(axes, where, len(sweep.hashes)).tolist())
+
+
+def split_where(sweep: Sweep, where: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the values, each as KEY=VALUE, of swept keys and of other keys."""
+    names = {axis.name for axis in axes_of(sweep.overrides)[0]}
+    swept = [text for text in where if text.partition("=")[0] in names]
+    return swept, [text for text in where if text not in swept]
+
+
+def _config_axes(gathered: Gathered, keys: Collection[str]) -> Iterator[Axis]:
+    """Yield an axis for each key that is in the config of every cell."""
+    for key in keys:
+        values: list[Any] = [None] * len(gathered.hashes)
+        for config, members in gathered.configs:
+            for cell in np.concatenate(members).tolist():
+                values[cell] = get(config, key)
+        if None not in values:
+            yield make_axis(key, values)
 
 
 def _part(sweep: Sweep, cells: Sequence[int]) -> Sweep:

@@ -61,6 +61,17 @@ def test_a_selection_is_csv_unless_told_otherwise(cli, sweep):
     assert len(lines) == 2
 
 
+def test_cells_are_chosen_by_any_value_of_their_configs(cli, sweep):
+    swept = cli("table", sweep, "--metrics", "peak_torque", "--where", "controller=computed_torque").out
+    by_config = ("--where", "controller.kind=computed_torque", "--where", "robot.name=macro")
+    assert cli("table", sweep, "--metrics", "peak_torque", *by_config).out == swept
+    both = cli("table", sweep, "--metrics", "peak_torque", "--by", "controller", "--where", "robot.name=macro")
+    assert len(both.out.splitlines()) == 3
+    ending = cli("table", sweep, "--where", "robot.name=mini")
+    assert (ending.code, ending.err) == (2, "runner: --where robot.name: unknown value 'mini'. Allowed: macro.\n")
+    assert "--where: unknown axis 'robot.nam'" in cli("table", sweep, "--where", "robot.nam=macro").err
+
+
 def test_a_run_has_a_table_of_its_metrics(cli, a_run):
     ending = cli("table", a_run)
     assert ending.out.startswith("| metric | unit | median")

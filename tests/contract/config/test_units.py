@@ -127,12 +127,15 @@ def test_a_joint_that_slides_takes_lengths_and_one_that_turns_angles():
     assert [strangers.robot(name) for name in ("crane", "gantry")] == ["crane", "gantry"]
     home = compose(["robot=crane", "robot.home=[10deg,-20deg,50mm]"], [folder]).resolved["robot"]["home"]
     assert home == [math.radians(10), math.radians(-20), 0.05]
-    for override, place in (("robot.home=[10mm,0,0]", 0), ("robot.home=[0,0,5deg]", 2)):
-        (problem,) = problems("robot=crane", override, config_dirs=[folder])
-        assert problem.startswith(f"robot.home.{place}: must be a number, or one with a unit of rad")
+    allowed = "write rad for revolute joints, m for prismatic ones, a number without unit for both"
+    for override, problem in (
+        ("robot.home=[10mm,0,0]", "robot.home.0: '10mm' has a unit of prismatic joints, and sets a revolute joint; "),
+        ("robot.home=[0,0,5deg]", "robot.home.2: '5deg' has a unit of revolute joints, and sets a prismatic joint; "),
+    ):
+        assert problems("robot=crane", override, config_dirs=[folder]) == (problem + allowed,)
     # One value for joints of both kinds has no unit.
     (problem,) = problems("robot=crane", "noise.position=1mrad", config_dirs=[folder])
-    assert problem.startswith("noise.position: must be a number, or one with a unit of rad")
+    assert problem == f"noise.position: '1mrad' has a unit of revolute joints, and sets a prismatic joint; {allowed}"
     gantry = compose(["robot=gantry", "noise.position=1mm"], [folder]).resolved
     assert gantry["noise"]["position"] == 0.001
 
