@@ -20,13 +20,13 @@ ALPHA = 0.05
 """Probability of one or more false differences in a family of comparisons."""
 
 SHARE = 0.02
-"""Share of the larger median, or a fraction itself, up to which a difference is no answer."""
+"""Share of the larger median, or a fraction itself, up to which a difference does not count."""
 
 EXPLAINED = (
     "Both have the same seeds and are compared draw by draw, cells that share a draw by their mean: the Hodges-Lehmann "
     "estimate of the difference, its interval from n pairs, the effect (rank-biserial correlation: 1 with all pairs "
     "larger, -1 with all smaller), and p of the signed-rank test. Each axis, or pair of runs or sweeps, asks a "
-    "question of its own. Its comparisons in the first metric are one family, those in the other metrics of the first "
+    "separate question. Its comparisons in the first metric are one family, those in the other metrics of the first "
     "screen another, all others a third: p is corrected within the family (Holm), and the interval has the level at "
     f"which it was decided. Smaller or larger is said where p is below {ALPHA:g} and the difference above the plant's "
     f"error in it and above {100 * SHARE:g} % of the larger median, or {SHARE:g} of a fraction."
@@ -36,12 +36,12 @@ CHOSEN = (
     "Trials are chosen by their own draws and may look better than they are. To compare one, run it and another one "
     "with another seed."
 )
-"""What is said of the trials that a tuning chose: none is called the best."""
+"""Note on the trials that a tuning chose: none is called the best."""
 
 HEADER = ("difference", "interval", "n", "effect", "p")
 """Columns between the names of what is compared and the word."""
 
-_SMALLEST = 1e-3  # p-value that is told
+_SMALLEST = 1e-3  # p-value that is printed
 _EQUAL = 1e-9  # largest difference of a pair, relative to the larger median, that is rounding
 _SHARES = (0.05, SHARE)  # differences, relative to the larger median, for which pairs are counted
 _MOST_TURNS, _MOST_SENTENCES = 4, 6
@@ -111,7 +111,7 @@ class Answer(Asked):
 
     @property
     def equal(self) -> bool:
-        """Whether all pairs are equal up to rounding."""
+        """True if all pairs are equal up to rounding."""
         known = [abs(median) for median in self.comparison.medians if np.isfinite(median)]
         return bool(np.abs(self.comparison.differences).max() <= max(ROUNDING, _EQUAL * max(known, default=0.0)))
 
@@ -124,7 +124,7 @@ class Answer(Asked):
 
     @property
     def word(self) -> str:
-        """What the second is beside the first, or why that cannot be said."""
+        """Relation of the second to the first, or the reason why none is shown."""
         found, size = self.comparison, abs(self.comparison.difference)
         if self.p_value is None:
             return f"too few pairs to say ({found.n} of {SMALLEST_SAMPLE})"
@@ -188,7 +188,7 @@ class Answer(Asked):
 
     @property
     def amount(self) -> str:
-        """The size of the difference in words."""
+        """The size of the difference with its unit."""
         return self._alike([abs(self.comparison.difference)])[0].replace("never", "more than any number")
 
     @property
@@ -225,7 +225,7 @@ class Answer(Asked):
         return f"{number(100.0 * size / abs(median), 2)} %" if known else ""
 
     def _evidence(self) -> str:
-        """Return the difference with its interval, p and number of pairs in words."""
+        """Return the difference with its interval, p and number of pairs as a phrase."""
         found = self.comparison
         ends: tuple[float, ...] = self.interval or ()
         if self.sign < 0:
@@ -255,7 +255,7 @@ class Answer(Asked):
 
 
 def turns(one: Answer, answers: Sequence[Answer]) -> str:
-    """Return where the answer differs at single levels of the other axes from that over all; empty if nowhere.
+    """Return the levels of the other axes at which the answer differs from that over all; empty without one.
 
     Args:
         one: The answer over all levels.
@@ -273,7 +273,7 @@ def turns(one: Answer, answers: Sequence[Answer]) -> str:
 
 
 def sentences(answers: Sequence[Answer]) -> list[str]:
-    """Return the answers of the first screen over all levels, in words, each with where it turns over.
+    """Return the answers of the first screen over all levels, as sentences, with the levels at which one changes sign.
 
     Without answers over all levels those at each level are returned, the first metric's first.
     """

@@ -13,7 +13,7 @@ Point = tuple[float, float, float]
 Segment = tuple[Point, Point, float]
 Ball = tuple[Point, float]
 
-_BONE = 0.015  # radius of a bone, as a share of the arm's reach
+_BONE = 0.015  # radius of a bone, as a fraction of the arm's reach
 
 
 def playback_bodies(urdf_text: str, model: RobotModel, q: FloatArray) -> list[Body]:

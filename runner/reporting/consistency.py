@@ -17,7 +17,7 @@ def color_series(document: Document) -> Document:
     """Return a report in which all curves of one name have one palette index, unless their figure chose another.
 
     A name has the index that its meaning or the first figure that chose one gives it, otherwise the first that no
-    curve beside it has, in any panel of the report.
+    curve next to it has, in any panel of the report.
     """
     panels = [panel for block in blocks(document) if isinstance(block, Curves) for panel in block.panels]
     found = _by_name(panels)
@@ -73,8 +73,8 @@ def _readable(block: Block) -> Block:
 def readable(table: Table) -> Table:
     """Return a table in which each column of numbers has one unit that fits them.
 
-    Where all of them lie below 0.1 m or 0.1 s the unit is smaller, and where fewer of them need a power of ten then.
-    A column with a text that holds a number of its own stays as it is.
+    The unit is smaller if all of them are below 0.1 m or 0.1 s, or if fewer of them need a power of ten then.
+    A column with a string that holds another number stays as it is.
     """
     columns = [_column(head, [row[index] for row in table.rows]) for index, head in enumerate(table.header)]
     rows = [[cells[index] for _, cells in columns] for index in range(len(table.rows))]
@@ -96,7 +96,7 @@ def _column(head: str, cells: Sequence[str]) -> tuple[str, Sequence[str]]:
 
 
 def _holds_number(cell: str) -> bool:
-    """Tell whether a cell is a text with a number in it, other than a rounded zero, whose unit nobody could change."""
+    """Return True if a cell is a string with a number in it, other than a rounded zero."""
     return not isinstance(cell, Shown) and not cell.startswith("0 ") and any(letter.isdigit() for letter in cell)
 
 

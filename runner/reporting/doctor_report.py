@@ -22,7 +22,7 @@ def doctor_document(found: Examination) -> Document:
     """Return the report on an examination."""
     counts = {grade: sum(f.grade == grade for f in found.findings) for grade in GRADES}
     if found.arm is not None:
-        verdict = "fits" if found.arm.has_mass else "fits, as joints that go where they are told"
+        verdict = "fits" if found.arm.has_mass else "fits, with ideal joint position commands"
         drawn = _swings(found, found.arm.model, found.arm.start.home)
         sections = [Section("The robot", (drawn,)), Section("Findings", (_findings(found),))]
         sections.append(Section("Its joints", (_joints(found.arm.model),)))

@@ -28,7 +28,7 @@ from runner.reporting.published_claims import Verdict
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph; inline mathematics stands between dollar signs."""
+    """A paragraph; inline mathematics is between dollar signs."""
 
     block: ClassVar[str] = "text"
     text: str
@@ -36,7 +36,7 @@ class Text:
 
 @dataclass(frozen=True)
 class Items:
-    """A list of short texts; inline mathematics as in Text."""
+    """A list of short strings; inline mathematics as in Text."""
 
     block: ClassVar[str] = "items"
     items: Sequence[str]
@@ -44,7 +44,7 @@ class Items:
 
 @dataclass(frozen=True)
 class Code:
-    """A text that is shown as it is typed, and can be copied.
+    """A string that is shown as it is typed, and can be copied.
 
     Attributes:
         text: The text.
@@ -67,7 +67,7 @@ class Notice:
         kind: The word before the title.
         title: One sentence.
         text: More sentences; empty for none.
-        answer: Whether it answers the question that is the title of its chapter.
+        answer: True if it answers the question that is the title of its chapter.
     """
 
     block: ClassVar[str] = "notice"
@@ -83,7 +83,7 @@ class Formula:
 
     Attributes:
         typst: The equation in Typst mathematics; written by us, never taken from a config or a file.
-        number: Its number in the source, such as "3.33", or "" where it is ours.
+        number: Its number in the source, such as "3.33", or "" if it has none.
     """
 
     block: ClassVar[str] = "formula"
@@ -103,7 +103,7 @@ class RunList:
         values: Median of each metric, shape (runs, metrics); NaN where there is none.
         hashes: Hash of each run.
         failures: Why each run failed, empty for a good one.
-        commands: The command that makes each run.
+        commands: The command of each run.
         folders: Address of each run's folder, seen from the report; empty where it has none.
     """
 
@@ -127,7 +127,7 @@ class Picture:
     Attributes:
         caption: What is seen; inline mathematics as in Text.
         svg: The image as SVG text.
-        alt: The image in words, for screen readers.
+        alt: Description of the image for screen readers.
         width: Share of the text width, 0 to 1.
         origin: Its number in the source, command and commit.
     """
@@ -142,7 +142,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Table:
-    """A table of texts; inline mathematics as in Text, in header and cells.
+    """A table of strings; inline mathematics as in Text, in header and cells.
 
     Attributes:
         caption: What it lists.
@@ -151,7 +151,7 @@ class Table:
         numeric: Indices of the columns that hold numbers, set flush right.
         origin: Its number in the source, command and commit.
         code: Indices of the columns that hold what is typed on the command line, set in monospace.
-        folded: Whether HTML shows it only on a click, and paper not at all.
+        folded: True if HTML shows it only on a click, and paper not at all.
         badges: Indices of the columns that hold a verdict or a grade, set as badges.
     """
 
@@ -168,7 +168,7 @@ class Table:
 
 @dataclass(frozen=True)
 class ClaimResult:
-    """What the runs give for one claim under one preset.
+    """Result of the runs for one claim under one preset.
 
     Attributes:
         preset: Name of the preset; empty where there is one way to take the claim.
@@ -187,16 +187,16 @@ class ClaimResult:
 
 @dataclass(frozen=True)
 class Claim:
-    """A published number beside ours, with a verdict for each preset.
+    """A published number and the simulated one, with a verdict for each preset.
 
     Attributes:
         number: Its number in our list of claims.
         statement: What the source says.
         place: Where it says so, such as "section 3.3.1, page 38".
-        printed: The printed value, formatted with unit; empty where it is a statement in words.
+        printed: The printed value, formatted with unit; empty for a statement without a number.
         findings: One for each preset.
         reason: Why the verdict is what it is; inline mathematics as in Text.
-        command: The command that makes the runs behind it.
+        command: The command of its runs.
     """
 
     number: str
@@ -210,12 +210,12 @@ class Claim:
 
 @dataclass(frozen=True)
 class Verdicts:
-    """What a source claims, each claim with its verdicts and their reason.
+    """Claims of a source, each with its verdicts and their reason.
 
     Attributes:
         caption: What is listed; inline mathematics as in Text.
         rows: The claims, in the order of the source; each with as many findings.
-        legend: What the words of the verdicts mean, in a few sentences; inline mathematics likewise.
+        legend: What the words of the verdicts mean, in a few sentences; inline mathematics as in Text.
         origin: Command and commit.
     """
 
@@ -227,7 +227,7 @@ class Verdicts:
 
     @property
     def ways(self) -> list[str]:
-        """What the ways are called in which each claim was simulated."""
+        """Names of the ways in which each claim was simulated."""
         return [found.words or "simulated" for found in self.rows[0].findings] if self.rows else []
 
 
@@ -240,7 +240,7 @@ class Equations:
         rows: The equations, in the order of the text.
         origin: Its number in the source, command and commit.
         source: What the source of the equations is called.
-        data: Address of a file beside the report that has all of them whole, or "".
+        data: Address of a file next to the report that has all of them, or "".
     """
 
     block: ClassVar[str] = "equations"
@@ -310,7 +310,7 @@ class Playback:
 
 @dataclass(frozen=True)
 class Provenance:
-    """What made the results: names and values, such as plant, step, versions, machine, commit."""
+    """Provenance of the results: names and values, such as plant, step, versions, machine, commit."""
 
     block: ClassVar[str] = "provenance"
     rows: Sequence[tuple[str, str]]
@@ -376,7 +376,7 @@ class Document:
         cover: The picture of the first screen.
         key_numbers: Numbers of the first screen: what each is, its value with unit, and what is to be said of it.
         shown: Number of chapters that HTML shows; it folds the others behind "All details". None shows all.
-        figures_float: Whether figures move on paper to where they leave no blank, which text between them makes up for.
+        figures_float: True if figures move on paper to where they leave no blank, which text between them makes up for.
         notes: Lines below the count of verdicts there: what their words mean, caveats; inline mathematics as in Text.
     """
 

@@ -26,10 +26,10 @@ class EquationForm:
 
     Attributes:
         label: Which form it is.
-        lines: Formulas in Typst mathematics; a line can have several. What is not as in the form beside it is in
+        lines: Formulas in Typst mathematics; a line can have several. Differences from the form next to it are in
             `differs(...)`.
-        raw: The text as it stands, where it cannot be read, in pieces; the flag says whether a piece is marked.
-        note: Why it was mended, or what it is; inline mathematics as in Text.
+        raw: The source text, if it cannot be read, in pieces; the flag says whether a piece is marked.
+        note: Reason of the emendation, or what it is; inline mathematics as in Text.
         whole: All of it on one line, where the rest shows a part; the page folds it.
     """
 
@@ -51,7 +51,7 @@ class Equation:
         verdict: What the samples say.
         error: Largest and typical error, formatted with unit, or "".
         forms: As printed first, then emended and corrected.
-        finding: What is wrong, in words; inline mathematics as in Text.
+        finding: Description of the fault; inline mathematics as in Text.
     """
 
     number: str
@@ -69,7 +69,7 @@ def of_verdict(rows: Iterable[Equation], verdict: EquationVerdict) -> list[Equat
 
 
 def by_finding(rows: Iterable[Equation]) -> list[tuple[str, list[Equation]]]:
-    """Return equations with what was found, or mended: those of which the same is told stand together, and lose it."""
+    """Return equations with the finding, or the emendation: those with the same finding are together, and lose it."""
     found: dict[str, list[Equation]] = {}
     for place, row in enumerate(rows):
         found.setdefault(row.finding or _note(row) or f"none {place}", []).append(row)
@@ -95,7 +95,7 @@ def by_place(rows: Iterable[Equation]) -> list[tuple[str, list[Equation]]]:
 
 
 def name_text(name: str) -> str:
-    """Return the name of an equation as Text, with the letters that have scripts as mathematics."""
+    """Return the name of an equation as inline text, with the letters that have scripts as mathematics."""
     found, end = "", 0
     for match in _NAME.finditer(name):
         below = match["below"] or match["digits"] or (match["difference"] or "").replace("-", "−")

@@ -19,7 +19,7 @@ _MOST_JOINTS = 5  # panels of torques of several runs
 
 
 def origin(job: Run | Calibration, number: str = "") -> Origin:
-    """Return where a figure of a run or calibration comes from: the command that made it, and its commit."""
+    """Return the origin of a figure of a run or calibration: the command that made it, and its commit."""
     commit = str(job.provenance["commit"] or "")
     return Origin(number, str(job.provenance["command"]), commit[:12] + commit[40:])
 
@@ -30,7 +30,7 @@ def rows_until(run: Run, end: float | None) -> slice:
 
 
 def torque_and_error(run: Run, caption: str, number: str = "", until: float | None = None) -> Curves:
-    """Return the thesis' layout: torque of each joint (force of those that slide), and tip error in x, y, z, over time.
+    """Return the thesis' layout: torque of each joint (force of prismatic joints), and tip error in x, y, z, over time.
 
     Args:
         run: The run.

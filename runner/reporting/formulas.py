@@ -26,11 +26,11 @@ _BEFORE, _BEHIND = frozenset("=≈≠≤≥<>→+−±"), frozenset(",;")  # whe
 
 
 def mathml(texts: Iterable[str], *, displayed: bool) -> dict[str, Code | None]:
-    """Return each formula as MathML, or None where it is no valid Typst mathematics.
+    """Return each formula as MathML, or None if it is not valid Typst mathematics.
 
     Args:
         texts: Formulas in Typst mathematics, without dollar signs.
-        displayed: Whether each is on a line of its own.
+        displayed: True if each is on a separate line.
     """
     wanted = list(dict.fromkeys(texts))
     if len(_made) + len(wanted) > _KEPT:
@@ -68,7 +68,7 @@ def _compile(texts: list[str], displayed: bool) -> dict[str, Code | None]:
 
 def _exported(texts: list[str], displayed: bool) -> list[Code]:
     source = typst_environment().get_template("formulas.typ.j2").render(texts=texts, displayed=displayed)
-    # The folder holds nothing else: whatever a formula tries to read, it is not there.
+    # The folder holds nothing else: whatever a formula tries to read does not exist.
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "formulas.typ")
         path.write_text(source, encoding="utf-8")
@@ -82,7 +82,7 @@ def _tidied(formula: ET.Element) -> Iterator[str]:
         for name in ("style", "scriptlevel", *(() if each.find(".//mfrac") is not None else ("displaystyle",))):
             each.attrib.pop(name, None)  # without an effect here
         if each.tag == "mo" and len(each):
-            each.text, each[:] = each[0].text, []  # a line of ours, which the export makes a text
+            each.text, each[:] = each[0].text, []  # a line of the source, which the export makes a string
         if each.tag == "mo" and each.text in _ACCENTS:
             each.text = _ACCENTS[each.text]
             each.set("stretchy", "false")

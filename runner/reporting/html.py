@@ -67,7 +67,7 @@ def data_uri(svg: str) -> str:
 
 
 class _Pack:
-    """What the page's script unpacks: data of plots, or pictures, which its figures name by their places."""
+    """Data of plots, or pictures, which the page's script unpacks; figures name them by their places."""
 
     def __init__(self) -> None:
         self._items: list[object] = []
@@ -84,7 +84,7 @@ class _Pack:
 
 @lru_cache(maxsize=16)
 def compress_text(text: str) -> str:
-    """Return a text as base64 of its gzip, the same each time; `inflate` in report.js undoes it."""
+    """Return a string as base64 of its gzip, the same each time; `inflate` in report.js undoes it."""
     return base64.b64encode(gzip.compress(text.encode("utf-8"), compresslevel=9, mtime=0)).decode("ascii")
 
 
@@ -99,7 +99,7 @@ def _math_font() -> str:
 
 
 def script_policy(scripts: Sequence[str]) -> Code:
-    """Return what a policy calls some scripts."""
+    """Return the sources of some scripts in a policy."""
     return Code(" ".join(f"'sha256-{_sha256(script)}'" for script in scripts))
 
 

@@ -21,12 +21,12 @@ _OF_MOTION = (
 
 
 class KeyMetric(NamedTuple):
-    """A metric in words.
+    """Title, value and remark of a metric.
 
     Attributes:
         title: What it is.
         value: Its median with the range over the repetitions, in a unit that spares powers of ten.
-        remark: What a reader must know beside it; empty for nothing.
+        remark: Remark for the reader; empty for nothing.
     """
 
     title: str
@@ -45,14 +45,14 @@ def key_metrics(run: Run, most: int) -> Sequence[KeyMetric]:
 
 
 def key_names(run: Run) -> Sequence[str]:
-    """Return the names of the metrics that say most of a run's task, of those of which it has a value."""
+    """Return the names of the main metrics of a run's task that have a value."""
     task = "contact" if "steady_force" in run.metrics else run.config["trajectory"]["kind"]
     names = dict.fromkeys((*_OF_TASK.get(task, ()), *_OF_MOTION))
     return [name for name in names if _says_something(name, run)]
 
 
 def _says_something(name: str, run: Run) -> bool:
-    """Tell whether a run has a value of a metric; that it never settles is one."""
+    """Return True if a run has a value of a metric; that it never settles is one."""
     return name in run.metrics and (name == _SETTLING or run.metrics[name].median is not None)
 
 

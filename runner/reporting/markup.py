@@ -24,11 +24,11 @@ _WEB = re.compile(r"https?://\S+")
 
 @dataclass(frozen=True)
 class Span:
-    """A part of a text that is shown in one way; literally, unless one of the following is set.
+    """A part of a string that is shown in one way; literally, unless one of the following is set.
 
     Attributes:
         text: The characters; of mathematics, in Typst's notation without its dollar signs.
-        math: Whether it is mathematics.
+        math: True if it is mathematics.
         anchor: Name of the section, claim, figure or table that it links to, as in outline.py. It is shown
             literally if the report has no such place.
         mark: "emphasis" or "code" if it is set so.
@@ -48,13 +48,13 @@ def anchor(number: str) -> str:
 
 
 def mark_text(text: str, mark: str) -> str:
-    """Return a text with the marks of "emphasis" or "code" around it."""
+    """Return a string with the marks of "emphasis" or "code" around it."""
     first, last = MARKS[mark]
     return f"{first}{text}{last}"
 
 
 def link_text(text: str, address: str) -> str:
-    """Return a text as a link to an address of the web; any other address is shown beside it."""
+    """Return a string as a link to an address of the web; any other address is shown after it."""
     before, between, behind = _ADDRESS_MARKS
     return f"{before}{text}{between}{address}{behind}"
 
@@ -65,12 +65,12 @@ def literal(text: str) -> str:
 
 
 def literals(cells: Iterable[str]) -> list[str]:
-    """Return texts, such as the cells of a row, in which a dollar sign is one."""
+    """Return strings, such as the cells of a row, in which a dollar sign is one."""
     return [literal(cell) for cell in cells]
 
 
 def spans(text: str) -> list[Span]:
-    """Split a text into literal and mathematical spans, and links.
+    """Split a string into literal and mathematical spans, and links.
 
     `$...$` is mathematics, `$$` a dollar sign, and so is a dollar sign without a partner. `§2.1` is a link to that
     section; "claim 3", "figure 3.5" and "table 2.1" are links to these.

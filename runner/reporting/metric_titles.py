@@ -36,7 +36,7 @@ TITLES = {
     "steady_force": "contact force at rest",
     "force_error": "error of the felt contact force",
 }
-"""Titles of the built-in metrics. A family of metrics from a plug-in may have TITLES of its own."""
+"""Titles of the built-in metrics. A family of metrics from a plug-in may have its own TITLES."""
 
 _PREFERRED = (
     "max_tracking_error",
@@ -67,7 +67,7 @@ def title(name: str) -> str:
 
 
 def capital(text: str) -> str:
-    """Return a text with a capital as its first letter."""
+    """Return a string with a capital as its first letter."""
     return text[:1].upper() + text[1:]
 
 

@@ -90,7 +90,7 @@ def _math(text: str) -> list[str]:
 
 
 def _texts(block: Block) -> Iterator[str]:
-    """Yield the texts of a block that may carry inline mathematics."""
+    """Yield the strings of a block that may carry inline mathematics."""
     match block:
         case Text() | Notice():
             yield block.text
@@ -121,7 +121,7 @@ def count_figures(document: Document) -> int:
 
 
 class Places:
-    """Where links of a report lead to.
+    """Targets of the links of a report.
 
     Args:
         document: The report.
@@ -159,7 +159,7 @@ class Places:
             self._evidence.setdefault(_experiment(origin.command), name)
 
     def of(self, block: Block) -> str:
-        """Return the name of a block's place; nothing where it is no figure or table."""
+        """Return the name of a block's place; nothing for other blocks."""
         return self._of.get(id(block), "")
 
     def evidence(self, command: str) -> str:

@@ -46,7 +46,7 @@ def render(document: Document) -> bytes:
 
 
 class _Folder:
-    """The images of one report, as files beside it."""
+    """The images of one report, as files next to it."""
 
     def __init__(self, root: Path) -> None:
         self.root = root

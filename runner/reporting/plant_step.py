@@ -11,11 +11,11 @@ from runner.reporting.words import PLANT
 from runner.store import Run
 
 _MOST_TOLD = 2  # metrics in a sentence
-_LEAST = 1e-4  # of a metric: smaller shares are told as less than that
+_LEAST = 1e-4  # of a metric: smaller fractions are printed as less than that
 
 
 def describe_plant(run: Run, metrics: Sequence[str] = ()) -> str:
-    """Return a run's plant, its step, and what that is worth in some metrics, in three sentences at most.
+    """Return a run's plant, its step, and the contribution of the step to some metrics, in three sentences at most.
 
     Args:
         run: The run.
@@ -56,7 +56,7 @@ def _estimate_error(run: Run, metrics: Sequence[str]) -> str:
 
 
 def share_of(error: Mapping[str, Any], metric: str) -> str:
-    """Return what the step is worth in a metric, such as "0.3 % of the settling time"; empty where nothing is known."""
+    """Return the contribution of the step to a metric, such as "0.3 % of the settling time"; empty if unknown."""
     share = error.get("metrics", {}).get(metric, {}).get("share")
     return "" if share is None else f"{percent(share)} of the {title(metric)}"
 

@@ -24,10 +24,10 @@ _RECORDED, _SIMULATED = 0, 1  # colours
 
 
 def recording_document(found: RecordingComparison) -> Document:
-    """Return the report on a recording beside a run."""
+    """Return the report on a recording and a run."""
     robot = str(found.run.config["robot"]["name"]).replace("_", " ")
     return Document(
-        title=f"{capital(robot)}: a recording beside a run",
+        title=f"{capital(robot)}: a recording and a run",
         subtitle=literal(f"{found.recording.path.name} against run {found.run.hash}"),
         abstract=literal(_abstract(found)),
         sections=[
@@ -54,7 +54,7 @@ def report_folder(found: RecordingComparison) -> Path:
 
 
 def _abstract(found: RecordingComparison) -> str:
-    text = f"The recording is held against repetition 0 of the run, at the run's ticks; {words.aligned_text(found)}."
+    text = f"The recording is compared with repetition 0 of the run, at the run's ticks; {words.aligned_text(found)}."
     if found.friction is None:
         return f"{text} {next(words.friction_lines(found))}"
     return text
@@ -92,7 +92,7 @@ def _friction(found: RecordingComparison) -> list[Block]:
     if found.friction is None or not found.friction.joints:
         return [Notice("warning", "No friction was identified", literal(" ".join(words.friction_lines(found))))]
     rows = [literals(row) for row in words.friction_rows(found, above_rounding)]
-    caption = "Friction of the recorded arm; beside it what the run simulates."
+    caption = "Friction of the recorded arm and of the run."
     method = (
         "Residual torque $tau - (M dot.double(q) + V + G)$ with the run's model, regressed on $dot(q)$, "
         '$upright("sgn") dot(q)$, a constant of each joint, and the linear model of the masses; all behind a low-pass '
@@ -111,7 +111,7 @@ def _metrics(found: RecordingComparison) -> list[Block]:
     ]
     first, last = found.span
     text = (
-        f"Both are worked out by the same code, from {quantity(first, 's')} to {quantity(last, 's')}. Speeds of the "
+        f"Both are computed by the same code, from {quantity(first, 's')} to {quantity(last, 's')}. Speeds of the "
         "recording are differences of its positions behind the low-pass. Its tip, where it is not recorded, "
         "follows from the joints by the run's model. A constant delay of the arm is part of the time offset and not "
         "of the tracking errors."
@@ -158,7 +158,7 @@ def _both_curves(found: RecordingComparison) -> Curves:
 
 
 def _residual_curves(found: RecordingComparison) -> Curves:
-    """Return what is recorded less what was simulated: positions, torques and the tip, each together."""
+    """Return the recorded signals minus the simulated ones: positions, torques and the tip, each together."""
     groups: dict[tuple[str, str], list[Residual]] = {}
     for one in found.residuals:
         groups.setdefault((one.signal.kind, one.unit), []).append(one)

@@ -34,7 +34,7 @@ _UNITS = ("B", "kB", "MB", "GB", "TB")
 
 @dataclass(frozen=True)
 class Row:
-    """A stored result in words.
+    """Summary of a stored result.
 
     Attributes:
         entry: The result.

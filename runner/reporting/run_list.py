@@ -14,7 +14,7 @@ from runner.reporting.metric_titles import metric_label
 Json = dict[str, Any]
 
 SHOWN = 6
-"""Metrics that stand in the table; all of them stand in the details of a run."""
+"""Metrics in the table; the details of a run have all of them."""
 ON_PAPER_METRICS = 3
 """Metrics of the table on paper, whose heads must not run into each other."""
 ON_PAPER = 20
@@ -22,7 +22,7 @@ ON_PAPER = 20
 
 
 def run_list_spec(block: RunList) -> Json:
-    """Return what the page's script lists: names, and a column of numbers for each axis and metric."""
+    """Return the content of the list in HTML: names, and a column of numbers for each axis and metric."""
     return {
         "axes": [{"name": plain(name), "values": [plain(value) for value in values]} for name, values in block.axes],
         "levels": [column.tolist() for column in block.levels.T],
@@ -44,7 +44,7 @@ def table_header(block: RunList) -> list[str]:
 
 
 def table_rows(block: RunList) -> list[list[str]]:
-    """Return the first rows of the table, as many as paper takes."""
+    """Return the first rows of the table."""
     rows = []
     for run in range(min(ON_PAPER, len(block.hashes))):
         levels = zip(block.axes, block.levels[run], strict=True)

@@ -50,7 +50,7 @@ def run_document(run: Run) -> Document:
 
 
 def run_name(run: Run) -> str:
-    """Return robot, law, task and plant in words, such as "Macro, operational space, quintic, PyBullet"."""
+    """Return the names of robot, law, task and plant, such as "Macro, operational space, quintic, PyBullet"."""
     config = run.config
     kinds = (config["controller"]["kind"], config["trajectory"]["kind"], config["plant"]["kind"])
     return ", ".join([capital(_spaced(config["robot"]["name"])), *(_spaced(in_words(str(kind))) for kind in kinds)])
@@ -61,7 +61,7 @@ def _spaced(name: object) -> str:
 
 
 def _abstract(run: Run) -> str:
-    """Return how the run ended, how often it keeps its spec, and whether it lies in the bands of its reference."""
+    """Return the end of the run, the number of kept bounds of its spec, and the comparison with its baseline."""
     count = run.record["repetitions"]
     if run.status == "failed":
         ended = f"The run {run.failure}."
@@ -93,7 +93,7 @@ def _cover(run: Run) -> Cover:
 
 
 def _subtitle(run: Run) -> str:
-    """Return what limits and disturbs the arm, and the experiment that was asked for."""
+    """Return limits and disturbances of the arm, and the experiment that was asked for."""
     chosen = run.provenance["choices"]
     named = f"torque limits {_spaced(chosen['torque_limits'])}" if "torque_limits" in chosen else "torque limits"
     limits = "no torque limits" if run.config["torque_limits"]["max"] is None else named
@@ -163,7 +163,7 @@ def _metrics(run: Run) -> Table:
 
 
 def _of_step(worth: Mapping[str, Any], metric: str) -> list[str]:
-    """Return the cell of what the plant's step is worth in a metric; none where it is known of no metric."""
+    """Return the cell with the contribution of the plant's step to a metric; none if it is unknown for all metrics."""
     if not worth:
         return []
     share = worth.get(metric, {}).get("share")
@@ -171,7 +171,7 @@ def _of_step(worth: Mapping[str, Any], metric: str) -> list[str]:
 
 
 def config_blocks(run: Run) -> list[Block]:
-    """Return the keys that were changed, and then all of them; of a config that no group here makes all alone."""
+    """Return the keys that were changed, and then all of them; only all keys for a config that no group here makes."""
     changed = changed_keys(run)
     resolved = {key: value for key, value in run.config.items() if key != "outputs"}
     rows = [literals([key, _yaml(value)]) for key, value in flatten(resolved).items()]
@@ -190,7 +190,7 @@ def config_blocks(run: Run) -> list[Block]:
 
 
 def provenance(runs: Sequence[Run]) -> Provenance:
-    """Return what made some runs: plants, versions, machine, commits, dates; values that differ are listed."""
+    """Return the provenance of some runs: plants, versions, machine, commits, dates; values that differ are listed."""
     record = [run.provenance for run in runs]
 
     def join(values: Sequence[Any]) -> str:

@@ -58,7 +58,7 @@ def spec_abstract(spec: "Spec") -> str:
 
 
 def spec_of_several(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
-    """Return how often each of several runs keeps each bound of its spec, where any has one."""
+    """Return the number of kept repetitions for each bound of the specs of several runs."""
     rows = [
         literals([name, *row])
         for name, run in zip(names, runs, strict=True)
@@ -81,12 +81,12 @@ def spec_rows(spec: "Spec") -> list[tuple[str, str, str, str]]:
 
 
 def bound_text(metric: str, bound: Bound) -> str:
-    """Return what a bound demands, such as "settling time at most 1.6 s"."""
+    """Return the demand of a bound, such as "settling time at most 1.6 s"."""
     return f"{title(metric)} {_ends_text(metric, bound.min, bound.max)}"
 
 
 def late_text(metric: str, bound: Bound, history: History) -> str:
-    """Return, to be appended, that a bound was set after the result was known, and what stood before; else nothing."""
+    """Return, to be appended, that a bound was set after the result was known, and the former bound; else nothing."""
     date, before = set_after(history, ends_of(bound))
     told = ", then ".join(_ends_text(metric, *ends) for ends in before)
     return f", set after the result was known ({date}; before: {told})" if date else ""
@@ -100,7 +100,7 @@ def _ends_text(metric: str, low: float | None, high: float | None) -> str:
 
 
 def share_texts(share: "Share | None") -> tuple[str, str, str]:
-    """Return how often a bound is kept, the share of failing repetitions, and the interval of its probability."""
+    """Return the number of repetitions that keep a bound, the fraction of the others, and its interval."""
     if share is None:
         return "no such metric", "–", "–"
     failing = share.rest
@@ -118,7 +118,7 @@ def probability(value: float) -> str:
 
 
 def lacking_text(spec: "Spec", known: Collection[str]) -> str:
-    """Return which metrics of its spec a run lacks, with the nearest that it has; empty where it has all."""
+    """Return the metrics of its spec that a run lacks, with the nearest that it has; empty without one."""
     if not spec.lacking:
         return ""
     named = ", ".join(f"{metric}{nearest(metric, known)}" for metric in spec.lacking)

@@ -25,7 +25,7 @@ def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str
     """Write the report on some runs, sweeps or one tuning; return its folder.
 
     Args:
-        folders: Their folders; of several sweeps, which are held against each other.
+        folders: Their folders; several sweeps are compared.
         metrics: What a sweep is compared by; the first ranks it.
         formats: "html", "pdf" or both.
         output: Folder to write to; None for one in `reports/` of the outputs folder.
@@ -50,7 +50,7 @@ def compose_report(
         output: Folder that it is written to; None for one in `reports/` of the outputs folder.
 
     Raises:
-        RunnerError: If metrics are given for what is no sweep, or are none of its.
+        RunnerError: If metrics are given without a sweep, or a sweep lacks them.
         StoreError: If a run is missing or damaged.
     """
     things = [open_tuning(folder) if kind_of(folder) == "tuning" else store.open_stored(folder) for folder in folders]

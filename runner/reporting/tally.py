@@ -16,7 +16,7 @@ class Square(NamedTuple):
     """A square of the first screen.
 
     Attributes:
-        number: What stands in it.
+        number: The number in it.
         verdict: The verdict that colours it.
         place: Where it leads to.
         words: What it says, for those who hear it.
@@ -44,7 +44,7 @@ class Tally:
 
     @property
     def words(self) -> str:
-        """The counts in words, such as "12 of 16 match, 3 smaller than printed, 1: source contradicts itself"."""
+        """The counts as a phrase, such as "12 of 16 match, 3 smaller than printed, 1: source contradicts itself"."""
         told: list[str] = []
         total = sum(count for _, count in self.counts)
         for verdict, count in self.counts:
@@ -79,7 +79,7 @@ def _square(claim: str, found: ClaimResult) -> Square:
 
 
 def find_conditional_claims(document_blocks: Iterable[Block]) -> str:
-    """Return which claims have a verdict that hangs on more than they say, and on what; empty for none."""
+    """Return the claims whose verdict depends on more than they say, and the reasons; empty without one."""
     found: dict[str, list[str]] = {}
     for block in document_blocks:
         for row in block.rows if isinstance(block, Verdicts) else ():

@@ -51,7 +51,7 @@ def typst_environment() -> jinja2.Environment:
 
 
 def html_value(value: object) -> object:
-    """Return a text without the characters that no page can hold; autoescape does the rest."""
+    """Return a string without the characters that no page can hold; autoescape does the rest."""
     return plain(value) if isinstance(value, str) and not hasattr(value, "__html__") else value
 
 
@@ -67,11 +67,11 @@ def typst_value(value: object) -> str:
         return Code(str(value).lower())
     if isinstance(value, int | float):
         return Code(repr(value))
-    raise TypeError(f"a Typst template can insert texts and numbers, not {type(value).__name__}")
+    raise TypeError(f"a Typst template can insert strings and numbers, not {type(value).__name__}")
 
 
 def quote_typst(text: str) -> str:
-    """Return a text as a Typst string in quotes."""
+    """Return a string as a Typst string in quotes."""
     escaped = plain(text).replace("\\", "\\\\").replace('"', '\\"')
     return f'"{escaped}"'
 

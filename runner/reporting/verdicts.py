@@ -26,7 +26,7 @@ WORDS = {
     "larger than printed": Word(">", "bad"),
     "source contradicts itself": Word("!", "warn"),
     "undecided": Word("?", "none"),
-    "correct": Word("✓", "good", meaning="equal to both derivations, but for rounding, at every configuration tried"),
+    "correct": Word("✓", "good", meaning="equal to both derivations, except for rounding, everywhere tried"),
     "correct after emendation": Word("✓", "better", meaning="so once damage of the text is emended"),
     "wrong as printed": Word("✕", "bad", meaning="not so; the right form follows, with what differs marked"),
     "unreadable": Word("?", "warn", meaning="too much of the text is lost"),

@@ -44,5 +44,5 @@ _CODE_NAME = re.compile(rf"\b({'|'.join(_WORDS)})\b")
 
 
 def in_words(name: str) -> str:
-    """Return a preset, plant, coupling or variant such as "full_equations, decoupled" in words; other names stay."""
+    """Return a preset, plant, coupling or variant, such as "full_equations, decoupled", as a readable name."""
     return _CODE_NAME.sub(lambda found: _WORDS[found[0]], name)

@@ -1,6 +1,6 @@
 """Plans of studies made thin, and their runs, made once for all test processes.
 
-A thin plan has the runs of the whole one by name. Runs that differ in numbers alone are of a kind: of each kind the
+A thin plan has the runs of the whole one by name. Runs that differ only in numbers are of a kind: of each kind the
 first and the last are made, and stand in for the others. `make test-slow` runs whole plans.
 """
 

@@ -18,7 +18,7 @@ from runner.reporting.equation import EquationForm
 
 _SYMBOLS = 40  # symbols of a form that is shown whole
 _OTHER = 0.5  # share of symbols that differ from which on an expression is another, and not one with a fault
-_LONGEST = 5000  # characters of a text that is compared sign by sign
+_LONGEST = 5000  # characters of a string that is compared sign by sign
 _FAULTS = 6  # differing parts up to which it is one with faults
 
 _Elements = Mapping[str, Node]
@@ -44,7 +44,7 @@ class RightElements:
                 self._right |= {name: parse(text).root for name, text in texts.items()}
 
     def misplaced(self, entry: Entry, elements: Mapping[str, Node]) -> str:
-        """Return which other element a wrong one is, but for exchanged symbols, in a sentence; nothing if none.
+        """Return the other element that a wrong one is, except for exchanged symbols, in a sentence; empty without one.
 
         Args:
             entry: An equation that is wrong.
@@ -121,7 +121,7 @@ def _read(form: Form) -> _Elements | None:
 
 
 def _marks(read: list[_Elements | None]) -> list[set[Node]]:
-    """Return what each form does not share with the next one, the last with the one before."""
+    """Return the parts of each form that the next one lacks; of the last form, those that the previous one lacks."""
     marks: list[set[Node]] = [set() for _ in read]
     for place in range(len(read) - 1):
         ours, theirs = read[place] or {}, read[place + 1] or {}
@@ -163,7 +163,7 @@ def _is_matrix(node: Node) -> bool:
 
 
 def _has_fault(one: Node, other: Node, found: Difference) -> bool:
-    """Return whether two expressions are the same but for faults that can be pointed at."""
+    """Return True if two expressions are the same except for faults that can be pointed at."""
     shares = _share(one, found.first), _share(other, found.second)
     return max(shares) < 1 and min(shares) <= _OTHER and min(len(found.first), len(found.second)) <= _FAULTS
 
@@ -173,7 +173,7 @@ def _share(node: Node, marked: Set[Node]) -> float:
 
 
 def _unread(label: str, form: Form, beside: Form | None, note: str) -> EquationForm:
-    """Return a form as text, cut to where it differs from the form beside it."""
+    """Return a form as a string, cut to its differences from the form next to it."""
     text = _text(form)
     shown = pieces(text, _text(beside)) if beside else cut(text)
     return EquationForm(label, raw=shown, note=note, whole=text if len(text) > LONG else "")
@@ -194,7 +194,7 @@ def _shown(
     like: str,
     alone: bool,
 ) -> EquationForm:
-    """Return a form that can be read: all of it where it is short or stands alone, else what is marked."""
+    """Return a form that can be read: all of it if it is short or the only one, else the marked parts."""
     whole = linear(_text(form))
     groups, marks = gather_elements(elements), frozenset(marked)
     if alone or sum(map(size, elements.values())) <= _SYMBOLS:
@@ -226,7 +226,7 @@ def _begun(groups: _Shown) -> _Shown:
 
 
 def _short(groups: _Shown) -> _Shown:
-    """Return what is shown of a form: as many of its equations as can be read, or none."""
+    """Return the shown part of a form: as many of its equations as can be read, or none."""
     sizes = accumulate(size(part) for _, part in groups)
     return [group for group, total in zip(groups, sizes, strict=True) if total <= 2 * _SYMBOLS]
 

@@ -7,12 +7,12 @@ from runner.base.expressions.tree import ELLIPSIS
 
 Pieces = list[tuple[bool, str]]
 LONG = 130
-"""Characters of a text that is shown whole."""
+"""Characters of a string that is shown whole."""
 _AROUND = 24  # characters shown before and after each difference in a longer one
 
 
 def pieces(text: str, beside: str) -> Pieces:
-    """Return a text in pieces, each with whether the other text lacks it; dots stand for long stretches in common."""
+    """Return a string in pieces, each with True if the other string lacks it; dots replace long common stretches."""
     found: Pieces = []
     matcher = difflib.SequenceMatcher(None, text, beside, autojunk=False)
     for kind, start, end, other_start, other_end in matcher.get_opcodes():
@@ -26,7 +26,7 @@ def pieces(text: str, beside: str) -> Pieces:
 
 
 def cut(text: str) -> Pieces:
-    """Return the beginning of a text."""
+    """Return the beginning of a string."""
     return [(False, text if len(text) <= LONG else f"{text[:LONG]} {ELLIPSIS}")]
 
 

@@ -37,7 +37,7 @@ from runner.simulation import provenance
 
 COMMAND = "runner reproduce audit"
 DATA = "equations.csv"
-"""Name of the table of all equations, which stands beside the report."""
+"""Name of the table of all equations, a file next to the report."""
 
 _PANELS = 4  # panels of a figure
 _WORDS = " ".join(f"{capital(verdict)}: {WORDS[verdict].meaning}." for verdict in VERDICTS)
@@ -141,7 +141,7 @@ def _source(source: str, checked: Sequence[CheckedEquation]) -> Section:
 
 
 def _consequences(checked: Sequence[CheckedEquation]) -> Sequence[str]:
-    """Return the names of what a robot does that believes wrong formulas, each once."""
+    """Return the names of the rollouts with wrong formulas, each once."""
     return list(dict.fromkeys(each.entry.consequence for each in checked if each.entry.consequence))
 
 
@@ -190,7 +190,7 @@ def _error(checked: CheckedEquation) -> str:
 
 
 def _runs(source: str, names: Iterable[str]) -> Section:
-    """Return what a robot does that believes the wrong formulas: a sentence and a panel for each run."""
+    """Return the motion of a robot that uses the wrong formulas: a sentence and a panel for each run."""
     found = []
     for name in names:
         found.append(simulate_consequence(source, name))

@@ -32,7 +32,7 @@ def arm_motion(
 
     Args:
         model: The robot.
-        q: Joint positions at each instant, shape (K, nq), in rad; up to eight can be told apart.
+        q: Joint positions at each instant, shape (K, nq), in rad; up to eight can be distinguished.
         times: The instants, length K, in s.
         path: Path of the tip, shape (N, 3), in m.
         desired: Desired path, shape (M, 3), in m.

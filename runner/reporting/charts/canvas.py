@@ -32,7 +32,7 @@ _STYLE: Any = {
     "svg.hashsalt": "runner",
 }
 
-_ASIDE = np.array([[0.6, -0.8], [0.8, 0.6]])  # turns an arrow's direction to where its label stands, beside the head
+_ASIDE = np.array([[0.6, -0.8], [0.8, 0.6]])  # turns an arrow's direction to the place of its label, next to the head
 
 P = ParamSpec("P")
 
@@ -59,7 +59,7 @@ def drawing(make: Callable[P, Figure]) -> Callable[P, str]:
 
 @dataclass(frozen=True)
 class Camera:
-    """A parallel projection: the z axis stands upright, the viewer is far away in the given direction.
+    """A parallel projection: the z axis is upright, the viewer is far away in the given direction.
 
     Attributes:
         azimuth: Direction of the viewer about z, from x towards y, in deg.
@@ -77,7 +77,7 @@ class Camera:
         return np.asarray(np.asarray(points) @ np.column_stack([right, up]))
 
     def nearness(self, points: FloatArray) -> FloatArray:
-        """Return how far points lie towards the viewer, shape (..., 3) to (...)."""
+        """Return the distance of points towards the viewer, shape (..., 3) to (...)."""
         a, e = np.radians([self.azimuth, self.elevation])
         return np.asarray(np.asarray(points) @ [np.cos(a) * np.cos(e), np.sin(a) * np.cos(e), np.sin(e)])
 
@@ -117,7 +117,7 @@ def arrow(axes: Axes, start: FloatArray, end: FloatArray, color: str, width: flo
 
 
 def write(axes: Axes, place: FloatArray, text: str, size: float = 9.0, color: str = INK, halo: bool = True) -> None:
-    """Write a text centred at a place of the picture; a halo keeps it legible on a line."""
+    """Write a string centred at a place of the picture; a halo keeps it legible on a line."""
     effects = [withStroke(linewidth=2.0, foreground="white")] if halo else []
     x, y = pair(place)
     axes.text(x, y, text, color=color, fontsize=size, ha="center", va="center", zorder=6, path_effects=effects)
@@ -136,7 +136,7 @@ def triad(axes: Axes, camera: Camera, pose: FloatArray, at: FloatArray, length: 
         axes: Where to draw.
         camera: The view.
         pose: Pose of the frame, shape (4, 4); only its rotation counts.
-        at: Where its origin stands in the picture, shape (2,).
+        at: Place of its origin in the picture, shape (2,).
         length: Length of the axes, in m.
         name: The frame's number, the index of its labels.
         gap: Distance of a label from the head of its arrow, in m.

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 
 POINTS = 2000
-"""Most points of a drawn curve: more than a screen or a printed page can tell apart."""
+"""Most points of a drawn curve: more than a screen or a printed page can show."""
 
 
 @dataclass(frozen=True)
@@ -19,16 +19,16 @@ class Series:
     """One curve.
 
     Attributes:
-        name: Its legend entry; with an empty name it stands in no legend.
+        name: Its legend entry; with an empty name it is in no legend.
         x: Abscissae, shape (T,).
         y: Ordinates, shape (T,); NaN breaks the line.
         style: Line, dashed line, dotted line, single points, or points joined by a line.
         low: Lower edge of a shaded band around the curve, shape (T,), or None.
         high: Upper edge of the band, shape (T,), or None.
         color: Index into the palette; None takes the next one. Curves that belong together share it.
-        hints: What the reader is told of each point when pointing at it, one for each, or none.
+        hints: Text at the pointer for each point, or none.
         runs: Hash of the run behind each point, one for each, or none.
-        label: What stands beside its last point, in place of a legend entry.
+        label: Text next to its last point, instead of a legend entry.
     """
 
     name: str
@@ -44,7 +44,7 @@ class Series:
 
 
 def upright(series: Series) -> bool:
-    """Tell whether a curve is an upright line."""
+    """Return True if a curve is an upright line."""
     return bool(series.x.size) and bool((series.x == series.x[0]).all())
 
 
@@ -67,7 +67,7 @@ class Panel:
 
 
 def shares_legend(panels: Sequence[Panel]) -> bool:
-    """Tell whether one legend serves several panels: their named curves have the same names, styles and colours."""
+    """Return True if one legend serves several panels: their named curves have the same names, styles and colours."""
     entries = [
         [(series.name, series.style, series.color) for series in panel.series if series.name] for panel in panels
     ]
@@ -79,19 +79,19 @@ class Map:
     """One grid of coloured cells: rows from below, columns from the left.
 
     Attributes:
-        title: What stands above it.
+        title: Title.
         x_label: Name of the horizontal axis.
         y_label: Name of the vertical axis.
         x_names: Name of each column.
         y_names: Name of each row.
         values: Value of each cell, shape (rows, columns); NaN leaves it empty.
-        failed: Whether a cell is marked as failed, shape (rows, columns).
+        failed: True if a cell is marked as failed, shape (rows, columns).
         lines: Curves over the grid, abscissae counted in columns and ordinates in rows, both from 0.
-        contours: Whether it shows lines of equal value in place of cells.
-        hints: What the reader is told of each cell, row by row, or none.
+        contours: True if it shows lines of equal value instead of cells.
+        hints: Text at the pointer for each cell, row by row, or none.
         runs: Hash of the run behind each cell, row by row, or none.
         low: Lower end of the interval of each value, shape (rows, columns); NaN where it has none. None if none has.
-        high: Upper end, likewise.
+        high: Upper end, in the same form.
     """
 
     title: str
@@ -111,7 +111,7 @@ class Map:
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a figure or table comes from: its number in the source, the command that makes it, the commit."""
+    """Origin of a figure or table: its number in the source, the command that makes it, the commit."""
 
     number: str = ""
     command: str = ""
@@ -125,7 +125,7 @@ class Curves:
     Attributes:
         caption: What is seen, in a sentence; inline mathematics as in a report's Text.
         panels: The axes, in reading order.
-        columns: How many panels stand beside each other.
+        columns: Number of panels side by side.
         origin: Its number in the source, command and commit.
     """
 
@@ -144,8 +144,8 @@ class Maps:
         caption: What is seen, in a sentence; inline mathematics as in a report's Text.
         value_label: What the colours mean, with unit.
         panels: The maps, in reading order.
-        log: Whether the colours follow the logarithm.
-        columns: How many maps stand beside each other.
+        log: True if the colours follow the logarithm.
+        columns: Number of maps side by side.
         origin: Its number in the source, command and commit.
     """
 
@@ -185,7 +185,7 @@ def envelope(series: Series, samples: int) -> Series:
     So a curve that jumps at each sample is seen as wide as it jumps, and a smooth one stays a line.
 
     Args:
-        series: The curve, arrays of shape (T,); where T is no multiple, the last group is a shorter one.
+        series: The curve, arrays of shape (T,); if T is not a multiple, the last group is shorter.
         samples: How many samples make one point.
     """
     starts = np.arange(0, series.x.size, samples)
@@ -205,7 +205,7 @@ def spaced_indices(count: int, most: int) -> list[int]:
 
 
 def usable(limits: tuple[float, float] | None, log: bool) -> bool:
-    """Return whether an axis can show the given range."""
+    """Return True if an axis can show the given range."""
     if limits is None or not all(map(math.isfinite, limits)) or limits[0] == limits[1]:
         return False
     return not log or min(limits) > 0

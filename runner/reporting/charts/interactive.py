@@ -28,9 +28,9 @@ _UNIT = re.compile(r"\(([^(),]+)\)$")
 
 
 def plotly_spec(figure: Curves | Maps) -> list[Json]:
-    """Return what the page's script hands to Plotly: for each panel or map traces, palette indices and layout.
+    """Return the input of Plotly: for each panel or map traces, palette indices and layout.
 
-    If one legend serves all panels, it stands below the first of the last row, and what it hides is hidden in all. Maps
+    If one legend serves all panels, it is below the first of the last row, and what it hides is hidden in all. Maps
     share one colour scale; they also have the names of columns and rows, and whether colours follow the logarithm.
     """
     if isinstance(figure, Maps):
@@ -44,7 +44,7 @@ def plotly_spec(figure: Curves | Maps) -> list[Json]:
 
 
 def neutral(text: str) -> str:
-    """Return a text that Plotly shows literally: it reads tags, entities and formulas in all its texts."""
+    """Return a string that Plotly shows literally: it reads tags, entities and formulas in all its strings."""
     return html.escape(plain(text), quote=False).replace("$", "&#36;")
 
 
@@ -112,12 +112,12 @@ def _trace(series: Series, number: int, rounds: int) -> Json:
 
 
 def _hover(panel: Panel, series: Series) -> Json:
-    """Return what the pointer tells of a point without a hint: its numbers with their units."""
+    """Return the text at the pointer for a point without a hint: its numbers with their units."""
     if series.hints:
         return {}
     y = f"%{{y:.4~g}}{_unit(panel.y_label)}"
     if _compared(series):
-        return {"hovertemplate": y}  # x stands above all curves
+        return {"hovertemplate": y}  # x is above all curves
     return {"hovertemplate": f"%{{x:.4~g}}{_unit(panel.x_label)}, {y}"}
 
 
@@ -172,17 +172,17 @@ def _marks(shown: tuple[float, float] | None, values: list[FloatArray]) -> Json:
 
 
 def _lines(text: str, characters: int) -> str:
-    """Return a text broken into lines, which Plotly does not do by itself."""
+    """Return a string broken into lines, which Plotly does not do by itself."""
     return "<br>".join(neutral(line) for line in textwrap.wrap(plain(text), characters))
 
 
 def _compared(series: Series) -> bool:
-    """Return whether curves are read at one x: the abscissae never go back, and no point has a hint of its own."""
+    """Return True if curves are read at one x: the abscissae never go back, and no point has its own hint."""
     return not series.hints and not np.any(np.diff(series.x[np.isfinite(series.x)]) < 0)
 
 
 def _typed(values: FloatArray) -> Json:
-    # What single precision cannot hold overflows the autorange; NaN is a gap.
+    # A value beyond single precision overflows the autorange; NaN is a gap.
     finite = np.where(np.abs(values) <= _LARGEST, values, np.nan).astype("<f4")
     return {"dtype": "f4", "bdata": base64.b64encode(finite.tobytes()).decode("ascii")}
 
@@ -230,7 +230,7 @@ def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
 
 
 def _overlay(panel: Map) -> list[Json]:
-    """Return what lies over the cells: curves, and crosses on failed cells."""
+    """Return the overlay of the cells: curves, and crosses on failed cells."""
     traces: list[Json] = [
         {
             "type": "scatter",

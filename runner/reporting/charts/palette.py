@@ -20,7 +20,7 @@ def color(index: int) -> str:
 
 
 def rounds(index: int) -> int:
-    """Return how many times the palette was gone through before an index: points of each time have their own mark."""
+    """Return the number of full rounds through the palette before an index: points of each time have their own mark."""
     return index // len(LIGHT)
 
 

@@ -17,11 +17,11 @@ OVERLAY = 1
 CONTOURS = 10
 """About how many lines of equal value a map shows."""
 MOST_PARTED = 20
-"""Most cells beside each other that are parted by white lines."""
+"""Most cells side by side that are parted by white lines."""
 EQUAL = 0.02
 """Share of the largest value below which a difference is not to fill a scale."""
 _SMALLEST_PRINTED = 1e-4  # value without a power of ten
-_MOST_PRINTED = 10  # cells beside each other whose values can be read
+_MOST_PRINTED = 10  # cells side by side whose values can be read
 _UNIT = re.compile(r"\((m|s)\)$")
 _SMALLEST, _LARGEST = 1e-3, 1e4  # of what is written without a power of ten
 Mark = Callable[[float], str]
@@ -30,7 +30,7 @@ Mark = Callable[[float], str]
 def curves_in_readable_units(figure: Curves) -> Curves:
     """Return a figure with lengths and times in the unit that fits the largest of them.
 
-    Panels that stand beside each other and have one label keep one unit, so that they can be compared.
+    Panels that are side by side and have one label keep one unit, so that they can be compared.
     """
     step = max(1, figure.columns)
     rows = [figure.panels[start : start + step] for start in range(0, len(figure.panels), step)]
@@ -92,7 +92,7 @@ def _scaled(series: Series, axis: str, factor: float) -> Series:
 
 
 def marks(low: float, high: float, log: bool = False) -> Mark:
-    """Return what writes the labels of an axis that goes from one value to another.
+    """Return the function that writes the labels of an axis that goes from one value to another.
 
     They are plain decimals where the largest of them is from 0.001 to 10,000; on a logarithmic axis the smallest, too.
     """
@@ -118,12 +118,12 @@ def power_mark(value: float) -> str:
 
 
 def at_2_and_5(write: Mark) -> Mark:
-    """Return what labels the marks between two powers of ten: at 2 and 5 alone."""
+    """Return the function that labels the marks between two powers of ten, at 2 and 5 only."""
     return lambda value: write(value) if f"{value:.0e}"[0] in "25" else ""
 
 
 def scale_values(values: FloatArray, log: bool) -> FloatArray:
-    """Return what the colours follow: the values or their logarithms, NaN where there is none."""
+    """Return the coloured quantity: the values or their logarithms, NaN where there is none."""
     if not log:
         return np.where(np.isfinite(values), values, np.nan)
     positive = np.isfinite(values) & (values > 0)
@@ -133,8 +133,8 @@ def scale_values(values: FloatArray, log: bool) -> FloatArray:
 def value_range(figure: Maps) -> tuple[float, float]:
     """Return the ends of the scale of colours, as scaled.
 
-    The scale spans the intervals of the values and at least 2 % of the largest one, so that full contrast stands for a
-    difference that can be told.
+    The scale spans the intervals of the values and at least 2 % of the largest one, so that full contrast shows a
+    real difference.
     """
     parts = [part for panel in figure.panels for part in (panel.values, panel.low, panel.high) if part is not None]
     everything = np.concatenate([np.zeros(0), *(scale_values(part, figure.log).ravel() for part in parts)])
@@ -152,7 +152,7 @@ def widen_range(low: float, high: float, least: float) -> tuple[float, float]:
 
 
 def scale_marks(figure: Maps) -> tuple[list[float], list[str]]:
-    """Return where the scale of colours is marked, as scaled, and with which values."""
+    """Return the marks of the scale of colours: places, as scaled, and values."""
     low, high = value_range(figure)
     places = np.linspace(low, high, 5)
     values = 10.0**places if figure.log else places
@@ -162,13 +162,13 @@ def scale_marks(figure: Maps) -> tuple[list[float], list[str]]:
 
 
 def prints_values(panel: Map, figure: Maps) -> bool:
-    """Return whether the cells of a map have room for their values."""
+    """Return True if the cells of a map have room for their values."""
     beside = max(1, min(figure.columns, len(figure.panels)))
     return not panel.contours and beside * len(panel.x_names) <= _MOST_PRINTED
 
 
 def printed_values(panel: Map, figure: Maps) -> list[list[str]]:
-    """Return the value that is printed into each cell; nothing into an empty one, nor where a cross stands."""
+    """Return the value that is printed into each cell; nothing into an empty one, nor into a failed one."""
     low, high = value_range(figure)
     digits = digits_between(10.0**low, 10.0**high) if figure.log else digits_between(low, high)
     plain = _plain(np.concatenate([each.values.ravel() for each in figure.panels]))

@@ -1,4 +1,4 @@
-"""Sheets of static drawings: width, letters, texts broken to fit, and file output."""
+"""Sheets of static drawings: width, letters, strings broken to fit, and file output."""
 
 import io
 import math
@@ -25,14 +25,14 @@ _PART = re.compile(r"[^_\s,=/.-]*[_\s,=/.-]*")  # of a name, with the sign at wh
 
 @dataclass(frozen=True)
 class Sheet:
-    """What a still is drawn for.
+    """Format of a still.
 
     Attributes:
         width: Its width, in inches.
         font: Size of its letters, in pt.
         title: Size of the letters of titles, in pt.
         small: Size of the letters within the axes, in pt.
-        marked: Whether each colour also has a mark, so that curves are told apart in print without colours.
+        marked: True if each colour also has a mark, so that curves are distinguished in print without colours.
     """
 
     width: float = 6.5
@@ -57,7 +57,7 @@ class Sheet:
         return 0.135 * self.scale
 
     def beside(self, wanted: int, count: int, least: float, width: float | None = None) -> int:
-        """Return how many panels stand beside each other.
+        """Return the number of panels side by side.
 
         Args:
             wanted: How many of them the figure asks for.
@@ -79,7 +79,7 @@ def column(millimetres: float) -> Sheet:
 
 
 def render_figure(make: Callable[[], Figure], sheet: Sheet, kind: Literal["svg", "pdf"]) -> bytes:
-    """Return what is drawn, in the style of all stills, as SVG or PDF; the same figure gives the same bytes.
+    """Return a drawing, in the style of all stills, as SVG or PDF; the same figure gives the same bytes.
 
     Letters are outlines in SVG, and an embedded font in PDF.
     """
@@ -124,13 +124,13 @@ def style(sheet: Sheet) -> Any:
 
 @dataclass(frozen=True)
 class Names:
-    """How an axis is named.
+    """Layout of the names of an axis.
 
     Attributes:
         labels: The names that are shown, of every `step`-th place.
         step: 1 where all places are named.
-        turned: Whether they are read from below.
-        room: What they take across the axis, in inches.
+        turned: True if they are read from below.
+        room: Size across the axis, in inches.
     """
 
     labels: Sequence[str]
@@ -140,7 +140,7 @@ class Names:
 
     def put(self, axis: Axis, count: int) -> None:
         """Name the places of an axis that has so many."""
-        # A dollar sign begins a formula in a tick's label, and ticks are labelled anew at every drawing.
+        # A dollar sign begins a formula in a tick's label, and ticks are labelled again at every drawing.
         labels = [label.replace("$", r"\$") for label in self.labels]
         axis.set_ticks(range(0, count, self.step), labels)
         if self.turned:
@@ -148,9 +148,9 @@ class Names:
 
 
 def names_below(names: Sequence[str], length: float, sheet: Sheet) -> Names:
-    """Return how the names below an axis of a length stand, in inches.
+    """Return the layout of the names below an axis of a length, in inches.
 
-    Texts stand side by side, in up to three lines, or turned, and whole. Of numbers every other one and so on will do.
+    Strings are side by side, in up to three lines, or turned, and whole. Of numbers every other one and so on will do.
     """
     texts = [cut(name, _LONGEST) for name in names]
     place = length / max(1, len(texts))
@@ -168,7 +168,7 @@ def names_below(names: Sequence[str], length: float, sheet: Sheet) -> Names:
 
 
 def names_beside(names: Sequence[str], length: float, sheet: Sheet) -> Names:
-    """Return how the names beside an axis of a length stand, in inches: in lines where there is room for them."""
+    """Return the layout of the names next to an axis of a length, in inches: in lines where there is room for them."""
     texts = [cut(name, _LONGEST) for name in names]
     step = math.ceil(len(texts) * sheet.line / length) or 1
     room = int(length / sheet.line / max(1, len(texts)))
@@ -197,17 +197,17 @@ def _is_number(text: str) -> bool:
 
 
 def literal(label: Text, text: str) -> None:
-    """Set a text of which no character means anything to matplotlib."""
+    """Set a string in which matplotlib finds no markup."""
     label.set_parse_math(False)
     label.set_text(text)
 
 
 def wrap_text(text: str, characters: float) -> str:
-    """Return a text in lines of so many characters."""
+    """Return a string in lines of so many characters."""
     return "\n".join(textwrap.wrap(plain(text).strip(), max(10, int(characters))))
 
 
 def cut(text: str, characters: float) -> str:
-    """Return a text on one line of so many characters, its end cut off where it is longer."""
+    """Return a string on one line of so many characters, its end cut off where it is longer."""
     text, limit = plain(text).strip(), max(10, int(characters))
     return text if len(text) <= limit else text[: limit - 1] + "…"

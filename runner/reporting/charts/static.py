@@ -37,12 +37,12 @@ from runner.reporting.charts.sheet import (
 _LEFT, _RIGHT, _BOTTOM, _BARE = 0.64, 0.12, 0.42, 0.24  # the last one below an axis without a label
 _HEIGHTS, _LOWER = {1: 1.25, 2: 1.2}, 0.95  # of the axes in so many columns, and in more
 _ROWS = {2: 1.05, 3: 0.8, 4: 0.64}  # the same in so many rows, and in more
-_ABOVE = 0.15  # by which a label beside an axis of curves may be longer than it
+_ABOVE = 0.15  # by which a label next to an axis of curves may be longer than it
 _HANDLE, _GAP = 0.42, 0.12
 _LEAST = 1.55  # width of a panel
 _MAP_LEFT, _MAP_LABEL, _MAP_BAR = 0.7, 0.3, 0.36  # the last two without names and values
 _MAP_HEIGHTS, _MAP_LOWER = {1: 2.6, 2: 1.8}, 1.3
-_LEAST_MAP = 1.8  # width of a map with what stands beside it
+_LEAST_MAP = 1.8  # width of a map with its labels
 _POINTS_PER_INCH = 300
 _PALE = 0.18  # of its colour in a band
 _COLORS = "viridis"
@@ -57,7 +57,7 @@ _LINES = {"line": "-", "dashed": "--", "dotted": ":", "points": "none", "points_
 
 @dataclass(frozen=True)
 class _Frame:
-    """The texts around one panel or map, broken to its size, and the space they take [in]."""
+    """The labels around one panel or map, broken to its size, and the space they take [in]."""
 
     panel: Panel | Map
     sheet: Sheet
@@ -198,12 +198,12 @@ def _placed(
 
 
 def _beside(panel: Panel | Map, height: float, sheet: Sheet) -> str:
-    """Return the label beside an axis of a height, broken to it."""
+    """Return the label next to an axis of a height, broken to it."""
     return wrap_text(panel.y_label, (height + (_ABOVE if isinstance(panel, Panel) else 0.0)) / sheet.character)
 
 
 def _bare(row: Sequence[_Frame], below: Sequence[_Frame]) -> list[_Frame]:
-    """Return a row of panels without label where another panel stands below."""
+    """Return a row of panels without label if another panel is below."""
     hidden = [replace(frame, panel=replace(frame.panel, x_label="")) for frame in row[: len(below)]]
     return [*hidden, *row[len(below) :]]
 
@@ -239,7 +239,7 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
         axes.set_xscale("log", nonpositive="mask")
     if panel.y_log:
         axes.set_yscale("log", nonpositive="mask")
-    # Beside the widest tick labels of a log axis.
+    # Next to the widest tick labels of a log axis.
     axes.yaxis.set_label_coords(-(_LEFT - 0.12) * sheet.scale / frame.width, 0.5)
     axes.margins(x=0.02)
     chosen = palette.indices([series.color for series in panel.series])
@@ -262,13 +262,13 @@ def _draw_panel(axes: Axes, frame: _Frame) -> list[Line2D]:
 
 
 def _mark(axes: Axes, which: Literal["x", "y"], most: int, whole: bool = False) -> None:
-    """Label the marks of an axis in one notation; of a linear one so many at most, at whole numbers alone if asked."""
+    """Label the marks of an axis in one notation; of a linear one so many at most, only at whole numbers if asked."""
     axis, (low, high) = (axes.xaxis, axes.get_xlim()) if which == "x" else (axes.yaxis, axes.get_ylim())
     log = axis.get_scale() == "log"
     write = scales.marks(low, high, log)
     axis.set_major_formatter(_formatter(write))
     if log:
-        # Labels between the powers of ten, and only where these alone would leave the axis bare.
+        # Labels between the powers of ten, only if an axis would have too few without them.
         axis.set_minor_formatter(_formatter(scales.at_2_and_5(write)) if high < 30.0 * low else NullFormatter())
     else:
         axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 2.5, 5, 10], integer=whole))
@@ -292,13 +292,13 @@ def _draw_series(axes: Axes, series: Series, index: int, sheet: Sheet, several: 
     marker = mark if pointed or (marked and series.name and np.isfinite(series.y).all()) else ""
     # Marks of curves that are close to each other have different places.
     every = None if pointed else ((index % 8 + 1) / (8 * _MARKED), 1 / _MARKED)
-    # What is broken stands before what is not, so that neither hides the other.
+    # Broken lines are in front of others, so that neither hides the other.
     order = 2.1 if series.style in ("dashed", "dotted") else 2.0
     (line,) = axes.plot(series.x, series.y, linestyle=_LINES[series.style], marker=marker, color=color, zorder=order,
                        markevery=every)  # fmt: skip
     if series.label and series.x.size:
         end = (float(series.x[-1]), float(series.y[-1]))
-        side = -1 if upright(series) else 1  # beside an upright line, above the end of a level one
+        side = -1 if upright(series) else 1  # next to an upright line, above the end of a level one
         text = axes.annotate("", end, (-2 * side, 2), textcoords="offset points", color=color, fontsize=sheet.small)
         text.set_horizontalalignment("left" if upright(series) else "right")
         literal(text, plain(series.label))

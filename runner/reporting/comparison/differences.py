@@ -14,9 +14,9 @@ from runner.sweeps.measurements import Measurements
 # The number of repetitions and their seed do not define a cell.
 _OF_REPETITIONS = ("seed", "repetitions")
 _OPTION = ("kind", "name")
-# Of what made the runs these tell nothing about the physics.
+# These parts of the provenance do not affect the physics.
 _NO_PHYSICS = ("seed", "machine", "made on", "plant")
-_FOLLOWING = ("plant.step", DISTANCE)  # from other values, which stand before them
+_FOLLOWING = ("plant.step", DISTANCE)  # from other values, which precede them
 ABSENT = "(absent)"
 
 
@@ -26,9 +26,9 @@ class Value:
 
     Attributes:
         key: Its dotted key, or a description.
-        a: The value in the first, as text.
+        a: The value in the first, as a string.
         b: The value in the second.
-        cells: The matched cells at which it has these two values, as text; empty for all of them.
+        cells: The matched cells at which it has these two values, as a string; empty for all of them.
     """
 
     key: str
@@ -43,7 +43,7 @@ class ConfigDifferences:
 
     Attributes:
         options: Groups with different options, such as `controller`.
-        values: Resolved values that differ beside these.
+        values: Other resolved values that differ.
         provenance: What made the runs, where that differs: commit and versions.
     """
 
@@ -70,16 +70,15 @@ class ConfigDifferences:
         told = ", ".join(f"{key} ({_both(first, key)})" for key in heads)
         rest = [name for name in self.names if name not in heads]
         if len(heads) == 1 and not rest:
-            return f"{a} and {b} differ in {heads[0]} alone: {_both(first, heads[0])}."
-        beside = f", and beside it in {', '.join(rest)}" if rest else ""
+            return f"{a} and {b} differ only in {heads[0]}: {_both(first, heads[0])}."
+        beside = f", and also in {', '.join(rest)}" if rest else ""
         return f"{a} and {b} differ in {told}{beside}. What follows may be due to any of these."
 
 
 def find_differences(pairs: Pairs) -> ConfigDifferences:
     """Return all resolved values that differ between the matched cells of two sweeps.
 
-    Of a group of which they take other options only those values count that both options have, such as their gains; of
-    a robot not what it is made of.
+    If their options of a group differ, only values that both have count, such as gains. Parts of a robot do not count.
     """
     found = _differing(pairs)
     groups = {key.partition(".")[0] for key in found if key.partition(".")[2] in _OPTION}

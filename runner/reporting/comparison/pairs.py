@@ -18,7 +18,7 @@ from runner.sweeps.differing import value_text
 from runner.sweeps.measurements import Measurements
 
 SEED = "seed"
-"""The axis whose levels are draws of one thing, as repetitions are."""
+"""The axis whose levels are draws of one thing, like repetitions."""
 MOST_PAIRS = 1_000
 """Most draws in a comparison. A random selection replaces more: a million means of two are sorted in 0.1 s."""
 Cells = NDArray[np.intp]
@@ -65,7 +65,7 @@ class Pairs:
 
     @property
     def share_seeds(self) -> NDArray[np.bool_]:
-        """Whether both cells of each pair have the same random draws in each repetition, shape (n,)."""
+        """True if both cells of each pair have the same random draws in each repetition, shape (n,)."""
         if self.a is self.b and not len(self.a.seeds):
             return np.ones(len(self), dtype=bool)
         same: NDArray[np.bool_] = np.asarray(self.a.seeds)[self.of_a] == np.asarray(self.b.seeds)[self.of_b]
@@ -84,7 +84,7 @@ def label_text(label: Label) -> str:
 
 
 def compare(pairs: Pairs, metric: str) -> Comparison | None:
-    """Return how the second cells differ from the first in a metric; None if no repetition is in both.
+    """Return the difference of the second cells from the first in a metric; None if no repetition is in both.
 
     Each draw, that is a repetition of a seed, counts once, with the mean over the pairs of cells: cells of one seed
     share its draws, so they are not further evidence. If repetitions are copies of each other because nothing is
@@ -218,7 +218,7 @@ def match(a: Measurements, b: Measurements) -> Pairs:
 
 
 def _codes(texts: Sequence[str]) -> Cells:
-    """Return a number for each text, equal for equal texts, shape (n,)."""
+    """Return a number for each string, equal for equal strings, shape (n,)."""
     known: dict[str, int] = {}
     return np.array([known.setdefault(text, len(known)) for text in texts], dtype=np.intp)
 
@@ -287,7 +287,7 @@ def _canonical(text: str) -> str:
 
 
 def _written(value: Any) -> str:
-    """Return a resolved value as text; that of a group is its name or kind."""
+    """Return a resolved value as a string; that of a group is its name or kind."""
     return str((isinstance(value, dict) and (value.get("name") or value.get("kind"))) or value_text(value))
 
 

@@ -39,16 +39,16 @@ from runner.sweeps.measurements import Measurements
 
 _MOST_CHARACTERS = 36  # of the names of all cells below a panel
 _MOST_CELLS = 24
-"""Cells that stand side by side; of more the medians are drawn against each other."""
+"""Cells that are side by side; of more the medians are drawn against each other."""
 _MOST_ROWS = 40  # of differing values
 
 
 def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = ()) -> Document:
-    """Return the report on several stored sweeps, the first of which the others are compared with.
+    """Return the report on several stored sweeps; the others are compared with the first.
 
     Args:
         sides: The sweeps, two or more.
-        wanted: Metrics that are compared, the first of which the key numbers tell; empty for all.
+        wanted: Metrics that are compared, the first one is in the key numbers; empty for all.
 
     Raises:
         RunnerError: If two share no cell, no seed or no metric, or have no such metric.
@@ -78,10 +78,10 @@ def _abstract(found: Sequence[SweepComparison]) -> list[str]:
 
 
 def _key_numbers(found: SweepComparison) -> list[tuple[str, str, str]]:
-    """Return how many cells match, what differs, how many metrics do, and the difference in the first one."""
+    """Return the numbers of matched cells and of differing keys, and the difference in the first metric."""
     a, b = found.pairs.first, found.pairs.second
     alone = ", ".join(
-        f"{len(some)} in {name} alone" for name, some in zip((a, b), found.pairs.alone, strict=True) if some
+        f"{len(some)} only in {name}" for name, some in zip((a, b), found.pairs.alone, strict=True) if some
     )
     numbers = [("cells in both", str(len(found.pairs)), alone)]
     names = found.differences.names
@@ -169,12 +169,12 @@ def figure_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
         else f"Difference {b} - {a} in each cell with its interval over the repetitions, if these are enough: each "
         "panel is a family of comparisons."
     )
-    figure = Curves(literal(f"{caption} No point stands where it is beyond every number."), panels)
+    figure = Curves(literal(f"{caption} Points beyond every number are missing."), panels)
     return [figure] if many or not _numbered(pairs) else [figure, _cells(pairs)]
 
 
 def _numbered(pairs: Pairs) -> bool:
-    """Tell whether the names of cells are too long to stand below a figure, where numbers stand for them then."""
+    """Return True if the names of cells are too long for the place below a figure; numbers replace them then."""
     return sum(len(_name(label)) for label in pairs.labels) > _MOST_CHARACTERS
 
 
@@ -188,7 +188,7 @@ def _cells(pairs: Pairs) -> Table:
 
 
 def _differences(pairs: Pairs, metric: str) -> Panel:
-    """Return the differences of each cell; numbers stand below the columns where the names are too long."""
+    """Return the differences of each cell; numbers are below the columns if the names are too long."""
     numbered = _numbered(pairs)
     labels = [label_text(label) for label in pairs.labels]
     answers = judge(ask(list(pairs.each()), [metric]), [metric])
@@ -218,14 +218,14 @@ def choose_metrics(found: SweepComparison, wanted: Sequence[str]) -> list[Answer
 
 
 def table_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
-    """Return what is compared and how, the table over all cells, and that of those with the largest differences."""
+    """Return the method, the table over all cells, and that of those with the largest differences."""
     a, b = found.pairs.first, found.pairs.second
     whole = choose_metrics(found, wanted)
     parts = [one for one in found.answers if one not in whole]
     text = f"The difference is {b} - {a}. {EXPLAINED} {POOLED}"
     tables: list[Block] = [Text(text), _table("Every metric over all cells that both have.", found.pairs, whole)]
     if parts:
-        tables.append(_table("Metrics of one direction or joint, likewise.", found.pairs, parts, folded=True))
+        tables.append(_table("Metrics of one direction or joint.", found.pairs, parts, folded=True))
     if found.cells:
         caption = (
             "Largest differences in one cell, in relation to the size of the metric: chosen from "

@@ -23,7 +23,7 @@ _MOST_CURVES = 8  # runs in one panel
 
 
 def runs_document(runs: Sequence[Run]) -> Document:
-    """Return the report on two or more stored runs, the first of which the others are compared with."""
+    """Return the report on two or more stored runs; the others are compared with the first."""
     names = [letter(place) for place in range(len(runs))]
     sides = [measure_run(run, name) for run, name in zip(runs, names, strict=True)]
     differences = [find_differences(match(sides[0], side)) for side in sides[1:]]

@@ -39,7 +39,7 @@ _NAMED = 3  # cells without a partner that are named
 
 @dataclass(frozen=True)
 class SweepComparison:
-    """How the second of two sweeps differs from the first.
+    """Comparison of the second of two sweeps with the first.
 
     Attributes:
         pairs: Cells that are compared.
@@ -57,7 +57,7 @@ class SweepComparison:
 
     @property
     def noise_alone(self) -> bool:
-        """Whether repetitions differ in their noise alone, as mismatch.spread is 0 in both."""
+        """True if repetitions differ only in their noise because mismatch.spread is 0 in both."""
         a, b = self.pairs.a, self.pairs.b
         return min(a.repetitions, b.repetitions) > 1 and noise_alone(config for config, _ in (*a.configs, *b.configs))
 
@@ -73,7 +73,7 @@ class SweepComparison:
             yield f"{more} in both with different seeds, and not compared"
         for side, alone in zip((pairs.a, pairs.b), pairs.alone, strict=True):
             if alone:
-                yield f"{format_count(len(alone), 'cell is', 'cells are')} in {side.name} alone: {_some(alone)}"
+                yield f"{format_count(len(alone), 'cell is', 'cells are')} only in {side.name}: {_some(alone)}"
             if side.missing:
                 left = format_count(side.missing, "cell", "cells")
                 yield f"{left} of {side.name} not stored; continue with: {side.command}"
@@ -109,7 +109,7 @@ def compare_sweeps(a: Measurements, b: Measurements, metrics: Sequence[str] = ()
     Args:
         a: The first, which the second is compared with.
         b: The second.
-        metrics: Names of metrics; empty for all that both have.
+        metrics: Names of metrics; empty for the common ones.
 
     Raises:
         RunnerError: If they share no cell, no seed or no metric, or have no such metric.
@@ -146,7 +146,7 @@ def compare_levels(
         pairs += level_pairs(measurements, axis, [other])
     if not pairs:
         raise RunnerError(
-            f"{axis}: no two cells differ in it alone and share their seed, so none are compared in pairs; sweep it "
+            f"{axis}: no two cells differ only in it and share their seed, so none are compared in pairs; sweep it "
             "with one seed, or over the same seeds for each value"
         )
     return answer(pairs, list(dict.fromkeys(metrics or measurements.values)), metrics)
@@ -224,13 +224,13 @@ def counts_by_sign(one: Asked) -> tuple[int, int]:
 
 
 def noise_alone(configs: Iterable[Mapping[str, Any]]) -> bool:
-    """Return whether the repetitions of runs draw nothing but noise: nothing of the arm is drawn from the seed."""
+    """Return True if the repetitions of runs draw only noise: nothing of the arm is drawn from the seed."""
     mismatches = [config.get("mismatch", {}) for config in configs]
     return not any("kind" in mismatch or _draws(mismatch) for mismatch in mismatches)
 
 
 def _draws(mismatch: Mapping[str, Any]) -> bool:
-    """Return whether a built-in mismatch has a spread, of all links or of one."""
+    """Return True if a built-in mismatch has a spread, of all links or of one."""
     of_links = [value for link in mismatch.get("link", {}).values() for key, value in link.items() if "spread" in key]
     return any([mismatch.get("spread"), *of_links])
 
@@ -246,7 +246,7 @@ def format_count(count: int, one: str, many: str) -> str:
 
 
 def size_told(side: Measurements) -> str:
-    """Return how many cells a sweep has, and repetitions in each."""
+    """Return the number of cells of a sweep, and of repetitions in each."""
     failed = f", {side.failed} of them failed" if side.failed else ""
     return f"{format_count(len(side.hashes), 'cell', 'cells')}{failed}; repetitions in each: {side.repetitions}"
 
@@ -274,7 +274,7 @@ def _movements(pairs: Pairs, names: Sequence[str]) -> tuple[list[Asked], int]:
 
 
 def _relative(pairs: Pairs, metric: str) -> FloatArray:
-    """Return how far the median of each pair's differences is from zero, over the larger median; NaN without values."""
+    """Return the size of the median of each pair's differences over the larger median; NaN without values."""
     a, b = pairs.a.values[metric][pairs.of_a], pairs.b.values[metric][pairs.of_b]
     moved = np.abs(_median_differences(pairs, metric))
     with np.errstate(invalid="ignore"), warnings.catch_warnings():

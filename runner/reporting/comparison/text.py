@@ -28,7 +28,7 @@ from runner.store.seal import simulated_part
 from runner.sweeps.measurements import Measurements
 
 ALL = "--all prints every metric and the method, --json all numbers."
-"""What follows a short comparison."""
+"""Last line of a short comparison."""
 
 _MOST_ROWS = 15  # of a short table
 # Possible causes of a difference besides the config; date, machine and command do not affect the physics.
@@ -48,7 +48,7 @@ def level_lines(side: Measurements, axis: str, answers: Sequence[Answer], everyt
         yield f"the levels of {axis} differ in more than {axis}; what follows may be due to any of these:"
         yield align_columns([[one.key, "; ".join(f"{at}: {text}" for at, text in one.values)] for one in along])
     else:
-        yield f"the levels of {axis} differ in {axis} alone"
+        yield f"the levels of {axis} differ only in {axis}"
     yield ""
     yield from map(one_line, sentences(answers))
     yield from _doubt_lines([side])

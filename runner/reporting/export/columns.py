@@ -18,7 +18,7 @@ BEYOND, MISSING = "∞", "–"
 
 
 class Unit(str):
-    """A unit as metrics have it, such as "mm", "N m" or "m/s^2", with a power of ten before it.
+    """A unit of a metric, such as "mm", "N m" or "m/s^2", with a power of ten before it.
 
     Attributes:
         power: The exponent; 0 for none.
@@ -36,16 +36,16 @@ class Unit(str):
 
 @dataclass(frozen=True)
 class Cell:
-    """A median with its interval as texts; no ends where the sample is too small for one, or all values are the same.
+    """A median with its interval as strings; no ends if the sample is too small for one, or all values are the same.
 
     Attributes:
-        median: The median; "∞" where it lies beyond every number, "–" where there is no value.
+        median: The median; "∞" where it lies beyond every number, "–" without a value.
         low: Lower end, or "".
         high: Upper end, or "".
         n: Number of values.
         lost: How many of these lie beyond every number.
-        rounding: Whether it is what rounding leaves of zero.
-        alike: Whether all values are the same.
+        rounding: True if it is what rounding leaves of zero.
+        alike: True if all values are the same.
     """
 
     median: str
@@ -73,7 +73,7 @@ class Column:
 
     @property
     def has_intervals(self) -> bool:
-        """Whether any of its cells has an interval."""
+        """True if any of its cells has an interval."""
         return any(cell.low for cell in self.cells)
 
 
@@ -123,7 +123,7 @@ def _cell(found: Interval | None, scale: float, lost: int) -> Cell:
 def decimals(median: float, low: float | None, high: float | None) -> int:
     """Return to how many decimals a median is given: to the second digit of the half width of its interval.
 
-    At most six digits; three where there is no interval.
+    At most six digits; three without an interval.
     """
     finite = [value for value in (low, median, high) if value is not None and math.isfinite(value)]
     half = (max(finite) - min(finite)) / (2.0 if len(finite) == 3 else 1.0) if finite else 0.0

@@ -1,4 +1,4 @@
-"""Figures of a report as separate files: SVG and PDF at column width, points as CSV, captions as text."""
+"""Figures of a report as separate files: SVG and PDF at column width, points as CSV, captions without markup."""
 
 import csv
 import io
@@ -52,7 +52,7 @@ def figures_of(document: Document) -> dict[str, Figure]:
 
 
 def _content(figure: Figure) -> str:
-    """Return what a figure shows in a few words: the quantities of its axes, or the beginning of its caption."""
+    """Return the content of a figure in short: the quantities of its axes, or the beginning of its caption."""
     if isinstance(figure, Playback):
         return "motion"
     if isinstance(figure, Picture):
@@ -74,7 +74,7 @@ def _joined(labels: Sequence[str]) -> str:
 
 
 def plain_caption(caption: str) -> str:
-    """Return a caption without markup; its mathematics as Typst has it."""
+    """Return a caption without markup; its mathematics in Typst notation."""
     return "".join(span.text for span in spans(caption))
 
 
@@ -146,7 +146,7 @@ def _drawn(figure: Figure, sheet: Sheet) -> tuple[str, bytes]:
 
 
 def _fitted(svg: str, sheet: Sheet) -> str:
-    """Return a drawing that is no wider than the sheet: of its own size, or made smaller as a whole."""
+    """Return a drawing of at most the width of the sheet: as it is, or smaller as a whole."""
     head, end, rest = svg.partition("<g ")
     width, height = _WIDTH.search(head), _HEIGHT.search(head)
     if width is None or height is None:

@@ -52,7 +52,7 @@ def latex(table: PaperTable) -> str:
 
 
 def _column(column: Column) -> str:
-    """Return how a metric is aligned: at the decimal marker, with room for its longest numbers."""
+    """Return the alignment of a metric: at the decimal marker, with room for its longest numbers."""
     numbers = [cell.median.partition(".") for cell in column.cells if _is_number(cell.median)]
     whole = max((len(text.lstrip("-")) for text, _, _ in numbers), default=1)
     places = max((len(text) for _, _, text in numbers), default=0)
@@ -61,7 +61,7 @@ def _column(column: Column) -> str:
 
 
 def _head(table: PaperTable) -> list[str]:
-    """Return the rows of the head: titles with units, and below them what stands under each where it has two parts."""
+    """Return the rows of the head: titles with units, and below them the parts of each."""
     titles = [_braced(_title(each)) for each in table.columns]
     last = ["n"] if table.counts else []
     if not any(each.has_intervals for each in table.columns):
@@ -133,5 +133,5 @@ def _factor(divided: str, name: str, exponent: str) -> str:
 
 
 def escape_latex(text: str) -> str:
-    """Return a text of which no character means anything to LaTeX."""
+    """Return a string in which LaTeX finds no markup."""
     return "".join(_MEANT.get(letter, letter) for letter in plain(text))

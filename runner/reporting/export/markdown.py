@@ -17,6 +17,6 @@ def markdown(table: PaperTable) -> str:
 
 
 def escape_markdown(text: str) -> str:
-    """Return a text of which no character means anything to Markdown."""
+    """Return a string in which Markdown finds no markup."""
     safe = plain(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return _MEANT.sub(lambda found: f"\\{found[0]}", safe)

@@ -22,7 +22,7 @@ class PaperTable:
     """A table for a paper.
 
     Attributes:
-        heads: What the first columns tell of each row, such as the swept axes.
+        heads: Titles of the first columns, such as the swept axes.
         labels: That of each row.
         columns: Medians with their intervals.
         notes: How the numbers were made, and what the reader must know of them, a sentence each.
@@ -37,7 +37,7 @@ class PaperTable:
 
     @property
     def counts(self) -> Sequence[str]:
-        """The number of values in each row; nothing where it is the same everywhere, and is told in a note."""
+        """The number of values in each row; nothing if it is the same everywhere, because a note has it."""
         rows = [{each.cells[row].n for each in self.columns} for row in range(len(self.labels))]
         if len(set().union(*rows)) <= 1:
             return ()
@@ -45,7 +45,7 @@ class PaperTable:
 
     @property
     def lines(self) -> list[list[str]]:
-        """The head and the rows as plain texts, a median with its interval as "4.1 [3.9, 4.4]"."""
+        """The head and the rows as plain strings, a median with its interval as "4.1 [3.9, 4.4]"."""
         counts = self.counts
         lines = [[*self.heads, *map(_head, self.columns), *(["n"] if counts else [])]]
         for row, labels in enumerate(self.labels):
@@ -81,7 +81,7 @@ def of_sweep(
         measurements: The sweep.
         command: The command that made it.
         metrics: The metrics, a column each; None takes those that its report compares.
-        by: The axes; None takes all that were swept but the seed.
+        by: The axes; None takes all swept axes except the seed.
         where: Values to which cells are limited, each as KEY=VALUE.
 
     Raises:
@@ -138,9 +138,9 @@ def _of_numbers(columns: Sequence[Column], seeds: Sequence[int]) -> list[str]:
     else:
         notes.append("Medians.")
     if any(cell.alike for cell in cells):
-        notes.append("No interval stands where its ends are the same, as most repetitions gave the same value.")
+        notes.append("No interval is given if its ends are the same because most repetitions gave the same value.")
     if min(counts, default=SMALLEST_SAMPLE) < SMALLEST_SAMPLE:
-        notes.append(f"No interval stands where n is below {SMALLEST_SAMPLE}: so few values allow none at 95 %.")
+        notes.append(f"No interval is given if n is below {SMALLEST_SAMPLE}: so few values allow none at 95 %.")
     of_seeds = {count for count in seeds if count > 1}
     if len(counts) == 1:
         over = f" from {seeds[0]} seeds" if of_seeds and len(set(seeds)) == 1 else ""
@@ -159,7 +159,7 @@ def _of_numbers(columns: Sequence[Column], seeds: Sequence[int]) -> list[str]:
 
 
 def _of_cells(measurements: Measurements, pooled: Pooled) -> list[str]:
-    """Return what must be known of the cells: failures, caveats, and what differs beyond the axes."""
+    """Return the notes on the cells: failures, caveats, and differences beyond the axes."""
     cells = [int(cell) for own in pooled.cells for cell in own]
     notes = []
     failed = sum(pooled.failed)

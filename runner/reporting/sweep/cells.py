@@ -54,8 +54,8 @@ def axes_section(subject: Subject, command: str) -> Section:
             Notice(
                 "failure",
                 f"{failed} of {cells} runs failed",
-                "They stand in the figures as crosses and in a section of their own. A failed repetition counts as "
-                "beyond every number, as one does that never settles.",
+                "Crosses mark them in the figures; a separate section lists them. A failed repetition counts as "
+                "beyond every number, like one that never settles.",
             )
         )
     if measurements.repetitions < SMALLEST_SAMPLE:
@@ -64,7 +64,7 @@ def axes_section(subject: Subject, command: str) -> Section:
                 "warning",
                 f"Too few repetitions for intervals: {measurements.repetitions} of {SMALLEST_SAMPLE}",
                 "Of so few values even the whole range may miss the true median in more than 5 of 100 cases. Cells "
-                f"are compared by their medians alone; repetitions={SMALLEST_SAMPLE} or more gives intervals.",
+                f"are compared only by their medians; repetitions={SMALLEST_SAMPLE} or more gives intervals.",
             )
         )
     return Section("Axes", blocks)
@@ -108,7 +108,7 @@ def failures_section(subject: Subject) -> Section:
 def failed_table(what: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
     """Return the table of failed runs or trials; of many the first ones."""
     left = len(rows) - _MOST_FAILURES
-    more = f" {left} more stand in the list of runs and in the table of the sweep." if left > 0 else ""
+    more = f" {left} more are in the list of runs and in the table of the sweep." if left > 0 else ""
     return Table(f"Failed {what}.{more}", header, [literals(row) for row in rows[:_MOST_FAILURES]])
 
 
@@ -145,7 +145,7 @@ def failing_cells(subject: Subject) -> str:
 
 
 def _levels(axis: Axis, levels: NDArray[np.intp]) -> str:
-    """Return some levels of an axis in words: numbers at one end as a bound."""
+    """Return a phrase for some levels of an axis: numbers at one end as a bound."""
     texts = [axis.text(level) for level in levels.tolist()]
     if axis.numbers is not None and len(texts) > 1:
         chosen, others = axis.numbers[levels], np.delete(axis.numbers, levels)
@@ -157,7 +157,7 @@ def _levels(axis: Axis, levels: NDArray[np.intp]) -> str:
 
 
 def _by_level(axis: Axis, failed: NDArray[np.bool_]) -> list[list[str]]:
-    """Return how many cells failed at each value of an axis at which any did; of many values some, spread evenly."""
+    """Return the number of failed cells at each value of an axis that has any; of many values some, spread evenly."""
     count, lost = (np.bincount(axis.level[chosen], minlength=len(axis.values)) for chosen in (slice(None), failed))
     levels = np.flatnonzero(lost)
     chosen = levels[spaced_indices(len(levels), _MOST_FAILURES)].tolist()
@@ -165,12 +165,12 @@ def _by_level(axis: Axis, failed: NDArray[np.bool_]) -> list[list[str]]:
 
 
 def has_caveats(subject: Subject) -> bool:
-    """Tell whether there is something to say."""
+    """Return True if there is something to say."""
     return any(subject.measurements.caveats) or bool(subject.measurements.caveat_changes)
 
 
 def caveats_section(subject: Subject) -> Section:
-    """Return the rules that were sprung, each with its number of cells and the worst one, and where rules differ."""
+    """Return the rules that found something, each with its number of cells and the worst one, and changes of rules."""
     measurements = subject.measurements
     cells = len(measurements.hashes)
     blocks: list[Block] = []

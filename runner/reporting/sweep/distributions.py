@@ -58,7 +58,7 @@ def _shares(subject: Subject, metric: str, axis: Axis) -> Panel:
 
 
 def _distribution(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the corners of the empirical distribution of some values, as far as they are finite."""
+    """Return the corners of the empirical distribution of some values, without infinite ones."""
     finite = np.sort(values[np.isfinite(values)])
     steps = np.arange(len(finite) + 1) / max(len(values), 1)
     x = np.repeat(finite, 2)

@@ -17,13 +17,13 @@ from runner.store.axes import Axis
 
 _MOST_LEVELS = 200  # of an axis that are drawn, spread evenly
 _MOST_LINES = 6
-_APART = 0.1  # of curves at one text, so that their bars are seen
+_APART = 0.1  # of curves at one name, so that their bars are seen
 _MOST_INTERVALS = 60
 _MOST_OF_IT = 0.5  # share of the spread from which on the draws are named
 
 
 def section(subject: Subject) -> Section:
-    """Return what each axis does to each metric."""
+    """Return the effect of each axis on each metric."""
     told = Text(
         f"{_explained(subject.effects)} {QUANTILE_RULE} No point is drawn where half of the runs or more failed."
     )
@@ -39,7 +39,7 @@ def section(subject: Subject) -> Section:
 
 
 def describe_shared_variation(subject: Subject) -> list[str]:
-    """Return in a sentence which share of the spread of the first metric the draws make, if it is more than half."""
+    """Return a sentence with the fraction of the spread of the first metric from the draws, if it exceeds half."""
     metric = subject.metrics[0]
     found = subject.effects[metric].shared
     if found is None or found < _MOST_OF_IT:
@@ -79,8 +79,8 @@ def _explained(analyses: dict[str, EffectAnalysis]) -> str:
         f"the residuals, and the order found, with as large an effect. Values used: n = {used}.",
         f"Of {', '.join(logs)} the logarithms were taken, as the values span decades." if logs else "",
         f"Left out, as beyond every number: {', '.join(lost)}; shares of what is left may overlap." if lost else "",
-        f"Cells of one seed share the random draws of a repetition, which make {', '.join(shared)}. This is no scatter "
-        "between cells: the test takes it out first, and permutes within a repetition only."
+        f"Cells of one seed share the random draws of a repetition, which make {', '.join(shared)}. This is not "
+        "scatter between cells: the test takes it out first, and permutes within a repetition only."
         if shared
         else "",
         _on_chance(tests) if tests else "",
@@ -89,8 +89,8 @@ def _explained(analyses: dict[str, EffectAnalysis]) -> str:
 
 
 def _on_chance(tests: int) -> str:
-    """Return what so many tests find by chance, and under which condition."""
-    count = "One test stands here" if tests == 1 else f"{tests} tests stand here"
+    """Return the number of chance findings of so many tests, with its condition."""
+    count = "There is one test" if tests == 1 else f"There are {tests} tests"
     return (
         "Where an axis has no effect and the values scatter alike at all of its levels, p falls below 0.05 in one test "
         f"in twenty. {count}. Where they scatter more at some levels than at others, p is too small too often."
@@ -146,9 +146,9 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
     """Return the median of each cell over one axis, a curve for each value of the other axis if there are two.
 
     Returns:
-        The figure, or None where there are more curves or cells than a reader can tell apart.
+        The figure, or None where there are more curves or cells than a reader can distinguish.
     """
-    # Along the axis with more values, and rather along numbers than along texts.
+    # Along the axis with more values, and rather along numbers than along names.
     along, *other = sorted(subject.axes, key=lambda axis: (axis.numbers is None, -len(axis.values)))
     groups = other[0].level if other else np.zeros(len(subject.measurements.hashes), dtype=np.intp)
     count = len(other[0].values) if other else 1
@@ -175,7 +175,7 @@ def cells_with_intervals(subject: Subject, metric: str) -> Curves | None:
 
 
 def at_texts(series: Series) -> list[Series]:
-    """Return a curve over texts as points with upright bars: between texts there is nothing that a line stands for."""
+    """Return a curve over names as points with upright bars: a line between names would mean nothing."""
     if series.low is None or series.high is None:
         return [replace(series, style="points")]
     gap = np.full(series.x.size, np.nan)
@@ -186,7 +186,7 @@ def at_texts(series: Series) -> list[Series]:
 
 
 def places(axis: Axis) -> FloatArray:
-    """Return where the values of an axis stand: at their numbers, or at 0, 1, ... where they are texts."""
+    """Return the places of the values of an axis: their numbers, or 0, 1, ... for strings."""
     return np.arange(len(axis.values), dtype=float) if axis.numbers is None else axis.numbers
 
 

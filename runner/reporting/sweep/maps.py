@@ -18,7 +18,7 @@ POOLED = "seed"  # the one axis over which maps take a median: its values mean n
 _FEWEST_FOR_CONTOURS = 3
 _MOST_MULTIPLES = 9
 _MOST_VALUES = 200  # of an axis of a map
-_MOST_POINTED = 5000  # cells that tell about themselves; a page with more would be slow
+_MOST_POINTED = 5000  # cells with a hint at the pointer; a page with more would be slow
 _FREQUENCY, _PERIOD = "controller.natural_frequency", "controller.period"
 _POINTS = 400
 
@@ -33,7 +33,7 @@ def section(subject: Subject) -> Section:
 
 
 def is_readable(subject: Subject) -> bool:
-    """Tell whether maps of a sweep can be read: over two axes or more, and of few enough values."""
+    """Return True if maps of a sweep can be read: over two axes or more, and of few enough values."""
     return len(subject.axes) > 1 and all(len(axis.values) <= _MOST_VALUES for axis in choose_axes(subject)[:2])
 
 
@@ -58,7 +58,7 @@ def choose_axes(subject: Subject) -> list[Axis]:
 
 
 def _maps(subject: Subject, metric: str, x: Axis, y: Axis, others: Sequence[Axis]) -> Maps:
-    """Return a map for each combination of the values of the other axes, as tasks or arms are not to be averaged."""
+    """Return a map for each combination of the values of the other axes, because tasks or arms must not be averaged."""
     of = medians, low, _ = subject.medians[metric], *subject.ends(metric)
     columns = 1
     pooled = next((axis for axis in subject.axes if axis.name == POOLED and axis not in (x, y)), None)
@@ -161,7 +161,7 @@ def theory_lines(x: Axis, y: Axis) -> list[Series]:
 
 
 def theory_text(axes: list[Axis]) -> list[Block]:
-    """Return what the line of a map means, where there is one."""
+    """Return the meaning of the line of a map, if it has one."""
     if len(axes) < 2 or not _sampling(axes[0], axes[1]):
         return []
     return [
@@ -178,7 +178,7 @@ def theory_text(axes: list[Axis]) -> list[Block]:
 
 
 def _sampling(x: Axis, y: Axis) -> bool:
-    """Return whether two axes are natural frequency and sample time, of the arm or of one and the same stage."""
+    """Return True if two axes are natural frequency and sample time, of the arm or of the same stage."""
     for first, second in ((x, y), (y, x)):
         if first.name.startswith(_FREQUENCY) and second.name.startswith(_PERIOD):
             positive = all(axis.numbers is not None and bool(axis.numbers.min() > 0) for axis in (x, y))

@@ -77,7 +77,7 @@ def _figure(answers: Sequence[Answer]) -> Curves:
 
 
 def causes(subject: Subject, answers: Sequence[Answer]) -> list[str]:
-    """Return which other keys may cause a difference, since they vary with the axis that is asked about."""
+    """Return the other keys that may cause a difference because they vary with the axis."""
     axis = asked_axis(subject)
     along = [found.key for found in subject.measurements.differences if axis is not None and axis.name in found.axes]
     if axis is None or not along or not any(answer.sign for answer in answers):
@@ -96,7 +96,7 @@ def in_short(subject: Subject) -> str:
 
 
 def range_told(subject: Subject) -> tuple[str, str] | None:
-    """Return the first metric and the range of its medians over the cells, in words; None where nothing is ranked."""
+    """Return the first metric and the range of its medians over the cells, as strings; None if nothing is ranked."""
     if not (subject.ranked and subject.axes):
         return None
     metric = subject.metrics[0]
@@ -139,7 +139,7 @@ def pairs_section(subject: Subject) -> Section | None:
     if not sections:
         return None
     text = (
-        "The cells of a pair differ in one axis alone, and in what goes with it (Also differs). "
+        "The cells of a pair differ only in one axis, and in what goes with it (Also differs). "
         f"{EXPLAINED} The option --metrics compares by other metrics."
     )
     return Section("Compared in pairs", [Text(text)], sections)

@@ -51,7 +51,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
 
     Args:
         sweep: The sweep.
-        metrics: Metrics that it compares, the first of which ranks the cells; empty chooses those that differ.
+        metrics: Metrics that it compares; the first one ranks the cells; empty chooses those that differ.
         runs_address: Address of the folder of runs, seen from the report, ending in a slash.
 
     Raises:
@@ -102,7 +102,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
 
 
 def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
-    """Return how many cells there are and failed, and the range of the medians of the first metric."""
+    """Return the numbers of cells and of failed ones, and the range of the medians of the first metric."""
     failed = [cell for cell, status in enumerate(subject.measurements.statuses) if status != "ok"]
     count = len(subject.measurements.hashes)
     numbers = [("cells", str(count), f"repetitions in each: {subject.measurements.repetitions}")]

@@ -25,7 +25,7 @@ _WIDE = 10.0  # times the lower end: of a probability with a higher upper end no
 _FEW = "too few repetitions to tell"
 _TOLD = (
     f"Repetitions are too few to tell where the upper end of the interval is more than {_WIDE:g} times the lower one: "
-    "not even the magnitude of the probability is known. Where no repetition failed, the upper end alone is telling."
+    "not even the magnitude of the probability is known. Where no repetition failed, only the upper end counts."
 )
 _LABEL = "probability of failing"
 _MOST_ROWS = 60
@@ -35,10 +35,10 @@ _ALL = "all bounds"
 
 @dataclass(frozen=True)
 class Failing:
-    """How many repetitions of each of some cells do not keep a bound.
+    """Number of repetitions of each of some cells that do not keep a bound.
 
     Attributes:
-        name: The bound in words.
+        name: Description of the bound.
         failed: Their number, shape (n,).
         of: Number of repetitions, shape (n,); 0 for cells without the metric.
     """
@@ -49,7 +49,7 @@ class Failing:
 
     @property
     def share(self) -> FloatArray:
-        """The share of them, shape (n,); NaN for none."""
+        """The fraction of them, shape (n,); NaN for none."""
         return np.where(self.of > 0, self.failed / np.maximum(self.of, 1), np.nan)
 
     @property
@@ -62,7 +62,7 @@ class Failing:
 
     @property
     def few(self) -> NDArray[np.bool_]:
-        """Where repetitions are too few to tell, shape (n,)."""
+        """True for cells with too few repetitions, shape (n,)."""
         low, high = self.ends
         return high > _WIDE * low
 
@@ -75,7 +75,7 @@ class Failing:
 
 
 def find_failing(subject: Subject, spec: Mapping[str, Bound]) -> list[Failing]:
-    """Return how many repetitions of each cell fail each bound, and of several bounds any of them."""
+    """Return the number of repetitions of each cell that fail each bound, or any of several bounds."""
     values = subject.measurements.values
     shape = (len(subject.measurements.hashes), subject.measurements.repetitions)
     found, any_failed, all_there = [], np.zeros(shape, dtype=bool), np.ones(shape, dtype=bool)
@@ -91,7 +91,7 @@ def find_failing(subject: Subject, spec: Mapping[str, Bound]) -> list[Failing]:
 
 
 def section(subject: Subject, sweep: Sweep) -> Section:
-    """Return what a sweep says of its spec, one or more bounds."""
+    """Return the section on the spec of a sweep."""
     failing = find_failing(subject, sweep.spec)
     axes = [axis for axis in subject.axes if axis.name != maps.POOLED]
     blocks: list[Block] = [Text(literal(f"{RULE} {_TOLD}"))]
@@ -109,7 +109,7 @@ def section(subject: Subject, sweep: Sweep) -> Section:
 
 
 def summary(subject: Subject, sweep: Sweep) -> str:
-    """Return how many cells keep the whole spec in every repetition, and which bounds were set late."""
+    """Return the number of cells that keep the whole spec in every repetition, and the bounds that were set late."""
     whole = find_failing(subject, sweep.spec)[-1]
     kept = int(np.count_nonzero((whole.failed == 0) & (whole.of > 0)))
     return f"{kept} of {len(whole.of)} cells keep the spec in every repetition.{_late(subject, sweep)}"
@@ -187,7 +187,7 @@ def _row(one: Failing, x: Axis, y: Axis, cells: NDArray[np.intp], start: str) ->
 
 
 def _texts(failing: Failing) -> list[str]:
-    """Return for each cell what it says of a bound, in words."""
+    """Return a phrase for each cell on a bound."""
     columns = zip(failing.failed, failing.of, failing.share, *failing.ends, failing.few, strict=True)
     return [
         f"{failed} of {of} failed, {probability(share)} ({probability(low)} to {probability(high)})"

@@ -24,13 +24,13 @@ MOST_METRICS = 5
 """Metrics that a report compares when nobody has named any."""
 
 MOST_GROUPS = 64
-"""An axis with more values is taken in so many groups of neighbours where effects are worked out."""
+"""An axis with more values is taken in so many groups of neighbours where effects are computed."""
 
 QUANTILE_RULE = (
     "A quantile is the smallest value that so large a share of the repetitions does not exceed: the value of one of "
     "them, never one between two (NumPy's inverted_cdf)."
 )
-"""What reports say of their quantiles."""
+"""Definition of quantiles in reports."""
 
 _DECADE = 10.0
 _LONGEST = 60  # characters of a value in a table
@@ -60,12 +60,12 @@ class Subject:
 
     @cached_property
     def effects(self) -> "dict[str, EffectAnalysis]":
-        """What the axes do to each metric compared, over all repetitions of all cells."""
+        """Effects of the axes on each compared metric, over all repetitions of all cells."""
         return {metric: self._analyse(self.measurements.values[metric]) for metric in self.metrics}
 
     def ends(self, metric: str) -> tuple[FloatArray, FloatArray]:
         """Return the ends of the 95 % interval of each cell's median, shape (cells,); NaN where repetitions are few."""
-        return median_ends(np.sort(self.measurements.values[metric], axis=1))  # NaN, which is no repetition, is last
+        return median_ends(np.sort(self.measurements.values[metric], axis=1))  # NaN, a missing repetition, is last
 
     def _analyse(self, values: FloatArray) -> "EffectAnalysis":
         from runner.statistics import axis_effects  # SciPy, a second, which the end of a sweep does without
@@ -99,14 +99,14 @@ class Subject:
         return separator.join(f"{axis.name}={axis.text(int(axis.level[cell]))}" for axis in self.axes)
 
     def hint(self, cell: int) -> str:
-        """Return what a reader is told of a cell when pointing at it."""
+        """Return the hint of a cell, the text at the pointer."""
         units = self.measurements.units
         found = [f"{title(name)} {_text(self.medians[name][cell], units[name])}" for name in self.metrics]
         failure = [self.measurements.failures[cell]] if self.measurements.failures[cell] else []
         return "; ".join([self.cell_name(cell), *found, *failure])
 
     def hints(self, cells: Sequence[int]) -> list[str]:
-        """Return what a reader is told of some cells."""
+        """Return the hints of some cells."""
         return [self.hint(cell) for cell in cells]
 
     def hashes(self, cells: Sequence[int]) -> list[str]:
@@ -131,7 +131,7 @@ def shorten(text: str) -> str:
 
 
 def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:
-    """Return what a report is about: the metrics asked for, or those that differ between the cells.
+    """Return the subject of a report: the wanted metrics, or those that differ between the cells.
 
     Raises:
         RunnerError: If a metric asked for is none of the sweep's.
@@ -156,7 +156,7 @@ def main_metrics(sides: Sequence[Measurements], known: Collection[str] = ()) -> 
 
 
 def spans_decades(values: FloatArray) -> bool:
-    """Return whether values are seen better on a logarithmic scale: all positive, over a decade or more."""
+    """Return True if values need a logarithmic scale: all positive, over a decade or more."""
     finite = values[np.isfinite(values)]
     return bool(finite.size and finite.min() > 0 and finite.max() >= _DECADE * finite.min())
 

@@ -152,7 +152,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
 
 
 def _key_numbers(trials: Trials) -> list[tuple[str, str, str]]:
-    """Return how many trials there are, and the chosen value of each objective with the keys that give it."""
+    """Return the number of trials, and the chosen value of each objective with the keys that give it."""
     count = len(trials.tuning.trials)
     failed = count - len(trials.good)
     numbers = [("trials", str(count), f"{failed} of them failed" if failed else "none failed")]
@@ -206,7 +206,7 @@ def _what(trials: Trials) -> Section:
     ]
     failed = len(trials.tuning.trials) - len(trials.good)
     if failed:
-        told = "They rank behind all others, so that the search keeps away from them; a section of its own lists them."
+        told = "They rank behind all others, so that the search keeps away from them; a separate section lists them."
         blocks.append(Notice("failure", f"{failed} of {len(trials.tuning.trials)} trials failed", told))
     return Section("What was tuned", blocks)
 
@@ -247,7 +247,7 @@ def _front(trials: Trials) -> Section:
         rows.append([str(place), *(quantity(value, objective.unit) for objective, value in values), *settings])
     header = ["trial", *(title(objective.metric) for objective in objectives), *(key.name for key in trials.keys)]
     text = (
-        f"On the front stand {len(front)} of {len(trials.good)} good trials: none of them gets better in one objective "
+        f"The front has {len(front)} of {len(trials.good)} good trials: none of them gets better in one objective "
         "without another getting worse."
     )
     blocks: list[Block] = [

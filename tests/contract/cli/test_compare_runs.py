@@ -108,9 +108,9 @@ def test_one_run_alone_is_refused(cli, copy_run):
 def test_what_is_compared_is_told_before_any_number(cli, copy_run):
     a = copy_run("goal")
     b, one = (cli(*SHORT, *other, "gravity=9.7").folder for other in (("controller.period=0.005",), ()))
-    assert "\nA and B differ in gravity alone: 9.81 against 9.7.\n" in cli("compare", a, one).out
+    assert "\nA and B differ only in gravity: 9.81 against 9.7.\n" in cli("compare", a, one).out
     told = next(line for line in cli("compare", a, b).out.splitlines() if line.startswith("A and B differ"))
-    assert "gravity (9.81 against 9.7), and beside it in " in told
+    assert "gravity (9.81 against 9.7), and also in " in told
     assert "controller.period" in told
     assert told.endswith("may be due to any of these.")
     assert "\nA and B differ in no value.\nsame config\n" in cli("compare", a, a).out

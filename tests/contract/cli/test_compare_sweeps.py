@@ -29,9 +29,9 @@ def test_cells_are_matched_however_the_sweeps_are_ordered(cli, sweep):
     b = sweep("controller.damping_ratio=0.9,1.0", "gravity=9.70,9.81,9.6", "torque_limits.max=100000")
     ending = cli("compare", a, b, "--all")
     assert (ending.code, ending.err) == (0, "")
-    assert "\nA and B differ in torque_limits.max alone: null against 100000.\n" in ending.out
+    assert "\nA and B differ only in torque_limits.max: null against 100000.\n" in ending.out
     assert "4 cells are in both, matched by gravity, controller.damping_ratio; up to 6 repetitions" in ending.out
-    assert "2 cells are in B alone: gravity=9.6, controller.damping_ratio=0.9; gravity=9.6" in ending.out
+    assert "2 cells are only in B: gravity=9.6, controller.damping_ratio=0.9; gravity=9.6" in ending.out
     *_, word, below, above = cells(ending.out, "energy", "J")
     assert (word, below, above) == ("10)", "0,", "0")  # no torque comes near the limit
     assert "too few pairs for " in ending.out
@@ -44,7 +44,7 @@ def test_a_key_that_one_sweep_fixes_or_leaves_is_matched_by_its_resolved_value(c
     for other in (a, left):
         out = cli("compare", other, b).out
         assert "2 cells are in both, matched by gravity, controller.damping_ratio" in out
-        assert "2 cells are in B alone: gravity=9.81, controller.damping_ratio=0.9" in out
+        assert "2 cells are only in B: gravity=9.81, controller.damping_ratio=0.9" in out
 
 
 def test_a_sweep_and_itself_differ_in_nothing(cli, sweep):
@@ -61,7 +61,7 @@ def test_what_else_differs_is_named_before_any_number(cli, sweep):
     )
     out = cli("compare", a, b).out
     head, _ = out.split("metric ", 1)
-    assert "differ in controller (computed_torque against operational_space), and beside it in " in head
+    assert "differ in controller (computed_torque against operational_space), and also in " in head
     assert "controller.natural_frequency" in head
     assert cells(head, "controller.natural_frequency")[-1] == "20"
 
@@ -69,8 +69,8 @@ def test_what_else_differs_is_named_before_any_number(cli, sweep):
 def test_several_sweeps_are_held_against_the_first(cli, sweep):
     folders = [sweep("gravity=9.81,9.7", f"torque_limits.max={limit}") for limit in (30, 31, 32)]
     out = cli("compare", *folders, "--metrics", "energy").out
-    assert "A and B differ in torque_limits.max alone: 30 against 31." in out
-    assert "A and C differ in torque_limits.max alone: 30 against 32." in out
+    assert "A and B differ only in torque_limits.max: 30 against 31." in out
+    assert "A and C differ only in torque_limits.max: 30 against 32." in out
     assert "peak_torque" not in out
     assert "B and C" not in out
 
@@ -106,7 +106,7 @@ def test_cells_that_are_not_stored_are_counted_and_the_others_are_compared(cli):
     ending = cli("compare", a, b)
     assert ending.code == 0
     assert "2 cells are in both" in ending.out
-    assert "1 cell is in A alone: gravity=9.6" in ending.out
+    assert "1 cell is only in A: gravity=9.6" in ending.out
     assert "1 cell of B not stored; continue with: runner -m " in ending.out
 
 

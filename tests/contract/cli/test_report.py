@@ -75,7 +75,7 @@ def test_several_sweeps_are_compared(cli):
     ending = cli("report", *folders, "--format", "html")
     page = ending.folder.joinpath("report.html").read_text()
     assert "2 sweeps compared" in page
-    assert "A and B differ in torque_limits.max alone: 30 against 31." in page
+    assert "A and B differ only in torque_limits.max: 30 against 31." in page
     chosen = cli("report", *folders, "--format", "html", "--metrics", "energy").folder
     assert chosen != ending.folder
     assert "rms torque" not in chosen.joinpath("report.html").read_text()

@@ -39,7 +39,7 @@ def _document():
 
 def test_the_first_screen_says_what_differs_how_many_cells_match_and_by_how_much(document):
     assert document.title == "2 sweeps compared"
-    assert document.abstract.startswith("A and B differ in noise.position alone: 0.001 against 0.0001.")
+    assert document.abstract.startswith("A and B differ only in noise.position: 0.001 against 0.0001.")
     assert "draw only noise" in document.abstract
     cells, differ, first = document.key_numbers
     assert cells[:2] == ("cells in both", "4")

@@ -116,7 +116,7 @@ def test_two_runs_show_their_difference_and_the_answer(tmp_path):
     runs = [run("robot=macro", "noise=thesis", "duration=0.1", "repetitions=6", f"controller.damping_ratio={ratio}",
                 f"outputs={tmp_path}") for ratio in (1.0, 0.5)]  # fmt: skip
     document = runs_document(runs)
-    assert "A and B differ in controller.damping_ratio alone: 1 against 0.5." in document.abstract
+    assert "A and B differ only in controller.damping_ratio: 1 against 0.5." in document.abstract
     assert "(6 pairs" in document.abstract or ", 6 pairs)" in document.abstract
     assert blocks_of(document, Table)[0].header == ["metric", "A", "B", "B - A"]
 

@@ -79,7 +79,7 @@ def test_few_repetitions_have_no_interval_and_a_note_says_why():
     sweep = by_hand()
     few = replace(sweep, values={name: values[:, :1] for name, values in sweep.values.items()})
     for text in (markdown(table(few)), latex(table(few))):
-        assert "No interval stands where n is below 6" in text
+        assert "No interval is given if n is below 6" in text
     assert "cmidrule" not in latex(table(few))
     assert "interval}" not in latex(table(few))
 

@@ -98,7 +98,7 @@ def test_what_seeds_share_is_no_scatter_between_cells():
 def test_the_sentence_on_chance_says_its_condition_and_how_many_tests_there_are():
     text = blocks(effects.section(two_axes()), Text)[0].text
     assert "no effect and the values scatter alike at all of its levels, p falls below 0.05 in one test in" in text
-    assert "4 tests stand here" in text  # three on the error; of peak torque, which has no scatter, one axis
+    assert "There are 4 tests" in text  # three on the error; of peak torque, which has no scatter, one axis
 
 
 def test_main_effects_are_medians_over_the_other_axes():

@@ -89,4 +89,4 @@ def test_of_many_failures_some_are_listed(subject):
     assert len([row for row in by_axis.rows if row[0] == "seed"]) == 40
     assert [row[2] for row in by_axis.rows if row[0] == "controller.natural_frequency"] == [f"300 of {SEEDS}"]
     assert len(runs.rows) == 40
-    assert "260 more stand" in runs.caption
+    assert "260 more are" in runs.caption

@@ -1,4 +1,4 @@
-"""Sentences of comparisons: counts, and repetitions that differ in noise alone."""
+"""Sentences of comparisons: counts, and repetitions that differ only in noise."""
 
 import pytest
 
