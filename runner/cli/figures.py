@@ -1,4 +1,4 @@
-"""Write each figure of a report as SVG, PDF and CSV, in the width of a journal column.
+"""Write each figure of a report as SVG, PDF and CSV, in the width of a journal column, or a motion as a GIF or video.
 
 Example: runner figures latest --width double
 """
@@ -6,21 +6,26 @@ Example: runner figures latest --width double
 import math
 import sys
 from argparse import Namespace
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from runner.base.errors import RunnerError
+from runner.base.errors import RunnerError, unknown
 from runner.base.paths import STUDY_FILE
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored
 from runner.config.compose.files import outputs_dir
 from runner.study.names import study_names
 
 if TYPE_CHECKING:
+    from runner.reporting.charts.sheet import Sheet
     from runner.reporting.document import Document
+    from runner.reporting.export.figures import Figure
     from runner.store import Run
 
 _COLUMNS = {"single": 88.0, "double": 180.0}  # mm
 _NARROWEST, _WIDEST = 60.0, 400.0  # mm
+_MOTIONS = (".gif", ".mp4")
 
 
 class _Drawn(Stored):
@@ -35,7 +40,11 @@ def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     drawn = _Drawn("run", "sweep", "tuning")
     parser.add_argument(
-        "folder", type=drawn, metavar="DIR", help="a run, sweep or tuning; a study's name or folder; or latest"
+        "folders",
+        type=drawn,
+        nargs="+",
+        metavar="DIR",
+        help="a run, sweep or tuning; several runs or sweeps to compare; a study's name or folder; or latest",
     )
     parser.add_shared(output="folder to write (default: figures/ in the report's folder)")
     parser.add_argument(
@@ -45,21 +54,44 @@ def add_arguments(parser: Parser) -> None:
         help="single (88 mm), double (180 mm) or millimetres (default: single)",
     )
     parser.add_argument("--only", metavar="NAME", help="figures whose names begin so (default: all)")
+    parser.add_argument("--motion", type=Path, metavar="FILE", help="write the first motion to FILE: .gif or .mp4")
 
 
 def run(options: Namespace) -> int:
     """Write the figures; print their folder as the last line."""
     width = _millimetres(options.width)
+    if options.motion is not None and options.motion.suffix.lower() not in _MOTIONS:
+        raise RunnerError(unknown("ending", options.motion.suffix, _MOTIONS, f"--motion {options.motion}"))
     from runner.reporting.charts.sheet import column
     from runner.reporting.export.figures import choose_figures, figures_of, write_figures
 
-    document, report = _document(options.folder)
+    document, report = _document(options.folders)
     figures = choose_figures(figures_of(document), options.only)
+    if options.motion is not None:
+        print(_write_motion(figures, options.motion, column(width)))
+        return 0
     folder = report / "figures" if options.output is None else options.output
     for name in write_figures(figures, folder, column(width)):
         print(name)
     print(folder)
     return 0
+
+
+def _write_motion(figures: "Mapping[str, Figure]", path: Path, sheet: "Sheet") -> Path:
+    """Write the first motion; print what it shows and which format it has."""
+    from runner.reporting.document import Playback
+    from runner.reporting.export.motion import write_motion
+
+    motion = next((figure for figure in figures.values() if isinstance(figure, Playback)), None)
+    if motion is None:
+        raise RunnerError("--motion: the report has no motion. Allowed: a run with a trace, or a sweep of such runs.")
+    for who, run in zip(("the arm", "the grey arm"), (motion, *motion.others[-1:]), strict=False):
+        if run.name:
+            print(one_line(f"runner: {who} is {run.name}"), file=sys.stderr)
+    written = write_motion(motion, path, sheet)
+    if written != path:
+        print("runner: no ffmpeg is installed, so that the motion is a GIF", file=sys.stderr)
+    return written
 
 
 def _millimetres(text: str) -> float:
@@ -84,18 +116,22 @@ def _study_of(path: Path) -> tuple[str, Path] | None:
     return (path.name, path.parent.parent) if path.resolve().parent.name == "reports" else None
 
 
-def _document(path: Path) -> "tuple[Document, Path]":
+def _document(paths: Sequence[Path]) -> "tuple[Document, Path]":
     """Return a report and the folder that it is written to."""
-    study = _study_of(path)
+    studies = [study for path in paths if (study := _study_of(path)) is not None]
+    if studies and len(paths) > 1:
+        raise RunnerError("DIR: a study among several results. Allowed: one study, or runs, or sweeps.")
+    study = studies[0] if studies else None
     if study is not None:
         return _of_study(*study)
     from runner import store
     from runner.reporting.stored import compose_report
     from runner.store.kinds import kind_of
 
-    if kind_of(path) == "run":
-        _tell_failure(store.open_run(path))
-    return compose_report([path])
+    for path in paths:
+        if kind_of(path) == "run":
+            _tell_failure(store.open_run(path))
+    return compose_report(paths)
 
 
 def _of_study(name: str, outputs: Path) -> "tuple[Document, Path]":

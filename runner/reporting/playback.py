@@ -22,9 +22,18 @@ _POINTS = 400  # of a path
 
 def playback_spec(playback: Playback) -> Json:
     """Return what the page's script draws: a motion for each run, and the direction of the first view, in rad."""
-    x, y, z = _view(np.ptp(_places(playback), axis=0))
-    runs = [_motion(each) for each in (playback, *playback.others)]
-    return {"runs": runs, "azimuth": float(np.arctan2(y, x)), "elevation": float(np.arcsin(z))}
+    azimuth, elevation = first_view(playback)
+    return {
+        "runs": [_motion(each) for each in (playback, *playback.others)],
+        "azimuth": azimuth,
+        "elevation": elevation,
+    }
+
+
+def first_view(playback: Playback) -> tuple[float, float]:
+    """Return azimuth and elevation of the viewer, in rad: square to the plane of a planar arm, otherwise oblique."""
+    x, y, z = _view(np.ptp(finite_places(playback), axis=0))
+    return float(np.arctan2(y, x)), float(np.arcsin(z))
 
 
 def frames(playback: Playback) -> list[int]:
@@ -51,7 +60,7 @@ def _motion(run: Playback) -> Json:
         "shapes": [
             {"ends": _packed(ends[chosen]), "balls": ends.shape[1] == 1, "radius": radius, "color": body.color}
             for body in run.bodies
-            for ends, radius in _shapes(body)
+            for ends, radius in body_shapes(body)
         ],
         "joints": [{"name": plain(name), "at": _packed(places[chosen])} for name, places in run.joints.items()],
         "tip": _packed(run.tip[chosen] if run.tip.size else run.tip),
@@ -61,7 +70,7 @@ def _motion(run: Playback) -> Json:
     }
 
 
-def _shapes(body: Body) -> Iterator[tuple[FloatArray, float]]:
+def body_shapes(body: Body) -> Iterator[tuple[FloatArray, float]]:
     """Yield ends of segments and centres of balls in the base frame, shape (T, 2, 3) and (T, 1, 3), and the radius."""
     segments = [((start, end), radius) for start, end, radius in body.segments]
     for ends, radius in [*segments, *(((center,), radius) for center, radius in body.balls)]:
@@ -69,16 +78,16 @@ def _shapes(body: Body) -> Iterator[tuple[FloatArray, float]]:
         yield np.stack(places, axis=1), radius
 
 
-def _places(playback: Playback) -> FloatArray:
+def finite_places(playback: Playback) -> FloatArray:
     """Return all places that a picture shows, shape (N, 3)."""
     chosen = frames(playback)
-    found = [ends[chosen].reshape(-1, 3) for body in playback.bodies for ends, _ in _shapes(body)]
+    found = [ends[chosen].reshape(-1, 3) for body in playback.bodies for ends, _ in body_shapes(body)]
     found += [_thinned(playback.path), _thinned(playback.desired), np.zeros((1, 3))]
     return np.concatenate(found)
 
 
 def _view(size: FloatArray) -> FloatArray:
-    """Return the unit vector towards the viewer: square to the plane of a planar arm, otherwise oblique."""
+    """Return the unit vector towards the viewer of a motion of a size."""
     direction = [0.9, -1.3, 0.75]
     thin = int(size.argmin())
     if size[thin] < 0.25 * size.max():

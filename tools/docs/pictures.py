@@ -15,6 +15,10 @@ from matplotlib.figure import Figure
 import runner
 from runner.reporting.charts import palette
 from runner.reporting.charts.canvas import GREY, INK, drawing
+from runner.reporting.charts.sheet import column
+from runner.reporting.document import Playback
+from runner.reporting.export.motion import write_motion
+from runner.reporting.figures import overlaid
 from runner.studies.thesis.diagrams.block_diagram import block_diagram
 from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node
 from runner.studies.thesis.diagrams.operational_space import operational_space_graph
@@ -116,6 +120,25 @@ def operational_space() -> str:
     return block_diagram(operational_space_graph(True, True, True, False))
 
 
+def motion(path: Path) -> None:
+    """Write the motion of the README: a weak PD controller behind computed torque, on a circle."""
+    with tempfile.TemporaryDirectory() as folder:
+        own = {"computed torque": "computed_torque", "PD with low gains": "joint_pd"}
+        runs = {
+            name: runner.run(
+                *(["controller.natural_frequency=6"] if law == "joint_pd" else []),
+                robot="panda",
+                plant="rk4",
+                trajectory="circle",
+                controller=law,
+                outputs=folder,
+            )
+            for name, law in own.items()
+        }
+        (both,) = (block for block in overlaid(list(runs.values()), list(runs)) if isinstance(block, Playback))
+        write_motion(both, path, column(80.0))
+
+
 PICTURES: dict[str, Callable[[], str]] = {
     "way_of_a_run": way_of_a_run,
     "closed_loop": closed_loop,
@@ -133,6 +156,8 @@ def main() -> None:
     for name, draw in PICTURES.items():
         (FOLDER / f"{name}.svg").write_text(draw(), encoding="utf-8")
         print(FOLDER / f"{name}.svg")
+    motion(FOLDER / "motion.gif")
+    print(FOLDER / "motion.gif")
 
 
 if __name__ == "__main__":

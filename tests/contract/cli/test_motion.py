@@ -1,0 +1,85 @@
+"""`runner figures --motion`: animated files of stored runs."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.animation import FFMpegWriter
+from PIL import Image
+from support.sample_document import playback
+
+from runner.reporting.charts.sheet import column
+from runner.reporting.export.motion import write_motion
+
+SMALL = column(60.0)
+
+
+def pictures(path):
+    with Image.open(path) as image:
+        found = []
+        for frame in range(image.n_frames):
+            image.seek(frame)
+            found.append((image.info["duration"], np.asarray(image.convert("RGB"), dtype=int)))
+    return found
+
+
+@pytest.mark.costs(3)
+def test_a_motion_lasts_as_long_as_the_run_and_rests_for_a_second(tmp_path):
+    found = pictures(write_motion(playback(), tmp_path / "m.gif", SMALL))
+    assert sum(duration for duration, _ in found) == pytest.approx(3000, abs=250)  # 2 s and 1 s, in 10 ms each
+    assert np.abs(found[0][1] - found[len(found) // 2][1]).max() > 100
+    assert found[0][1].shape[1] == int(60 / 25.4 * 150)
+
+
+@pytest.mark.costs(3)
+def test_a_run_that_failed_stops_where_it_did_and_the_picture_says_so(tmp_path):
+    """The arm and its ghost are alike, but the arm ends at half of the time."""
+    early = replace(playback(), ends="failed at 1 s", name="A", desired=None)
+    half = replace(early, times=early.times[:30], bodies=[
+        replace(body, positions=body.positions[:30], rotations=body.rotations[:30]) for body in early.bodies
+    ])  # fmt: skip
+    ghost = playback(name="B", desired=None)
+    stopped = pictures(write_motion(replace(half, others=[ghost]), tmp_path / "a.gif", SMALL))
+    whole = pictures(write_motion(replace(playback(name="A", desired=None), others=[ghost]), tmp_path / "b.gif", SMALL))
+    dark = [[(picture.max(axis=2) < 160).sum() for _, picture in found] for found in (stopped, whole)]
+    assert len(stopped) > 2
+    assert np.abs(stopped[-1][1] - whole[-1][1]).max() > 100  # arm and words
+    assert dark[0][-1] > dark[1][-1]  # the words
+
+
+def test_without_ffmpeg_a_video_becomes_a_gif(tmp_path, monkeypatch):
+    monkeypatch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda _: False))
+    short = playback(3, times=np.array([0.0, 0.05, 0.1]))
+    assert write_motion(short, tmp_path / "m.mp4", SMALL) == tmp_path / "m.gif"
+    assert (tmp_path / "m.gif").read_bytes().startswith(b"GIF89a")
+
+
+@pytest.mark.costs(5)
+def test_a_failed_run_is_written_up_to_its_failure(cli, copy_run, tmp_path):
+    ending = cli("figures", copy_run("failed"), "--motion", tmp_path / "m.gif", "--width", "60")
+    assert (ending.code, ending.out) == (0, f"{tmp_path / 'm.gif'}\n")
+    assert "its figures show repetition 0, up to " in ending.err
+    assert pictures(tmp_path / "m.gif")
+
+
+@pytest.mark.costs(5)
+def test_two_runs_are_compared_and_their_names_printed(cli, copy_run, tmp_path):
+    both = (copy_run("goal"), copy_run("other seed"))
+    ending = cli("figures", *both, "--motion", tmp_path / "m.gif", "--width", "60")
+    assert ending.code == 0
+    assert "runner: the arm is A\nrunner: the grey arm is B\n" in ending.err
+
+
+def test_another_ending_is_rejected_before_anything_is_read(cli, copy_run, tmp_path):
+    ending = cli("figures", copy_run("goal"), "--motion", tmp_path / "m.avi")
+    assert ending.code == 2
+    assert f"--motion {tmp_path / 'm.avi'}: unknown ending '.avi'. Allowed: .gif, .mp4." in ending.err
+
+
+def test_a_run_without_a_trace_has_no_motion(cli, copy_run, tmp_path):
+    made = copy_run("goal")
+    (made / "trace.parquet").unlink()
+    ending = cli("figures", made, "--motion", tmp_path / "m.gif")
+    assert ending.code == 2
+    assert len(ending.err.splitlines()) == 1
+    assert not (tmp_path / "m.gif").exists()
