@@ -282,7 +282,8 @@ def sentences(answers: Sequence[Answer]) -> list[str]:
     few = [one for one in first if one.interval is None]
     if len(few) == len(first) > 2:
         n, family, needed = max((one.comparison.n, one.family, fewest_pairs(one.level)) for one in first)
-        return [f"{n} pairs are too few for {family} comparisons: at least {needed} pairs are needed."]
+        pairs = "1 pair is" if n == 1 else f"{n} pairs are"
+        return [f"{pairs} too few for {family} comparisons: at least {needed} pairs are needed."]
     if overall:
         texts = [one.sentence(turns(one, answers)) for one in overall]
     else:
