@@ -13,6 +13,7 @@ from runner.reporting.document import Block, Cover, Curves, Origin, Panel, Playb
 from runner.store import Calibration, Run
 
 AXES = ("x", "y", "z")
+_LAST, _LAST_ROWS = 0.02, 20  # s and rows before a failure
 _STILLS = 6  # instants in the still picture of a motion
 _FRAMES = 60
 _MOST_JOINTS = 5  # panels of torques of several runs
@@ -56,6 +57,27 @@ def torque_and_error(run: Run, caption: str, number: str = "", until: float | No
         (*panels, Panel("Tip position error", "time (s)", "tip error (m)", axes)),
         origin=origin(run, number),
     )
+
+
+def last_moments(run: Run, failed_at: float) -> Curves:
+    """Return torques and tip error of a failed run over its last 20 ms, or its last 20 rows if these take longer.
+
+    The vertical axes end at four times the median size of the values; a diverging curve leaves them.
+
+    Args:
+        run: The run.
+        failed_at: Time of the failure, in s.
+    """
+    start = max(0.0, min(failed_at - _LAST, float(run.t[-min(len(run.t), _LAST_ROWS)])))
+    caption = "The last moments before the failure, repetition 0. A curve that leaves the axes diverges."
+    shown = torque_and_error(run, caption)
+    panels = []
+    for panel in shown.panels:
+        values = np.abs(np.concatenate([each.y[each.x >= start] for each in panel.series]))
+        sound = values[np.isfinite(values) & (values > 0.0)]
+        size = 4.0 * float(np.median(sound)) if len(sound) else 1.0
+        panels.append(replace(panel, x_range=(start, failed_at), y_range=(-size, size)))
+    return replace(shown, panels=panels)
 
 
 def desired_motion(run: Run, caption: str, number: str = "", axes: tuple[str, ...] = AXES) -> Curves:

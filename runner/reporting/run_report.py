@@ -12,7 +12,7 @@ from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.config.compose.compose import compose
 from runner.metrics.caveats import changes_since
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
-from runner.reporting.figures import cover, desired_motion, playback, torque_and_error
+from runner.reporting.figures import cover, desired_motion, last_moments, playback, torque_and_error
 from runner.reporting.key_metrics import key_metrics
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import capital, title
@@ -119,6 +119,8 @@ def run_blocks(run: Run) -> list[Block]:
             )
         )
     blocks += caveat_notices(run)
+    if failure is not None and failure["repetition"] == 0 and failure["time"]:
+        blocks.append(last_moments(run, float(failure["time"])))
     blocks.append(torque_and_error(run, "Torque of each joint and tip position error, repetition 0."))
     if config["trajectory"]["kind"] != "goal":
         blocks.append(desired_motion(run, "Desired motion of the tip."))

@@ -17,6 +17,7 @@ from runner.store.axes import Axis
 
 _MOST_VALUES = 12
 _MOST_FAILURES = 40
+_MOST_ACROSS = 8  # columns of the table of causes
 _MOST_ROWS, _MOST_PLACES = 16, 6  # of the table of what also differs
 
 
@@ -93,7 +94,7 @@ def failures_section(subject: Subject) -> Section:
     """Return the failed runs."""
     measurements = subject.measurements
     failed = np.array([status != "ok" for status in measurements.statuses])
-    blocks: list[Block] = []
+    blocks = _failure_map(subject, failed)
     if subject.axes:
         rows = [row for axis in subject.axes for row in _by_level(axis, failed)]
         blocks.append(Table("Failed runs by axis.", ["axis", "value", "failed"], [literals(row) for row in rows], (2,)))
@@ -103,6 +104,36 @@ def failures_section(subject: Subject) -> Section:
     ]
     blocks.append(failed_table("runs", ["run", "cell", "failure"], rows))
     return Section("Failed runs", blocks)
+
+
+def _failure_map(subject: Subject, failed: NDArray[np.bool_]) -> list[Block]:
+    """Return the table of causes over the two axes whose levels differ most in their shares of failed cells."""
+    axes = [axis for axis in subject.axes if len(axis.values) > 1]
+    shares = {axis.name: np.bincount(axis.level, failed) / np.bincount(axis.level) for axis in axes}
+    holding = sorted(axes, key=lambda axis: float(np.ptp(shares[axis.name])), reverse=True)[:2]
+    if len(holding) < 2:
+        return []
+    across, down = sorted(holding, key=lambda axis: len(axis.values))
+    if len(across.values) > _MOST_ACROSS or len(down.values) > _MOST_FAILURES:
+        return []
+    causes = np.array([(text.partition(": ")[2] or text).partition(": ")[0] for text in subject.measurements.failures])
+    rows = [
+        [down.text(row), *(_causes(causes[(down.level == row) & (across.level == column)]) for column in places)]
+        for places in [range(len(across.values))]
+        for row in range(len(down.values))
+    ]
+    header = [key_label(down.name), *(f"{across.name}={text}" for text in across.texts)]
+    caption = literal(f"Causes of failure by {down.name} and {across.name}; none: every run finished.")
+    return [Table(caption, literals(header), [literals(row) for row in rows])]
+
+
+def _causes(causes: NDArray[np.str_]) -> str:
+    """Return the causes of failure of some cells, with the share of failed ones unless all failed."""
+    lost = [str(cause) for cause in causes if cause]
+    if not lost:
+        return "none" if len(causes) else "–"
+    names = ", ".join(dict.fromkeys(lost))
+    return names if len(lost) == len(causes) else f"{names} ({len(lost)} of {len(causes)})"
 
 
 def failed_table(what: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
@@ -124,24 +155,42 @@ def causes_of_failure(subject: Subject) -> str:
 
 
 def failing_cells(subject: Subject) -> str:
-    """Return the shortest condition that holds for all failed cells, of one axis or two; empty without one."""
+    """Return the shortest condition of one axis or two that all failed cells meet, or the finished ones; else ""."""
     failed = np.array([status != "ok" for status in subject.measurements.statuses])
-    axes = subject.axes
+    told, only = _condition(subject.axes, failed)
+    if told:
+        return f"Every run with {told} failed, and no other." if only else f"All failed runs have {told}."
+    told, only = _condition(subject.axes, ~failed)
+    return f"Every run with {told} finished, and no other." if only else ""
+
+
+def _condition(axes: Sequence[Axis], chosen: NDArray[np.bool_]) -> tuple[str, bool]:
+    """Return the shortest condition that some cells meet, or "", and whether no other cell meets it."""
     parts = [
-        {axis.name: np.unique(axis.level[failed]) for axis in some}
+        {axis.name: np.unique(axis.level[chosen]) for axis in some}
         for some in (*combinations(axes, 1), *combinations(axes, 2))
     ]
     by_name = {axis.name: axis for axis in axes}
     best = ""
     for part in parts:
-        if any(len(levels) == len(by_name[name].values) for name, levels in part.items()):
+        if any(len(levels) in (0, len(by_name[name].values)) for name, levels in part.items()):
             continue
         inside = np.all([np.isin(by_name[name].level, levels) for name, levels in part.items()], axis=0)
         told = " and ".join(f"{name} {_levels(by_name[name], levels)}" for name, levels in part.items())
-        if np.array_equal(inside, failed):
-            return f"Every run with {told} failed, and no other."
-        best = best or f"All failed runs have {told}."
-    return best
+        if np.array_equal(inside, chosen):
+            return told, True
+        best = best or told
+    return best, False
+
+
+def nothing_differs(subject: Subject) -> str:
+    """Return a sentence if there is one cell, or if every metric has equal values in all cells; else ""."""
+    measured = subject.measurements
+    if len(measured.hashes) == 1:
+        return "One cell: nothing to compare."
+    if measured.failed or not all(np.array_equal(v, v[:1].repeat(len(v), 0), True) for v in measured.values.values()):
+        return ""
+    return f"All {len(measured.hashes)} cells have equal values of every metric."
 
 
 def _levels(axis: Axis, levels: NDArray[np.intp]) -> str:

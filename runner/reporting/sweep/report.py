@@ -23,6 +23,7 @@ from runner.reporting.sweep.cells import (
     failing_cells,
     failures_section,
     has_caveats,
+    nothing_differs,
 )
 from runner.reporting.sweep.question import (
     answer_blocks,
@@ -133,6 +134,7 @@ def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer]) -> list
     if failed:
         told = [f"{failed} of {cells} cells failed.", failing_cells(subject), causes_of_failure(subject)]
         texts.append(" ".join(filter(None, told)))
+    texts += filter(None, [nothing_differs(subject)])
     if sweep.spec:
         texts.append(spec.summary(subject, sweep))
     few = too_few(subject) if subject.ranked and subject.axes else ""

@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 import yaml
 from fixtures.stored import RUNS
@@ -83,6 +84,19 @@ def test_steps_of_a_plant_stand_together_and_seeds_in_a_row_are_a_range(finished
     )
     assert rows["seed"] == "0 to 2, 7"
     assert rows["plant"] == f"{PLANT[ASKED.removeprefix('plant=')]} in steps of 0.25 ms, 1 ms"
+
+
+def test_a_failed_run_shows_its_last_moments_on_axes_that_its_divergence_leaves(diverged):
+    time = diverged.failure_record["time"]
+    last, whole, *_ = [block for block in blocks_of(run_document(diverged), Curves) if "repetition 0" in block.caption]
+    for panel, same in zip(last.panels, whole.panels, strict=True):
+        start, end = panel.x_range
+        assert end == time
+        assert start <= max(0.0, time - 0.02)
+        shown = np.abs(np.concatenate([each.y[each.x >= start] for each in same.series]))
+        assert panel.y_range == (-panel.y_range[1], pytest.approx(4.0 * np.median(shown[shown > 0.0])))
+    torque = np.concatenate([each.y for each in last.panels[0].series])
+    assert np.nanmax(np.abs(torque)) > last.panels[0].y_range[1]
 
 
 def test_a_failed_run_says_when_and_where(diverged):

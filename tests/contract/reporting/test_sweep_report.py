@@ -124,11 +124,13 @@ def test_the_metric_asked_for_ranks_the_cells(sweep12):
 def test_a_sweep_of_one_run_is_reported(part, tmp_path):
     document = sweep_document(part(0))
     assert document.title == "Sweep of one cell"
+    assert "One cell: nothing to compare." in document.abstract
     assert write_report(document, tmp_path / "report")
 
 
 def test_a_sweep_of_failed_runs_is_reported(part, tmp_path):
     document = sweep_document(part(-1, -2))
+    assert document.abstract.startswith("2 of 2 cells failed.")
     assert [section.title for section in document.sections] == [
         "Failed runs",
         "Caveats",

@@ -9,7 +9,7 @@ from support.sample_sweep import measurements, noisy, two_axes
 
 from runner.reporting.document import Curves, Maps, Notice, Table, Text
 from runner.reporting.sweep import cells, distributions, effects, maps
-from runner.reporting.sweep.cells import causes_of_failure, failing_cells
+from runner.reporting.sweep.cells import causes_of_failure, failing_cells, nothing_differs
 from runner.reporting.sweep.effects import cells_with_intervals
 from runner.reporting.sweep.subject import choose
 from runner.sweeps.differing import Difference
@@ -202,7 +202,12 @@ def test_cells_stand_in_order():
 
 
 def test_failed_runs_are_listed_with_where_they_lie():
-    by_axis, runs = cells.failures_section(two_axes(failed=[0, 4])).blocks
+    by_cause, by_axis, runs = cells.failures_section(two_axes(failed=[0, 4])).blocks
+    assert by_cause.header == ["torque_limits.max (N m)", *(f"noise.position={n}" for n in ("0.0001", "0.001", "0.01"))]
+    assert by_cause.rows == [
+        ["20", "diverged, at once", "diverged, at once", "none"],
+        *([limit, "none", "none", "none"] for limit in ("40", "60", "80")),
+    ]
     assert ["torque_limits.max", "20", "2 of 3"] in by_axis.rows
     assert ["noise.position", "0.001", "1 of 4"] in by_axis.rows
     assert [row[1:] for row in runs.rows] == [
@@ -230,6 +235,37 @@ def test_a_map_has_the_interval_of_each_cell_and_none_of_few_repetitions():
     assert "span" not in block.caption
 
 
+def test_causes_are_shown_over_the_two_axes_that_hold_the_failures():
+    axes = {"seed": [0, 1], "controller": ["a", "b"], "controller.period": [0.01, 0.02]}
+    sample = measurements(axes, {"rms": lambda *levels: np.ones(8)})
+    # By seed, then law, then period; law b fails with the long period, once by another cause.
+    failures = ["", "", "", "failed in repetition 0 at t = 0.1 s (q1): diverged: above 1e+06 rad/s"] * 2
+    failures[7] = "cut short: above the time limit"
+    subject = choose(replace(sample, failures=failures, statuses=["failed" if text else "ok" for text in failures]))
+    by_cause, *_ = cells.failures_section(subject).blocks
+    assert by_cause.rows == [["0.01", "none", "none"], ["0.02", "none", "diverged, above the time limit"]]
+    failures[3] = ""
+    subject = choose(replace(sample, failures=failures, statuses=["failed" if text else "ok" for text in failures]))
+    assert cells.failures_section(subject).blocks[0].rows[1] == ["b", "none", "above the time limit (1 of 2)"]
+
+
+def test_a_sweep_says_if_nothing_can_differ_in_it():
+    same = measurements(AXES, {"rms": lambda *levels: np.ones(6), "peak": lambda *levels: np.full(6, np.nan)})
+    assert nothing_differs(choose(same)) == "All 6 cells have equal values of every metric."
+    one = measurements({"seed": [0]}, {"rms": lambda seed: np.ones(1)})
+    assert nothing_differs(choose(one)) == "One cell: nothing to compare."
+    assert nothing_differs(two_axes()) == ""
+
+
+def test_causes_need_two_axes_of_two_levels():
+    sample = measurements({"controller": ["a", "b"], "seed": [0]}, {"rms": lambda *levels: np.ones(2)})
+    subject = choose(replace(sample, failures=["", "cut short: t"], statuses=["ok", "failed"]))
+    assert [block.caption for block in cells.failures_section(subject).blocks] == [
+        "Failed runs by axis.",
+        "Failed runs.",
+    ]
+
+
 AXES = {"controller.period": [0.005, 0.01, 0.02], "controller": ["a", "b"]}
 
 
@@ -243,6 +279,10 @@ AXES = {"controller.period": [0.005, 0.01, 0.02], "controller": ["a", "b"]}
             "Every run with controller.period 0.02 and controller a failed, and no other.",
         ),
         (lambda period, law: (period, law) in {(0, 0), (1, 1)}, "All failed runs have controller.period 0.01 or less."),
+        (
+            lambda period, law: (period, law) != (0, 1),
+            "Every run with controller.period 0.005 and controller b finished, and no other.",
+        ),
         (lambda period, law: True, ""),
     ],
 )
