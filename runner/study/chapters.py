@@ -105,6 +105,7 @@ class Chapters:
             "value": self._grids.value,
             "ranges": {name: {key: [*own] for key, own in each.ranges.items()} for name, each in tunings.items()},
             "presets": presets,
+            "words": self._manifest.words,
             "claims": self._claims,
             "claims_that": self._claims_that,
             "verdicts": lambda caption: Verdicts(caption, self._claims(), self._legend()),

@@ -1,7 +1,7 @@
 """Stored results of a study by name; missing and omitted results raise errors."""
 
 from collections.abc import Mapping
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from runner.base.errors import RunnerError, nearest
 from runner.store import Calibration, Run
@@ -36,6 +36,8 @@ class Results(dict[str, Thing]):
         super().__init__(found)
         self.missing = dict(missing)
         self.dropped = dict(dropped or {})
+        self.derived: dict[object, Any] = {}
+        """Values that a study computes from all results, by keys of its own."""
 
     def __missing__(self, name: str) -> Thing:
         if name in self.missing:

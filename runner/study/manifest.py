@@ -107,6 +107,7 @@ class Manifest(StrictModel):
         abstract: What comes out; inline mathematics between dollar signs.
         chapters: Files of the chapters in order, `.md` or `.py`, and chapters that have files as sections.
         presets: Names of the presets under which claims are judged, with their words.
+        words: Words for levels of axes, for `words=words` in chapters.
         in_all: Whether `runner reproduce all` makes the study.
         traces: Whether its runs keep their traces, which figures over time read.
         plugins: Parts of the study's own, GROUP=FILE.py each, such as "controller=spring.py".
@@ -121,6 +122,7 @@ class Manifest(StrictModel):
     abstract: Text
     chapters: Annotated[list[Text | Part], Field(min_length=1)]
     presets: dict[str, str] = Field(default_factory=dict)
+    words: dict[str, str] = Field(default_factory=dict)
     in_all: bool = True
     traces: bool = True
     plugins: list[Text] = Field(default_factory=list)

@@ -10,37 +10,10 @@ from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin, error_words, ratio
-from runner.studies.benchmark.made import ARMS, CONDITIONS, QUESTIONS, all_cells, arms_of, laws_of
+from runner.studies.benchmark.made import ARMS, CONDITIONS, LAWS, QUESTIONS, all_cells, arms_of, laws_of
 from runner.study.prose.patterns import found
 from runner.sweeps.differing import entries
 
-_MODEL = "mass matrix, Coriolis and gravity terms"
-_HOME = "gravity term, inertias at home"
-_DOES = {
-    "operational_space": "It closes its loop at the tip, in Cartesian coordinates.",
-    "computed_torque": "It makes every joint a second-order system of its bandwidth.",
-    "with_integral": "Computed torque with an integral of the joint errors.",
-    "joint_pd": "Every joint alone, by position and velocity gains.",
-    "joint_pid": "Joint PD with an integral, which stands still at a torque limit.",
-    "passivity": "It feeds back through constant inertias, and does not cancel what the motion brings along.",
-    "sliding_mode": "The passivity-based law with a switching term inside a boundary layer.",
-    "adaptive": "The passivity-based law; it changes the model that it begins with while it moves.",
-    "observed": "Computed torque; what disturbs the joints' momenta is found and taken off its torques.",
-    "observed_pd": "Joint PD with the same observer.",
-}
-_TOLD = {
-    "operational_space": (_MODEL, "no", "no"),
-    "computed_torque": (_MODEL, "no", "no"),
-    "with_integral": (_MODEL, "no", "no"),
-    "joint_pd": (_HOME, "no", "no"),
-    "joint_pid": (_HOME, "no", "no"),
-    "passivity": (_MODEL, "no", "no"),
-    "sliding_mode": (_MODEL, "no", "no"),
-    "adaptive": (f"{_MODEL}, to begin with", "finds it", "no"),
-    "observed": (_MODEL, "finds it", "no"),
-    "observed_pd": (f"{_MODEL} for its observer, {_HOME}", "finds it", "no"),
-    "iterative_learning": (_MODEL, "learns it", "yes"),
-}
 _UNKNOWN = "not told here"
 _LAW_KEYS = ("controller.", "disturbance_observer.")
 
@@ -60,15 +33,19 @@ def _knowledge(runs: Mapping[str, Run], laws: Sequence[str]) -> Table:
     """Return what each law is told; iterative learning stands in a chapter of its own."""
     rows = []
     for law in (*laws, "iterative_learning"):
-        model, friction, repeats = _TOLD.get(law, (_UNKNOWN,) * 3)
-        rows.append([in_words(law), model, friction, "no" if law in _TOLD else _UNKNOWN, repeats])
+        _, model, friction, repeats = LAWS.get(law, (_UNKNOWN,) * 4)
+        rows.append([in_words(law), model, friction, "no" if law in LAWS else _UNKNOWN, repeats])
     header = ["law", "model", "friction", "torque sensor", "that a motion repeats"]
     return Table("What each law is told beside the joints' positions and velocities.", header, rows)
 
 
 def _law(runs: Mapping[str, Run], law: str) -> Section:
     words = in_words(law)
-    blocks: list[Block] = [Text(_DOES.get(law, "A law from outside.")), _places(runs, law), _gains(runs, law)]
+    blocks: list[Block] = [
+        Text(LAWS[law][0] if law in LAWS else "A law from outside."),
+        _places(runs, law),
+        _gains(runs, law),
+    ]
     cost = _cost(runs, law)
     return Section(words[0].upper() + words[1:], [*blocks, Text(cost)] if cost else blocks)
 

@@ -1,7 +1,10 @@
-"""Cached benchmark results: arms, controllers and conditions of the runs."""
+"""Benchmark results by arm, controller and condition."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
 
+from runner.base.data_file import read_data
 from runner.reporting.answers import SHARE
 from runner.reporting.words import in_words
 from runner.store import Run
@@ -9,54 +12,15 @@ from runner.studies.benchmark.cells import ALL_SEEDS, ROUND, Cell, cells
 from runner.study.job import LeftOutError, Results
 from runner.study.prose.patterns import found
 
-ARMS = {
-    "macro": "Macro",
-    "planar": "planar arm",
-    "xarm7": "xArm7",
-    "panda": "Panda",
-    "mini": "Mini",
-    "meca500": "Meca500",
-    "kuka": "KUKA iiwa",
-}
+_WORDS = read_data(Path(__file__).with_name("words.yaml"), dict[str, dict[str, Any]])
+ARMS, QUESTIONS, CONDITIONS, CHANGES, LAWS = (
+    _WORDS[group] for group in ("arms", "questions", "conditions", "changes", "laws")
+)
+"""Words for the levels of each axis, in their order. Of a law: what it does, its model, its friction, repetition."""
 LATER = (8, 16)
 """Rounds after which the order of the laws is looked at again."""
 
 _FIRST = 3  # laws whose order is to stay
-QUESTIONS = {"first": "from the first second", "learned": "once learned"}
-CHANGES = {
-    "slow": "half as fast: 4 s a round",
-    "fast": "twice as fast: 1 s a round",
-    "half": "half of the trials: 16",
-    "untuned": "no tuning: gains of the bandwidth",
-}
-CONDITIONS = {
-    "exact": "nothing is wrong",
-    "masses_10": "masses wrong by 10 %",
-    "masses": "masses wrong by 30 %",
-    "friction": "unknown friction",
-    "encoders": "encoder noise",
-    "resolution": "coarse encoders",
-    "limits_150": "torques up to 150 %",
-    "limits_110": "torques up to 110 %",
-    "limits_80": "torques up to 80 %",
-    "delay_1": "a tick late",
-    "delay_2": "two ticks late",
-    "payload": "a load on the way",
-    "all": "masses, friction and noise",
-}
-
-
-class _Kept:
-    """What was worked out of the runs of one study, as every table and finding asks for it again."""
-
-    runs: Mapping[str, Run]
-    cells: dict[tuple[object, ...], dict[str, Cell]]
-
-    def __init__(self) -> None:
-        self.runs, self.cells = {}, {}
-
-
-_kept = _Kept()
 
 
 def all_cells(
@@ -68,13 +32,12 @@ def all_cells(
     after: int = ROUND,
 ) -> dict[str, Cell]:
     """Return what the laws did on an arm, by condition, in one order; `question` is one of QUESTIONS. See cells."""
-    if _kept.runs is not runs:
-        _kept.runs, _kept.cells = runs, {}
     key = (arm, question, tuple(gains), seeds.start, seeds.step, after)
-    if key not in _kept.cells:
+    kept: dict[object, dict[str, Cell]] = runs.derived if isinstance(runs, Results) else {}
+    if key not in kept:
         made = cells(runs, arm, question, seeds, gains, after=after)
-        _kept.cells[key] = {condition: made[condition] for condition in (*CONDITIONS, *CHANGES) if condition in made}
-    return _kept.cells[key]
+        kept[key] = {condition: made[condition] for condition in (*CONDITIONS, *CHANGES) if condition in made}
+    return kept[key]
 
 
 def one_cell(

@@ -16,22 +16,6 @@ from runner.study.prose.signals import distance
 Told = Callable[..., float | None]
 
 
-def arm_words() -> dict[str, str]:
-    """Return what the arms are called."""
-    return {
-        "macro": "Macro",
-        "mini": "Mini",
-        "combined": "Mini on Macro",
-        "macro_mini_mini": "Mini on Mini on Macro",
-        "xarm7": "xArm7",
-        "xarm7_mini": "Mini on xArm7",
-        "meca500": "Meca500",
-        "planar": "two links in a plane",
-        "scara": "SCARA",
-        "seven": "seven joints",
-    }
-
-
 def exact(what: Told, digits: int = 2) -> Callable[..., str]:
     """Return a number as a cell of a table that keeps what elsewhere counts as rounding, and zeros at the end."""
     return lambda *runs: number(what(*runs), digits, zeros=True)

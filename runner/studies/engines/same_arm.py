@@ -11,7 +11,6 @@ from runner.base.quantities import number
 from runner.plants.compiled_motion import CompiledStep
 from runner.robots import RobotModel
 from runner.store import Run
-from runner.studies.engines.figures import arm_words
 from runner.studies.engines.side_by_side import (
     STEP,
     Difference,
@@ -49,9 +48,9 @@ class Compared:
     compiled: float
 
 
-def comparisons(runs: Mapping[str, Run]) -> list[Compared]:
-    """Return every arm that is moved by held torques, at random states, by all code bases."""
-    return [_compare(arm_words()[one.levels["arm"]], one.run) for one in found(runs, "open/{arm}/MuJoCo Euler/0.001")]
+def comparisons(runs: Mapping[str, Run], words: Mapping[str, str]) -> list[Compared]:
+    """Return every arm that is moved by held torques, at random states, by all code bases; words name the arms."""
+    return [_compare(words[one.levels["arm"]], one.run) for one in found(runs, "open/{arm}/MuJoCo Euler/0.001")]
 
 
 def mass_rows(compared: list[Compared]) -> list[list[str]]:

@@ -1,9 +1,9 @@
 """Signals, forces, admittance laws, calibration errors and verdicts for the chapters of the Meca500 study."""
 
 from collections.abc import Callable, Mapping
-from functools import wraps
+from functools import lru_cache
 from itertools import product
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -20,27 +20,15 @@ from runner.reporting.figures import AXES
 from runner.reporting.published_claims import Verdict, load_statements
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
+from runner.studies.meca500.plan import law_in
 from runner.study.claims import judged_statements
 from runner.study.measured import ROUNDING, Measured
 from runner.study.prose.tables import Column
 
 Calibrations = Mapping[str, Any]  # of Calibration
 Runs = Mapping[str, Run]
-T = TypeVar("T")
+once = lru_cache(maxsize=256)  # of functions of a run, which several chapters call
 _STILL = 1e-4  # N, below which a force that swings is rounding
-
-
-def once(function: Callable[[Run], T]) -> Callable[[Run], T]:
-    """Let a function of a run be worked out once for each stored run."""
-    kept: dict[str, T] = {}
-
-    @wraps(function)
-    def value(run: Run) -> T:
-        if run.hash not in kept:
-            kept[run.hash] = function(run)
-        return kept[run.hash]
-
-    return value
 
 
 def wrenches(run: Run, signal: str) -> FloatArray:
@@ -65,8 +53,7 @@ def displacement(run: Run) -> FloatArray:
 
 def law_of(run: Run) -> Admittance:
     """Return the law of a run's axes."""
-    controller = run.config["controller"]
-    return Admittance(*(np.array(controller[key]) for key in ("mass", "damping", "stiffness")))
+    return law_in(run.config)
 
 
 def loads_of(run: Run) -> FloatArray:

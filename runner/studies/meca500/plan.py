@@ -1,10 +1,13 @@
 """Computed runs and calibrations of the Meca500 study, in addition to runs.yaml."""
 
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from runner.config.compose.compose import compose
 from runner.controllers.force.admittance_filter import Admittance
 from runner.controllers.stability import stiffest_wall
 from runner.robots import RobotModel, find_urdf, read_urdf
@@ -16,25 +19,19 @@ REPORTED = GRIDS.value("step", "reported")  # s, between two reports of the real
 SINE_CASES = GRIDS.levels("sine", "case", str)
 FREQUENCIES = GRIDS.levels("sine", "environment.frequency", float)  # Hz
 ORIENTATIONS = 100
-# The law that is held against walls: M, B and K along every axis and about it, in kg, N s/m and N/m, and likewise.
-_LAW = {"mass": (2.0, 0.02), "damping": (80.0, 0.8), "stiffness": (800.0, 8.0)}
+_WALLS = "map/servos"
 _PERIODS = (0.001, 0.005, 0.01, REPORTED)  # s
-_SHARES = (0.5, 0.8, 0.9, 1.1, 1.25, 2.0)  # of the bound
-# Period of the controller in s, period of the servos and step of the plant in s, stiffness of the servos in N m/rad,
-# and stiffness about which those of the walls are spread in N/m: the predicted bound to three digits.
-_SERVOS = (
-    (0.005, 0.001, 1.5e5, 3.49e4),
-    (0.01, 0.001, 1.5e4, 2.01e4),
-    (REPORTED, 0.000835, 1.5e4, 1.06e4),
-    (REPORTED, 0.000835, 1.5e5, 9.52e3),
-    (REPORTED, 0.000167, 1.5e3, 3.70e4),
-    (REPORTED, 0.000167, 1.5e5, 8.90e3),
-)
 
 
+@cache
 def law() -> Admittance:
     """Return the law of the stability map."""
-    return Admittance(*(np.repeat(values, 3) for values in _LAW.values()))
+    return law_in(compose(GRIDS.grid(_WALLS).with_).resolved)
+
+
+def law_in(config: Mapping[str, Any]) -> Admittance:
+    """Return the law of the axes in a config."""
+    return Admittance(*(np.array(config["controller"][key]) for key in ("mass", "damping", "stiffness")))
 
 
 def computed_runs() -> dict[str, Overrides]:
@@ -61,23 +58,18 @@ def calibrations(given: Mapping[str, Overrides]) -> dict[str, Overrides]:
 
 
 def _map() -> dict[str, Overrides]:
-    values = (f"controller.{key}={3 * [along] + 3 * [about]}".replace(" ", "") for key, (along, about) in _LAW.items())
-    base = ("experiment=meca500/wall", *values, "environment.distance=0", "environment.damping=0",
-            "controller.check_stability=false", "duration=1.2")  # fmt: skip
-    jobs = {}
-    for period in _PERIODS:
-        bound = stiffest_wall(law(), period, 0, 0.0, 0)
-        for share in _SHARES:
-            own = (f"controller.period={period}", f"environment.stiffness={share * bound:.5g}")
-            jobs[f"map/kinematic/{period}/{share}"] = (*base, *own)
-    for period, tick, spring, wall in _SERVOS:
-        servo = ("plant=default", f"plant.servo.period={tick}", f"plant.step={tick}",
-                 f"plant.servo.stiffness={spring:g}", "trajectory.goal=[0.185,0.01,0.06]")  # fmt: skip
-        case = f"{1e3 * period:g} ms, servos {1e3 * tick:g} ms, {spring:g}"
-        for share in _SHARES:
-            own = (f"controller.period={period}", f"environment.stiffness={share * wall:.5g}")
-            jobs[f"map/servos/{case}/{share}"] = (*base, *servo, *own)
-    return jobs
+    """Return the law of the stability map on ideal joints at walls about their bound, by period and share."""
+    own_law, base, shares = law(), GRIDS.grid(_WALLS).with_, GRIDS.levels(_WALLS, "share", float)
+    bounds = {period: stiffest_wall(own_law, period, 0, 0.0, 0) for period in _PERIODS}
+    return {
+        f"map/kinematic/{period}/{share}": (
+            *base,
+            f"controller.period={period}",
+            f"environment.stiffness={share * bound:.5g}",
+        )
+        for period, bound in bounds.items()
+        for share in shares
+    }
 
 
 def _rests() -> dict[str, Overrides]:
