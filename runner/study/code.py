@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, is_dataclass
 from importlib.util import find_spec
-from inspect import getmembers, isclass, isfunction
+from inspect import getmembers, isclass, isfunction, unwrap
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
@@ -69,10 +69,10 @@ class Code:
 
 
 def public_functions(module: ModuleType) -> dict[str, Callable[..., Any]]:
-    """Return the public functions that a module itself defines, by name."""
+    """Return the public functions that a module itself defines, cached ones as well, by name."""
     return {
         name: function
-        for name, function in getmembers(module, isfunction)
+        for name, function in getmembers(module, lambda each: isfunction(unwrap(each)))
         if function.__module__ == module.__name__ and not name.startswith("_")
     }
 

@@ -61,7 +61,7 @@ def first_saturation(run: Run) -> tuple[int, float] | None:
     if not at_limit.any():
         return None
     row, joint = np.argwhere(at_limit)[0]
-    return int(joint), float(run.trace()["t"].to_numpy()[row])
+    return int(joint), float(run.t[row])
 
 
 def first_at_limit(run: Run) -> str:
@@ -82,7 +82,7 @@ def clipped_ticks(run: Run) -> float:
 
 def last_clipped(run: Run) -> float | None:
     """Return the last time at which a joint is at its effort limit, in s; None if there is none."""
-    times = run.trace()["t"].to_numpy()[:-1][_at_limits(run).any(axis=1)]
+    times = run.t[:-1][_at_limits(run).any(axis=1)]
     return float(times[-1]) if times.size else None
 
 

@@ -67,7 +67,7 @@ def random_postures(model: RobotModel, count: int, seed: int = 0) -> FloatArray:
 
 _PLACES = 41  # along the line
 _SHOULDER, _ELBOW = {1: "facing the point", -1: "turned away"}, {1: "plus", -1: "minus"}
-_MENDED: dict[str, tuple[tuple[str, ...], float]] = {  # which formulas are put right, and what one metre is
+_FIXED: dict[str, tuple[tuple[str, ...], float]] = {  # which formulas are put right, and what one metre is
     "as printed, lengths in cm": ((), CENTIMETRES),
     "as printed, lengths in m": ((), 1.0),
     "$q_2$ put right, in cm": (("q2",), CENTIMETRES),
@@ -85,12 +85,12 @@ def off_the_model(runs: Mapping[str, Run], run: str, right: bool, count: int) ->
     return float(distances.max()), float(np.median(distances))
 
 
-def mended_errors(runs: Mapping[str, Run], run: str) -> list[tuple[str, float, float, float]]:
+def fixed_errors(runs: Mapping[str, Run], run: str) -> list[tuple[str, float, float, float]]:
     """Return the largest errors of q2, q4 and the tip along the line, for each way to put the formulas right."""
     arm, points, wrist = _arm(runs[run]), _line(runs[run]), float(runs[run].config["controller"]["wrist"])
     exact = _branch(runs[run], BRANCHES[0])[0][:, list(MOVING)]
     rows = []
-    for case, (right, unit) in _MENDED.items():
+    for case, (right, unit) in _FIXED.items():
         q = printed_inverse(points, wrist, right, unit)
         off = np.abs(q - exact).max(axis=0)
         apart = np.linalg.norm([arm.tip(*row) for row in q] - points, axis=1)

@@ -102,7 +102,7 @@ def _torques(runs: Mapping[str, Run], group: str) -> tuple[Run, FloatArray, Floa
 def lost_when(run: Run) -> str:
     """Return when an axis error of the tip leaves the settling band for the first time, in s, as a cell of a table."""
     beyond = (np.abs(run.vector("error")) > run.config["robot"]["settling_band"]).any(axis=1)
-    return f"{run.trace()['t'].to_numpy()[int(np.argmax(beyond))]:.3g}" if beyond.any() else "not lost"
+    return f"{run.t[int(np.argmax(beyond))]:.3g}" if beyond.any() else "not lost"
 
 
 def beyond_the_rating(runs: Mapping[str, Run]) -> list[Block]:

@@ -141,7 +141,7 @@ def _to_b(run: Run) -> slice:
 
 def _y(run: Run) -> FloatArray:
     """Return the tip's y at the same rows, in m."""
-    return run.trace()["tip_y"].to_numpy()[_to_b(run)]
+    return run.vector("tip")[_to_b(run), 1]
 
 
 def jacobians(model: RobotModel, postures: FloatArray, shifted: bool, mistaken: bool) -> FloatArray:
@@ -153,12 +153,12 @@ def jacobians(model: RobotModel, postures: FloatArray, shifted: bool, mistaken: 
 def compare(runs: Mapping[str, Run], run: str) -> dict[str, FloatArray]:
     """Return Jacobians at random postures and at those along a run's line, shapes (N, 6, 7).
 
-    Those `as_printed`, with `angles` alone wrong, with the columns `shifted` alone, `mended`, and the `true` ones;
+    Those `as_printed`, with `angles` alone wrong, with the columns `shifted` alone, `fixed`, and the `true` ones;
     `line_printed` and `line_true` along the line.
     """
     model = runs[run].model
     everywhere, line = random_postures(model, _COUNT, _SEED), runs[run].joints("q")[::5]
-    forms = {"as_printed": (True, True), "angles": (False, True), "shifted": (True, False), "mended": (False, False)}
+    forms = {"as_printed": (True, True), "angles": (False, True), "shifted": (True, False), "fixed": (False, False)}
     return {name: jacobians(model, everywhere, *wrong) for name, wrong in forms.items()} | {
         "true": _true(model, everywhere),
         "line_printed": jacobians(model, line, True, True),
@@ -180,7 +180,7 @@ def _column_row(compared: Mapping[str, FloatArray], k: int, source: int) -> list
     return [
         str(k + 1),
         f"true column {source + 1}",
-        above_rounding(float(np.abs(compared["shifted"][:, :, k] - compared["mended"][:, :, source]).max()), digits=2),
+        above_rounding(float(np.abs(compared["shifted"][:, :, k] - compared["fixed"][:, :, source]).max()), digits=2),
         _largest(angles[:, :3]),
         number(float(np.median(linear))),
         number(float(linear.max())),
@@ -217,7 +217,7 @@ def column_values(compared: Mapping[str, FloatArray]) -> dict[str, float]:
     printed_line, true_line = compared["line_printed"], compared["line_true"]
     errors, sizes = (np.linalg.norm(J[:, :3], axis=(1, 2)) for J in (printed_line - true_line, true_line))
     return {
-        "mended": float(np.abs(compared["mended"] - true).max()),
+        "fixed": float(np.abs(compared["fixed"] - true).max()),
         "before": float(np.abs(shifted[:, :, 1:] - true[:, :, :-1]).max()),
         "own": float(np.linalg.norm(off[:, :, 1:], axis=1).max(axis=0).min()),
         "first": float(np.median(np.linalg.norm(off[:, :, 0], axis=1))),

@@ -190,7 +190,7 @@ def test_functions_of_the_study_are_called_where_code_may_run(tmp_path, made):
         tmp_path / "paper",
         one__md=chapter,
         figures__py="def count(runs):\n    return len(runs)\n",
-        one__py="def twice(x):\n    return 2 * x\n",
+        one__py="from functools import cache\n\n\n@cache\ndef twice(x):\n    return 2 * x\n",
     )
     _, (section,) = read(folder, made, allow_code=True)
     assert section.blocks[0].text == "There are 4 runs, 4."
