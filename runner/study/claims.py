@@ -236,7 +236,7 @@ class _Claimed:
 
 def _reach_lost(run: Run) -> tuple[float, float]:
     """Return when a run ends, and how long its target is out of a stage's reach, in s."""
-    end = float(run.trace()["t"].iloc[-1])
+    end = float(run.t[-1])
     return end, end * (run.median("reach_loss_fraction") or 0.0)
 
 

@@ -76,11 +76,6 @@ def trace_of(signal: Signal, *runs: Run) -> FloatArray:
     return np.asarray(runs[0].trace()[signal].to_numpy(), dtype=float)
 
 
-def times_of(run: Run, rows: int) -> FloatArray:
-    """Return the first times of a run's rows, in s."""
-    return run.t[:rows]
-
-
 def number_of(what: Signal, *runs: Run) -> float | None:
     """Return a number of a run: the median of a metric by its name, or what a function of the run gives; or None."""
     if isinstance(what, str):

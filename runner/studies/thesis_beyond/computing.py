@@ -1,6 +1,6 @@
 """Stability limits with delayed and missed commands, and computing times of controllers."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -34,16 +34,19 @@ def as_predicted(run: Run) -> bool:
 
 def limits(runs: Mapping[str, Run], pattern: str) -> list[Series]:
     """Return an upright line at the limit of each of some runs, which differ in it alone, as long as the axis."""
-    bounds = {bears(one.run): None for one in found(runs, pattern)}
-    ends = np.array([_LOW, _TOP])
-    return [Series("", np.array([at, at]), ends, "dotted", color=color) for color, at in enumerate(bounds)]
+    return _upright(bears(one.run) for one in found(runs, pattern))
 
 
 def miss_limits(runs: Mapping[str, Run], pattern: str) -> list[Series]:
     """Return an upright line at the probability of a miss that each rate bears in the mean square."""
-    bounds = {round(miss_limit(rate(one.run)), 9): None for one in found(runs, pattern)}
+    return _upright(round(miss_limit(rate(one.run)), 9) for one in found(runs, pattern))
+
+
+def _upright(places: Iterable[float]) -> list[Series]:
     ends = np.array([_LOW, _TOP])
-    return [Series("", np.array([at, at]), ends, "dotted", color=color) for color, at in enumerate(bounds)]
+    return [
+        Series("", np.array([at, at]), ends, "dotted", color=color) for color, at in enumerate(dict.fromkeys(places))
+    ]
 
 
 def borne(run: Run) -> float:

@@ -12,7 +12,7 @@ from runner.reporting.document import Curves, Map, Maps, Panel, Series
 from runner.reporting.figures import AXES, origin
 from runner.store import Run
 from runner.study.prose.patterns import axes_of, called, found, other
-from runner.study.run_values import Signal, number_of, times_of, trace_of
+from runner.study.run_values import Signal, number_of, trace_of
 
 Style = Literal["line", "dashed", "dotted", "points", "points_line"]
 _POINTS = 100  # of the curve of a closed form
@@ -50,7 +50,7 @@ def line(
     series = []
     for index, each in enumerate(found(runs, pattern)):
         values = factor * trace_of(signal, each.run, *(other(runs, twin, each.levels) for twin in others))
-        t = times_of(each.run, len(values))
+        t = each.run.t[: len(values)]
         shown = t <= np.inf if until is None else t <= until + 1e-9
         own = None if color is None else color + index
         place = t if x is None else trace_of(x, each.run)
@@ -61,14 +61,14 @@ def line(
 def joints(runs: Mapping[str, Run], run: str, stem: str = "q", name: str = "q") -> list[Series]:
     """Return a signal of each joint over time: q, qd, tau or another that has a column for each joint."""
     values = runs[run].joints(stem)
-    t = times_of(runs[run], len(values))
+    t = runs[run].t[: len(values)]
     return [Series(f"{name}{joint + 1}", t, column) for joint, column in enumerate(values.T)]
 
 
 def axes(runs: Mapping[str, Run], run: str, stem: str = "error", factor: float = 1.0) -> list[Series]:
     """Return so many times a vector's x, y and z over time: tip, desired, error or another that has these columns."""
     return [
-        Series(axis, times_of(runs[run], len(values)), factor * values, color=index)
+        Series(axis, runs[run].t[: len(values)], factor * values, color=index)
         for index, axis in enumerate(AXES)
         for values in [trace_of(f"{stem}_{axis}", runs[run])]
     ]
