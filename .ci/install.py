@@ -1,8 +1,8 @@
-"""Make .venv, or mend it: `make install` runs this, with the Python that .venv is to have where one was asked for.
+"""Make .venv, or fix it: `make install` runs this, with the Python that .venv is to have where one was asked for.
 
 Else it looks for a Python 3.11, for which there are wheels of PyBullet, and next for the newest that is supported. It
 runs itself on any Python 3.6 or newer, to say which one is needed. A .venv that is sound stays; one whose Python is
-gone or too old, or that was moved (its scripts name the folder that they were made in), is made anew.
+gone or too old, or that was moved (its scripts name the folder that they were made in), is made again.
 """
 
 import hashlib
@@ -44,7 +44,7 @@ def main(arguments: list) -> int:
 
 
 def install(root: Path, any_version: bool) -> None:
-    """Make or mend the .venv of a checkout; see main."""
+    """Make or fix the .venv of a checkout; see main."""
     venv, stamp = root / ".venv", root / ".venv" / ".installed"
     reason = why_anew(venv, any_version)
     if not reason and stamp.is_file() and stamp.read_text() == digest(root):
@@ -159,7 +159,7 @@ def fetch(root: Path, venv: Path) -> None:
 
 
 def pinned(root: Path, venv: Path, name: str) -> str:
-    """Return a file in .venv with the pin of one package, as pip takes digests from files alone."""
+    """Return a file in .venv with the pin of one package, as pip takes digests from only files."""
     found = re.search("^" + name + r"==(.*\\\n)*.*\n", (root / "constraints.txt").read_text(), re.M)
     if found is None:
         raise InstallError(f"constraints.txt pins no {name}; `make pins` writes it anew")
@@ -169,7 +169,7 @@ def pinned(root: Path, venv: Path, name: str) -> str:
 
 
 def can_cache() -> bool:
-    """Return whether uv can write the folder in which it keeps what it fetched; it is often below the home."""
+    """Return True if uv can write the folder in which it keeps what it fetched; it is often below the home."""
     base = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")  # noqa: PTH111
     place = Path(os.environ.get("UV_CACHE_DIR") or os.path.join(base, "uv"))  # noqa: PTH118
     existing = next(path for path in (place, *place.absolute().parents) if path.exists())

@@ -1,4 +1,4 @@
-"""CPU time of what stands around the ticks of many runs at once: encoder noise, metrics, caveats, records and a shard.
+"""CPU time of what is around the ticks of many runs at once: encoder noise, metrics, caveats, records and a shard.
 
 `python -m bench around` takes 256 Macro runs of 400 ticks and one repetition, as a sweep has them, which all differ.
 """

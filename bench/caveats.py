@@ -1,6 +1,6 @@
 """CPU time of the rules behind a run's caveats, against that of its metrics: at most a quarter.
 
-Both look at the same trace in turns, a block of calls each; the quickest block of each is judged, as work beside it
+Both look at the same trace in turns, a block of calls each; the quickest block of each is judged, as work next to it
 only ever slows one.
 """
 

@@ -2,7 +2,7 @@
 
 - F: PyBullet's torque, step and read calls alone, on the same arm under the same torques.
 - L: the closed loop of the arm's first law in C++ with Pinocchio, one Runge-Kutta step in a tick; bench/least_loops.
-- MuJoCo in a Python loop with a law of its own; bench/peers.py.
+- MuJoCo in a Python loop with its own law; bench/peers.py.
 
 Ours are whole runs: draws of the noise, the path, every tick with its guards, and the trace. All of an arm is measured
 in turns. Beforehand L and the peers are checked to be the same closed loop: their tips follow the path as ours does.

@@ -1,12 +1,12 @@
 """MuJoCo in a Python loop, the peer of both plants.
 
-- implicitfast, beside bullet: MuJoCo's own tip, Jacobian, its derivative, mass matrix and bias make the law. A plain
+- implicitfast, next to bullet: MuJoCo's own tip, Jacobian, its derivative, mass matrix and bias make the law. A plain
   loop, with NumPy's solve and clip and a call for every step, is the target. A trimmed one shows what is left to gain.
-- RK4, one step in a tick, beside rk4: Pinocchio makes the law, in one pass over the arm, trimmed.
+- RK4, one step in a tick, next to rk4: Pinocchio makes the law, in one pass over the arm, trimmed.
 
 Trimmed is: LAPACK without checks, results written in place, one call for the further steps of a tick. All run the law
 of bench/tip_loop.py with its limits and a log, and leave out what costs more: noise, the weighting of the null space by
-the mass matrix, damping near singular postures, guards, and a trace that metrics can read.
+the mass matrix, damping near singular configurations, guards, and a trace that metrics can read.
 """
 
 import xml.etree.ElementTree as ET
@@ -54,7 +54,7 @@ def mujoco_model(loop: TipLoop, step: float, integrator: str) -> Any:
 
 
 def plain_loop(loop: TipLoop, substeps: int) -> tuple[Callable[[], None], FloatArray]:
-    """Return what runs a closed loop by MuJoCo alone, as one writes it down, and the log that it fills.
+    """Return what runs a closed loop by only MuJoCo, as one writes it down, and the log that it fills.
 
     Args:
         loop: The closed loop; see TipLoop.log.
@@ -92,7 +92,7 @@ def plain_loop(loop: TipLoop, substeps: int) -> tuple[Callable[[], None], FloatA
 
 
 def trimmed_loop(loop: TipLoop, substeps: int) -> tuple[Callable[[], None], FloatArray]:
-    """Return what runs a closed loop by MuJoCo alone, trimmed, and the log that it fills; see plain_loop."""
+    """Return what runs a closed loop by only MuJoCo, trimmed, and the log that it fills; see plain_loop."""
     model = mujoco_model(loop, loop.tick / substeps, "implicitfast")
     data, tip, nq = mujoco.MjData(model), model.body(loop.tip).id, model.nv
     J, dJ, weighed, log = np.zeros((3, nq)), np.zeros((3, nq)), np.zeros(nq), loop.log()

@@ -1,6 +1,6 @@
 """CPU time and memory of a repetition among many: 10^5 of one run against 10^3 of it, noise and metrics included.
 
-Blocks of repetitions keep the time of each the same, and the memory that of its metrics alone. Nominal models that are
+Blocks of repetitions keep the time of each the same, and the memory that of only its metrics. Nominal models that are
 drawn in each repetition (mismatch=sampled) cost at most half of the time without them.
 """
 

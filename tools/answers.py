@@ -1,4 +1,4 @@
-"""How often the rule for what may be said errs: simulated sweeps of two laws at three levels, eight seeds each.
+"""How often the rule for what may be said is wrong: simulated sweeps of two laws at three levels, eight seeds each.
 
 Target: of sweeps of equal laws a winner is said in at most 6 % in each family; of equal laws in another floating-point
 order in none of 1,000; and a difference of one standard deviation of the pairs in 95 % or more, of 20 pairs.
@@ -25,7 +25,7 @@ Draw = Callable[[np.random.Generator], FloatArray]
 
 
 def apart(rng: np.random.Generator) -> FloatArray:
-    """Return heavy-tailed values of which pairs have a part in common, each with a scatter of its own."""
+    """Return heavy-tailed values of which pairs have a part in common, each with its own scatter."""
     common = rng.standard_t(2, (1, _LEVELS, _SEEDS))
     return np.exp(0.5 * common + 0.2 * rng.standard_t(2, (2, _LEVELS, _SEEDS)))
 
@@ -64,7 +64,7 @@ def true_answers(samples: int) -> float:
 
 
 def _said(metrics: dict[str, FloatArray]) -> tuple[bool, bool]:
-    """Return whether a sweep says a winner in the first metric, and in the other one, overall or at any level."""
+    """Return True if a sweep says a winner in the first metric, and in the other one, overall or at any level."""
     laws, levels = np.divmod(np.arange(2 * _LEVELS), _LEVELS)
     measured = Measurements(
         axes=[Axis("controller", ["a", "b"], laws), Axis("noise.position", [1.0, 2.0, 3.0], levels)],
@@ -81,7 +81,7 @@ def _said(metrics: dict[str, FloatArray]) -> tuple[bool, bool]:
 
 
 def _reordered(rng: np.random.Generator) -> FloatArray:
-    """Return control efforts of one trace, of some 10^6 N^2 m^2 s, summed up from its largest and from its least."""
+    """Return control efforts of one trace, of about 10^6 N^2 m^2 s, summed up from its largest and from its least."""
     trace = np.sort(1e4 * rng.normal(size=(_LEVELS, _SEEDS, 100)) ** 2, axis=2)
     return np.stack([np.cumsum(trace[..., ::-1], axis=2)[..., -1], np.cumsum(trace, axis=2)[..., -1]])
 

@@ -1,4 +1,4 @@
-"""The tests beside other work: in random order, beside busy loops, with a home folder that is empty and read-only.
+"""The tests next to other work: in random order, next to busy loops, with a home folder that is empty and read-only.
 
 `python -m tools.busy_tests [SEED]` prints the seed of the order; the same seed gives the same order.
 """

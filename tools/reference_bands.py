@@ -117,7 +117,7 @@ def explain_line(experiment: str, preset: str, metric: str) -> str:
     return reasons.get(metric, _LINE_ERRORS[joints, preset])
 
 
-# Reasons of what a Meca500 that gives way feels and does.
+# Reasons of what a Meca500 that yields feels and does.
 _TOUCH = {
     ("push", "peak_force"): "the push itself",
     ("wall", "peak_force"): "the law's mass and damping arrive at the wall with the speed of the approach",

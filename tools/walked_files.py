@@ -42,7 +42,7 @@ def main() -> None:
 
 
 def _is_body(code: CodeType) -> bool:
-    """Tell whether code is the body of a module or of a class: only functions have local variables of their own."""
+    """Return True if code is the body of a module or of a class: only functions have local variables of their own."""
     return not code.co_flags & 0x2
 
 

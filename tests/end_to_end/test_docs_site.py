@@ -63,7 +63,7 @@ def site(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def pages(site):
-    """Its pages by path, but for the report."""
+    """Its pages by path, except for the report."""
     return {path: read(path) for path in site.rglob("*.html") if path.name != "gallery_report.html"}
 
 

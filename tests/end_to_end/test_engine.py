@@ -1,4 +1,4 @@
-"""One result, wherever the runs are made: in this process, on processes of this machine, on a Dask cluster."""
+"""One result, wherever the runs are simulated: in this process, on processes of this machine, on a Dask cluster."""
 
 import contextlib
 import socket
@@ -21,7 +21,7 @@ from runner.sweeps.queue import Queue
 from runner.sweeps.run import Engine
 
 GRID = ("noise=thesis", "robot=macro,mini", "plant=rk4,default", "seed=0,1", "repetitions=2", "duration=0.2,0.1")
-ROWS = 11  # of a trace of 0.1 s; longer runs are made before it
+ROWS = 11  # of a trace of 0.1 s; longer runs are simulated before it
 
 
 def results(ended):
@@ -105,7 +105,7 @@ def build(config):
 
 @pytest.fixture
 def pulls(tmp_path):
-    """Make an environment of the user's from its name and source; returns its config folder."""
+    """Make an environment of the user from its name and source; returns its config folder."""
 
     def make(name, source):
         (tmp_path / "mine/environment").mkdir(parents=True)

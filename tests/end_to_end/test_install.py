@@ -89,7 +89,7 @@ def test_every_package_needs_a_known_digest_and_the_checkout_brings_none(install
     assert files == [PINS[PINS.index("setup") : PINS.index("uv==")], PINS[PINS.index("uv==") : PINS.index("uv-build")]]
     assert packages[2][-1] == "constraints.txt"
     assert own[-4:] == ["--no-deps", "--no-build-isolation", "--editable", "."]
-    assert "--system-certs" in own  # as pip does, where a proxy has a certificate of its own
+    assert "--system-certs" in own  # as pip does, where a proxy has its own certificate
 
 
 def test_without_uv_pip_installs_the_same(install, checkout, monkeypatch):

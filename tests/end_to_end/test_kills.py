@@ -77,7 +77,7 @@ def test_a_worker_that_is_killed_and_its_command_after_it_lose_double_and_leave_
 
 @pytest.mark.costs(5)
 def test_a_tuning_that_is_killed_ends_as_if_it_had_not_been(tuned, tmp_path, gate, killed):
-    """After two lines in the journal, where the command makes the runs and where a process of its own does."""
+    """After two lines in the journal, where the command makes the runs and where its own process does."""
     whole = tuned(trials=12)
     overrides = (*SHORT, f"outputs={tmp_path}/killed", FREQUENCY, DAMPING)
     options = ("--minimize=peak_torque", "--trials=12", "--jobs=3")

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM while runs are made: all processes end, and what is stored is whole."""
+"""Ctrl-C and SIGTERM while runs are simulated: all processes end, and what is stored is whole."""
 
 import os
 import signal
@@ -15,7 +15,7 @@ from runner.base import ticks
 from runner.sweeps import engine
 
 WHOLE = ["config.yaml", "metrics.json", "robot.urdf", "trace.parquet"]
-ROWS = 11  # of a trace of 0.1 s; longer runs are made before it
+ROWS = 11  # of a trace of 0.1 s; longer runs are simulated before it
 
 pytestmark = pytest.mark.usefixtures("interruptible")
 

@@ -23,7 +23,7 @@ def stacked(*runs):
 
 
 def found(config, *runs, **changed):
-    """The caveats of runs by their rule, but for that of a machine without PyBullet."""
+    """The caveats of runs by their rule, except for that of a machine without PyBullet."""
     setting = replace(setting_of(config), repetitions=max(1, len(runs)), **changed)
     watch = Watch(setting, config.caveats)
     for run in runs:

@@ -1,4 +1,4 @@
-"""A Dask cluster as a user starts it: a scheduler and workers, each a process of its own."""
+"""A Dask cluster as a user starts it: a scheduler and workers, each its own process."""
 
 import json
 import subprocess
@@ -12,7 +12,7 @@ Process = subprocess.Popen[bytes]
 
 
 class Cluster:
-    """A scheduler on a port of its own choice, and workers of one thread.
+    """A scheduler on its own port choice, and workers of one thread.
 
     Args:
         folder: Where its processes run; it must exist.

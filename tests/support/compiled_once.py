@@ -1,4 +1,4 @@
-"""Keeps compiled modules, whatever the environment says: each process that a test starts would compile them anew."""
+"""Keeps compiled modules, whatever the environment says: each process that a test starts would compile them again."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""The words of findings as they stand in the source, for a lint on numbers that are typed in them."""
+"""The words of findings unchanged in the source, for a lint on numbers that are typed in them."""
 
 import ast
 from collections.abc import Iterable, Iterator
@@ -12,7 +12,7 @@ def typed_in_module(path: Path, names: Iterable[str]) -> Iterator[str]:
 
     Args:
         path: The module.
-        names: Names of the study's runs; a number with its unit that stands in one is a level of an axis.
+        names: Names of the study's runs; a number with its unit that is in one is a level of an axis.
     """
     levels = levels_in(names)
     tree = ast.parse(path.read_text(encoding="utf-8"))

@@ -80,7 +80,7 @@ class Gate:
 
     def metric(self, rows: int) -> str:
         """Write a metric that stops at traces of so many rows; return the plug-in."""
-        path = self._folder / f"gate_{os.getpid()}_{next(_NUMBERS)}.py"  # Python knows a module by its name alone
+        path = self._folder / f"gate_{os.getpid()}_{next(_NUMBERS)}.py"  # Python knows a module by only its name
         path.write_text(self.source + _METRIC.format(rows=rows))
         return f"metric={path}"
 

@@ -11,7 +11,7 @@ from matplotlib.mathtext import MathTextParser
 from runner.reporting.charts import canvas
 from runner.studies.thesis.diagrams.block_diagram import _box, _route, _text_width, block_diagram
 
-# The same few texts stand in all graphs; each is set once.
+# The same few strings are in all graphs; each is set once.
 MathTextParser._parse_cached = functools.cache(MathTextParser._parse_cached.__wrapped__)
 sys.modules["runner.studies.thesis.diagrams.block_diagram"]._text_width = functools.cache(_text_width)
 
@@ -54,7 +54,7 @@ def check_ways(graph):
 
 
 def check_texts(graph):
-    """Labels stand in their own block, or free of all blocks, lines and other labels; nothing is cut off."""
+    """Labels are in their own block, or free of all blocks, lines and other labels; nothing is cut off."""
     boxes = {node.name: _box(node) for node in graph.nodes}
     labels = {node.label for node in graph.nodes}
     lines = [span for edge in graph.edges for span in spans(_route(edge, boxes))]

@@ -29,7 +29,7 @@ class Offence:
 
 
 def offences(source: str) -> list[Offence]:
-    """Return all offences of a test file by line; in texts, which may be plug-ins, only sleeps."""
+    """Return all offences of a test file by line; in strings, which may be plug-ins, only sleeps."""
     tree = ast.parse(source)
     found = [*_sleeps(tree), *_waits(tree), *_loops(tree), *_ports(tree), *_asserted_clocks(tree)]
     return sorted(set(found), key=lambda offence: (offence.line, offence.rule))
@@ -104,7 +104,7 @@ def _asserted_clocks(tree: ast.AST) -> Iterator[Offence]:
 
 
 def _reads_clock(tree: ast.AST, timed: set[str]) -> bool:
-    """Tell whether a clock of the module time is read, or a name that holds what one gave."""
+    """Return True if a clock of the module time is read, or a name that holds what one gave."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and _name(node.func) in _CLOCKS:
             of_time = not isinstance(node.func, ast.Attribute) or _name(node.func.value) == "time"

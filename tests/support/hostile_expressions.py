@@ -14,7 +14,7 @@ from runner.base.errors import RunnerError
 from runner.base.expressions.evaluator import Budget, Scope
 
 _WATCHED = ("open", "exec", "compile", "import", "os.", "subprocess.", "socket.", "ctypes.", "shutil.", "marshal.")
-_SYNTAX = "<unknown>"  # the file that Python names where a text is only made a syntax tree
+_SYNTAX = "<unknown>"  # the file that Python names where a string is only made a syntax tree
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Arms as MJCF, and MuJoCo's own model of one beside the model of its URDF."""
+"""Arms as MJCF, and MuJoCo's own model of one next to the model of its URDF."""
 
 import mujoco
 import numpy as np
@@ -26,7 +26,7 @@ CHAIN = """<mujoco model="elbow">
 
 
 def written(folder, text, name="arm.xml"):
-    """The file of a text."""
+    """The file of a string."""
     path = folder / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)

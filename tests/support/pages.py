@@ -73,13 +73,13 @@ def steps(page: Path, until: str = "") -> list[Step]:
 
 
 def _goes_on(command: str) -> bool:
-    """Tell whether the shell waits for more of a command: after a backslash, or for the end of a document."""
+    """Return True if the shell waits for more of a command: after a backslash, or for the end of a document."""
     end = _ENDS_OF_DOCUMENT.search(command)
     return command.endswith("\\") if end is None else command.splitlines()[-1] != end[1]
 
 
 def follow(some: Sequence[Step], folder: Path) -> list[Ended]:
-    """Type commands in one shell that has HOME and PATH; go on whatever they end with.
+    """Type commands in one shell that has HOME and PATH; continue whatever they end with.
 
     Args:
         some: The commands.
@@ -119,7 +119,7 @@ def complaints(followed: Sequence[Ended]) -> list[str]:
 
 
 def first_missing(shown: Sequence[str], text: str) -> list[str]:
-    """Return the first shown line that a text does not have after those before it; none if it has all."""
+    """Return the first shown line that a string does not have after those before it; none if it has all."""
     printed = iter(without_names(text).splitlines())
     return next(([line] for line in shown if not any(_is(line, other) for other in printed)), [])
 
@@ -144,13 +144,13 @@ def wrong_snippets(page: Path) -> list[str]:
 
 
 def has_python(page: Path) -> bool:
-    """Tell whether a page has snippets of Python."""
+    """Return True if a page has snippets of Python."""
     text = page.read_text(encoding="utf-8")
     return ">>> " in text or _PYTHON.search(text) is not None
 
 
 def without_names(text: str) -> str:
-    """Return a text in which the names of stored folders, which follow from the source, are three dots."""
+    """Return a string in which the names of stored folders, which follow from the source, are three dots."""
     return _FOLDER.sub(r"\1/...", text)
 
 

@@ -1,7 +1,7 @@
 """Named assertions about laws and motions, each with the tolerance that its physics gives it.
 
 A tolerance is a share of the size of what is compared, so that one number serves arms of a metre and of a decimetre.
-Algebra of a handful of 6 x 6 matrices leaves some 1e-12 of it, differences of step 1e-6 some 1e-6.
+Algebra of a handful of 6 x 6 matrices leaves about 1e-12 of it, differences of step 1e-6 about 1e-6.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ def torque_of(controller, q, dq, reference, time: float = 0.0) -> FloatArray:
 
 
 def assert_agree(actual: ArrayLike, expected: ArrayLike, share: float, of: ArrayLike | None = None, why="") -> None:
-    """Assert that arrays agree but for a share of the largest entry.
+    """Assert that arrays agree except for a share of the largest entry.
 
     Args:
         actual: What was found.
@@ -48,7 +48,7 @@ def assert_order(errors: Sequence[float], order: float, within: float) -> None:
 
 
 def assert_energy_kept(energies: ArrayLike, share: float) -> None:
-    """Assert that a motion without losses keeps its energy but for a share of the first value."""
+    """Assert that a motion without losses keeps its energy except for a share of the first value."""
     energies = np.asarray(energies)
     np.testing.assert_allclose(energies, energies[0], rtol=0.0, atol=share * abs(energies[0]))
 

@@ -1,6 +1,6 @@
 """Runs of studies that were made once and are kept in tests/recorded, so that `make test` needs no simulation of them.
 
-`PYTHONPATH=tests .venv/bin/python -m support.recorded_runs [STUDY...]` records them anew. Metrics have six digits,
+`PYTHONPATH=tests .venv/bin/python -m support.recorded_runs [STUDY...]` records them again. Metrics have six digits,
 and a trace has a few of its rows. `make test-slow` makes the runs again and compares their metrics.
 """
 

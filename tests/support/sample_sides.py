@@ -16,7 +16,7 @@ def side(name, axes, value, seed=0, repetitions=8, order=None, **config):
 
     Args:
         name: What it is called.
-        axes: Values of each axis; the cells stand in `order`.
+        axes: Values of each axis; the cells are in `order`.
         value: Error of a cell, a function of its values.
         seed: Its seed.
         repetitions: Number of repetitions.

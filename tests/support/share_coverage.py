@@ -1,4 +1,4 @@
-"""How often the interval of a share holds the truth, worked out exactly."""
+"""How often the interval of a share holds the truth, computed exactly."""
 
 from functools import cache
 

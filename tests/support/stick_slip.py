@@ -49,7 +49,7 @@ def pulled(plant, tick: float, duration: float):
 
 
 def period_of(t, q) -> float:
-    """Return the mean time between two starts of slips but for the first, in s."""
+    """Return the mean time between two starts of slips except for the first, in s."""
     moves = np.abs(np.diff(q)) > 1e-9
     starts = t[1:-1][~moves[:-1] & moves[1:]]
     assert len(starts) > 3

@@ -108,7 +108,7 @@ def short_examination() -> Iterator[None]:
 
 @functools.cache
 def robot(name) -> str:
-    """The name under which a stranger stands in the config folder."""
+    """The name under which a stranger is in the config folder."""
     write_folder(read(name), folder())
     return read(name).name
 

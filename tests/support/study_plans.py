@@ -22,7 +22,7 @@ _MECA500 = {"step": 0.2, "sine": 0.8, "tip": 0.2, "wall": 0.4, "map": 0.4, "hand
 
 
 def cut(overrides: Overrides, duration: float) -> Overrides:
-    """Return the overrides of a run cut short."""
+    """Return the overrides of a run aborted."""
     return (*(o for o in overrides if not o.startswith("duration=")), f"duration={duration}")
 
 

@@ -41,5 +41,5 @@ def texts(section: Section) -> Iterator[str]:
 
 
 def unfinished_texts(section: Section) -> list[str]:
-    """Texts into which a value has gone that is none."""
+    """Strings into which a value has gone that is none."""
     return [t for t in texts(section) if "None" in t or {"nan", "inf"} & set(t.split()) or "{" in t]

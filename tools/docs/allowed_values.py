@@ -1,4 +1,4 @@
-"""What a config key may hold, in words, from its type."""
+"""What a config key may hold, as text, from its type."""
 
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin

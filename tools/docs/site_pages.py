@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from mkdocs.structure.pages import Page
 
 ROOT = Path(__file__).resolve().parents[2]
-ROOT_PAGES = {  # by where they stand in the site
+ROOT_PAGES = {  # by where they are in the site
     "index.md": "README.md",
     "changelog.md": "CHANGELOG.md",
     "contributing.md": "CONTRIBUTING.md",
@@ -53,7 +53,7 @@ def on_files(files: "Files", config: "MkDocsConfig") -> "Files":
 
 
 def on_page_markdown(markdown: str, page: "Page", **_: object) -> str:
-    """Turn the links of a page to where their targets stand in the site."""
+    """Turn the links of a page to where their targets are in the site."""
     return relinked(page.file.src_uri, markdown)
 
 
@@ -61,7 +61,7 @@ def relinked(uri: str, text: str) -> str:
     """Return the text of a page of the site with its links turned to pages of the site.
 
     Args:
-        uri: Where the page stands in the site, such as "index.md".
+        uri: Where the page is in the site, such as "index.md".
         text: Its Markdown, whose links are relative to its place in the checkout.
     """
 

@@ -79,7 +79,7 @@ def _show(bad: dict[int, list[str]]) -> None:
 
 
 def _in_processes(seed: int, count: int) -> Iterator[tuple[int, configs.Ended]]:
-    """Yield how each case ended; the one that brings its process down ends as a fault, and the next goes on."""
+    """Yield how each case ended; the one that brings its process down ends as a fault, and the next continues."""
     start = 0
     while start < count:
         receive, send = multiprocessing.Pipe(duplex=False)

@@ -1,4 +1,4 @@
-"""Configs from a grammar, composed, checked and run for some ticks: each is taken or refused in words, and soon.
+"""Configs from a grammar, composed, checked and run for some ticks: each is taken or refused as text, and soon.
 
 Messages are judged by `attempt`, what a case costs by `judge_costs`: that depends on the machine.
 """
@@ -67,7 +67,7 @@ class Ended:
         refused: Whether it was refused; else it was taken.
         faults: What is wrong with how it ended.
         seconds: CPU time.
-        megabytes: Memory that it took beside what the process had held before.
+        megabytes: Memory that it took next to what the process had held before.
     """
 
     refused: bool

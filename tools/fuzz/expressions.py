@@ -1,7 +1,7 @@
 """`python -m tools.fuzz.expressions [N] [--seed S] [--only N]`: random expressions of a file, half of them hostile.
 
-Each has a value or is refused in words; none runs code, opens a file or takes 0.1 s of CPU time, nor, in every
-fiftieth, 50 MB: memory is counted in these alone, as that takes four times as long.
+Each has a value or is refused as text; none runs code, opens a file or takes 0.1 s of CPU time, nor, in every
+fiftieth, 50 MB: memory is counted in only these, as that takes four times as long.
 """
 
 import argparse

@@ -95,7 +95,7 @@ def _chain(draw: Random) -> str:
 
 
 def _damaged(draw: Random, text: str) -> str:
-    """Return a text with some of its characters lost, doubled or changed."""
+    """Return a string with some of its characters lost, doubled or changed."""
     for _ in range(draw.randrange(1, 6)):
         place = draw.randrange(len(text) + 1)
         text = (

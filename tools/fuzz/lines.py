@@ -1,4 +1,4 @@
-"""Command lines from a grammar, each in a process of its own: every one ends with a code and words, and soon."""
+"""Command lines from a grammar, each in its own process: every one ends with a code and words, and soon."""
 
 import os
 import subprocess
@@ -106,5 +106,5 @@ def judge(measured: Measured, usual: Measured) -> list[str]:
 
 
 def _word(text: str) -> str:
-    """Return a text as a word of a command line, which holds no zero byte."""
+    """Return a string as a word of a command line, which holds no zero byte."""
     return text.replace("\0", "?")

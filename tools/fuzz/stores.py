@@ -41,7 +41,7 @@ class Reading:
 
 
 def read_all(outputs: Path, beside: Path | None = None) -> Reading:
-    """Read everything in an outputs folder that a number could be printed from, or what lies beside one file."""
+    """Read everything in an outputs folder that a number could be printed from, or what lies next to one file."""
     reading = Reading({}, {})
     for place, read in _things(outputs):
         if beside is not None and not place.startswith(str(beside.parent)):
@@ -188,7 +188,7 @@ def damage_files(outputs: Path, cases: int, seed: int, commands: bool = False) -
 
 
 def _crashes(outputs: Path) -> Iterator[str]:
-    """Yield what commands that read a store end with, where that is no ending of theirs."""
+    """Yield what commands that read a store end with, where that is not an ending of theirs."""
     runs, sweeps = sorted((outputs / "runs").iterdir()), sorted((outputs / "sweeps").iterdir())
     tunings = sorted((outputs / "tunings").iterdir())
     lines = [("verify", outputs), ("compare", runs[0], runs[1]), ("check", runs[0])]

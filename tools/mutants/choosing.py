@@ -30,7 +30,7 @@ class Choice:
     Attributes:
         files: Test files to collect.
         tests: Short names.
-        whole: Base names of files whose tests run before, but for those that the map knows.
+        whole: Base names of files whose tests run before, except for those that the map knows.
         cost: CPU time that they took when the map was recorded [s].
     """
 

@@ -12,7 +12,7 @@ class Listed:
     Attributes:
         why: What is wrong then.
         module: The module, from the root of the checkout.
-        right: What stands there, once.
+        right: What is there, once.
         wrong: What is put in its place.
         test: The module's test file, likewise.
     """

@@ -56,7 +56,7 @@ class Mutant:
         return (head + text[self.start : self.end] + tail).decode(), (head + self.new.encode() + tail).decode()
 
     def changes(self, source: str) -> bool:
-        """Tell whether the error gives another module that Python can read."""
+        """Return True if the error gives another module that Python can read."""
         try:
             compile(wrong := self.apply(source), self.path, "exec", dont_inherit=True)
         except SyntaxError:

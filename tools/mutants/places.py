@@ -147,14 +147,14 @@ class _Places:
 
 
 def _is_for_people(node: ast.AST) -> bool:
-    """Tell whether a node is a call that shows a text, or the statement of one."""
+    """Return True if a node is a call that shows a string, or the statement of one."""
     call = node.value if isinstance(node, ast.Expr) else node
     called = call.func if isinstance(call, ast.Call) else None
     return getattr(called, "id", getattr(called, "attr", None)) in _FOR_PEOPLE
 
 
 def _is_skipped(node: ast.AST) -> bool:
-    """Tell whether a node is a block for type checkers, a list of public names, or the start of a script."""
+    """Return True if a node is a block for type checkers, a list of public names, or the start of a script."""
     if isinstance(node, ast.If):
         return any(getattr(name, "id", "") in ("TYPE_CHECKING", "__name__") for name in ast.walk(node.test))
     return isinstance(node, ast.Assign) and _assigned(node) == "__all__"
@@ -172,7 +172,7 @@ def _is_text(node: ast.expr) -> bool:
 
 
 def _stays_defined(target: ast.expr, known: set[str]) -> bool:
-    """Tell whether what a statement assigns may be there without it; else leaving it out only gives a NameError."""
+    """Return True if what a statement assigns may be there without it; else leaving it out only gives a NameError."""
     if isinstance(target, ast.Tuple):
         return all(_stays_defined(part, known) for part in target.elts)
     return isinstance(target, ast.Attribute | ast.Subscript) or (isinstance(target, ast.Name) and target.id in known)

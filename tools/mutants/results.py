@@ -40,7 +40,7 @@ def again(file: Path, places: list[Mutant], sources: dict[str, str]) -> list[Mut
 
 
 def _by_lines(was: str, now: str, places: list[Mutant], source: str) -> Mutant | None:
-    """Return the mutant that replaces lines which stand in a module once."""
+    """Return the mutant that replaces lines which are in a module once."""
     text, lines = f"\n{source}".encode(), f"\n{was}\n".encode()
     if text.count(lines) != 1:
         return None

@@ -11,7 +11,7 @@ _LEFT_OUT = ("*cache*", ".git", ".venv", ".hypothesis", "outputs", "build", "dis
 
 
 def copy_tree(tree: Path, to: Path) -> None:
-    """Copy a checkout without what is made there, and without what `inside` brings anew."""
+    """Copy a checkout without what is made there, and without what `inside` brings again."""
     shutil.copytree(tree, to, symlinks=True, ignore=_left_out)
 
 

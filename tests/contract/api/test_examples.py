@@ -1,4 +1,4 @@
-"""Examples in docstrings of the public functions and in the notebook, run as they stand."""
+"""Examples in docstrings of the public functions and in the notebook, run unchanged."""
 
 import doctest
 import importlib

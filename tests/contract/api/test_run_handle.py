@@ -53,7 +53,7 @@ def test_the_frame_of_metrics(run):
     assert list(frame.columns) == ["unit", "median", "min", "max", "n"]
     assert list(frame.index) == list(run.metrics)
     assert frame.loc["peak_torque", "median"] == run.metrics["peak_torque"].median
-    assert frame.loc["steady_state_error", "n"] == 0  # the motion goes on
+    assert frame.loc["steady_state_error", "n"] == 0  # the motion continues
     assert np.isnan(frame.loc["steady_state_error", "median"])
 
 

@@ -1,4 +1,4 @@
-"""The room stands above all others, and a stranger's tools understand it."""
+"""The room is above all others, and third-party tools understand it."""
 
 import ast
 import os

@@ -1,4 +1,4 @@
-"""Ticks counted beside the simulation."""
+"""Ticks counted next to the simulation."""
 
 import threading
 

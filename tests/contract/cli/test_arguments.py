@@ -11,7 +11,7 @@ SWEEP = ("-m", "hydra.sweeper.workers=0", *SHORT, "seed=0,1")
 def test_latest_is_the_run_or_sweep_made_or_found_last(cli, monkeypatch):
     first, second = cli(*SHORT).folder, cli(*SHORT, "seed=1").folder
     assert str(second.name) in cli("compare", "latest", first).out.splitlines()[0]
-    cli(*SHORT)  # found stored
+    cli(*SHORT)  # cached
     assert str(first.name) in cli("compare", "latest", second).out.splitlines()[0]
     sweep = cli(*SWEEP).folder
     assert cli("table", "latest").folder == sweep

@@ -20,7 +20,7 @@ def cut(copy_run):
 
 def test_a_run_tells_how_often_it_keeps_each_bound(cli, cut):
     ending = cli(*DRAWN, cut(4), "spec.metrics.peak_torque.max=5e3")
-    assert ending.code == 0  # a spec is no failure
+    assert ending.code == 0  # a spec is not a failure
     table = [line.split("  ") for line in ending.err.splitlines() if " of 40  " in line]
     cells = [[cell.strip() for cell in row if cell.strip()] for row in table]
     assert [row[1] for row in cells] == ["36 of 40", "40 of 40", "36 of 40"]
@@ -108,7 +108,7 @@ def test_a_sweep_is_checked_cell_by_cell(cli, cut):
     assert good.split()[0] == "noise.position=0"
     assert (good.split()[-1], broken.split()[-1]) == ("good", "broken")
     assert last == "broken: 1 of 2 bounds of 2 runs"
-    # The same cells, found stored, are judged by the spec of the line that asks.
+    # The same cells, cached, are judged by the spec of the line that asks.
     again = cli("-m", *DRAWN, "noise.position=0,1e-3", f"{BOUND}=1", "hydra.sweeper.workers=0")
     assert again.folder == swept.folder
     for before in ("", "none, then "):  # one cell was stored without

@@ -255,7 +255,7 @@ def test_a_diverging_simulation_is_a_stored_result(cli):
     assert record["status"] == "failed"
     assert record["failure"]["joint"] == "q1"
     assert all(value is None for metric in record["metrics"].values() for value in metric["values"])
-    assert cli("robot=macro", *overrides, "repetitions=2") == ending  # found stored, it is told again
+    assert cli("robot=macro", *overrides, "repetitions=2") == ending  # cached, it is told again
 
 
 def test_an_internal_error_ends_with_3_and_its_trace(cli, monkeypatch):

@@ -27,7 +27,7 @@ def test_levels_are_compared_within_each_level_of_the_other_axis(cli, folder):
     first, *others = rows(ending.out, "rms_torque")
     assert [first[0], *(row[0] for row in others)] == ["all", "gravity=9.7", "gravity=9.81"]
     assert first[1:3] == ["computed_torque,", "operational_space"]
-    assert "\nRms torque: " in ending.out  # the answer stands before the table
+    assert "\nRms torque: " in ending.out  # the answer is before the table
     assert "p is corrected within the family (Holm)" in ending.out
     assert "peak_torque" not in ending.out
 

@@ -1,4 +1,4 @@
-"""`runner verify`: what is as written, what is damaged, and how it is mended."""
+"""`runner verify`: what is as written, what is damaged, and how it is fixed."""
 
 import shutil
 

@@ -1,4 +1,4 @@
-"""Composing with what is kept of earlier configs: against Hydra, which composes each line anew."""
+"""Composing with what is kept of earlier configs: against Hydra, which composes each line again."""
 
 import shutil
 

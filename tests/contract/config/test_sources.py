@@ -1,4 +1,4 @@
-"""What a config file may set: how and where runs are made, code and folders are refused, before anything runs."""
+"""What a config file may set: how and where runs are simulated, code and folders are refused, before anything runs."""
 
 import json
 import os

@@ -186,7 +186,7 @@ def own_robot(tmp_path):
 
 
 def test_names_that_clash_between_stages_are_said(own_robot, tmp_path):
-    # A stage's names start with its own: the second one's "link_base" stands in the first arm already.
+    # A stage's names start with its own: the second one's "link_base" is in the first arm already.
     urdf = """<robot name="odd"><link name="{0}base">{1}</link><link name="{0}arm">{1}</link>
       <joint name="q" type="revolute"><parent link="{0}base"/><child link="{0}arm"/><axis xyz="0 0 1"/>
       <limit lower="-9" upper="9" effort="9" velocity="9"/></joint></robot>"""

@@ -1,4 +1,4 @@
-"""The user's settings of how and where runs are made: what they hold, what wins over them, and what is refused."""
+"""The user's settings of how and where runs are simulated: what they hold, what wins over them, and what is refused."""
 
 import pytest
 from support.pages import ROOT

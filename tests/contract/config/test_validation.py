@@ -1,4 +1,4 @@
-"""Bad values: each ends with exit code 2 and one message that says how to mend it, and leaves nothing behind."""
+"""Bad values: each ends with exit code 2 and one message that says how to fix it, and leaves nothing behind."""
 
 import pytest
 

@@ -31,7 +31,7 @@ def examined(tmp_path):
 
 @pytest.fixture
 def found(examined):
-    """What is said of a text at a place, beside the notes on other things."""
+    """What is said of a string at a place, next to the notes on other things."""
 
     def make(text, place, tip=None):
         (finding,) = [each for each in examined(text, tip).findings if each.place == place]
@@ -148,7 +148,7 @@ def test_what_moves_beside_the_way_is_held(examined):
         "fixed   joint 'slide': moves, but not the tip; now held at 0 m"
     ]
     assert examination.arm.model.joint_names == ("q1", "q2", "q3")
-    assert examination.arm.model.mass == pytest.approx(6.0)  # what stands on the base does not move
+    assert examination.arm.model.mass == pytest.approx(6.0)  # what is on the base does not move
 
 
 def test_a_finger_that_mimics_is_held_without_its_mimic(examined):

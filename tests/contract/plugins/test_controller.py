@@ -16,7 +16,7 @@ from runner.simulation.sensors import make_encoders
 
 
 class Law:
-    """A law of the user's that goes wrong at t = 0.05 s."""
+    """A law of the user that goes wrong at t = 0.05 s."""
 
     def __init__(self, answer):
         self.answer = answer

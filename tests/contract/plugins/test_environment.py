@@ -13,7 +13,7 @@ from runner.simulation.sensors import make_encoders, make_wrist_sensor
 
 
 class Wind:
-    """An environment of the user's that goes wrong at t = 0.05 s."""
+    """An environment of the user that goes wrong at t = 0.05 s."""
 
     def __init__(self, answer):
         self.answer = answer

@@ -50,7 +50,7 @@ RUN = ("robot=macro", "trajectory=quintic", "duration=0.05")
 
 @pytest.fixture
 def laws(tmp_path, monkeypatch, request):
-    """Return the path of a module of laws with a name of its own, and forget its parts afterwards."""
+    """Return the path of a module of laws with its own name, and forget its parts afterwards."""
     monkeypatch.setenv("RUNNER_PLUGINS", "")
     monkeypatch.setattr(sys, "path", [*sys.path])
     name = "laws_" + re.sub(r"\W", "_", request.node.name)

@@ -1,4 +1,4 @@
-"""A part of the user's that makes what it is handed writable again reaches neither record nor plant nor metrics."""
+"""A part of the user that makes what it is handed writable again reaches neither record nor plant nor metrics."""
 
 import os
 import sys

@@ -12,7 +12,7 @@ from runner.simulation.sensors import make_encoders
 
 
 class Plant:
-    """A plant of the user's that stands still and breaks in its third tick."""
+    """A plant of the user that rests and breaks in its third tick."""
 
     def __init__(self):
         self.q, self.dq, self.ticks = np.array([0.1, 0.2, 0.3]), np.zeros(3), 0

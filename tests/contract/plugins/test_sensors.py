@@ -1,4 +1,4 @@
-"""Sensors and mismatches of the user's that go wrong."""
+"""Sensors and mismatches of the user that go wrong."""
 
 import re
 from dataclasses import replace

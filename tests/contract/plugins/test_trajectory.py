@@ -14,7 +14,7 @@ from runner.trajectories import TRAJECTORIES
 
 @dataclass
 class Path:
-    """A trajectory of the user's that rests at a point."""
+    """A trajectory of the user that rests at a point."""
 
     start: object = (0.0, 1.0, 1.0)
     goal: object = None

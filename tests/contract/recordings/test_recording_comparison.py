@@ -1,4 +1,4 @@
-"""Recordings held against a run: of the run itself, and of a part of its signals."""
+"""Recordings compared with a run: of the run itself, and of a part of its signals."""
 
 import numpy as np
 import pytest

@@ -62,7 +62,7 @@ def test_each_wrong_formula_that_is_run_has_its_curves(document):
 
 
 def squeezed(text):
-    """Return a text as the page's search compares it: see report.js."""
+    """Return a string as the page's search compares it: see report.js."""
     return re.sub(r"[\s·*_]+", "", unicodedata.normalize("NFKC", re.sub(r"<[^>]*>", "", text)))
 
 

@@ -1,4 +1,4 @@
-"""Figures of a report as files: their names, letters, sizes, and any text in them."""
+"""Figures of a report as files: their names, letters, sizes, and any string in them."""
 
 import re
 import zlib
@@ -112,7 +112,7 @@ def test_any_text_in_any_field_gives_a_plain_name_and_points():
 
 @pytest.mark.costs(3)
 def test_any_text_in_any_field_is_drawn(tmp_path):
-    """A figure of each kind has panels for every text: each stands in every field that is drawn."""
+    """A figure of each kind has panels for every text: each is in every field that is drawn."""
     lines = [panel for text in HOSTILE for panel in curves(text).panels]
     cells = [maps(text).panels[0] for text in HOSTILE]
     names = written(tmp_path, [Curves("lines", lines, columns=3), Maps("cells", HOSTILE[0], cells)])

@@ -1,4 +1,4 @@
-"""Documents as HTML: no markup from texts, no network, the same page each time."""
+"""Documents as HTML: no markup from strings, no network, the same page each time."""
 
 import base64
 import gzip

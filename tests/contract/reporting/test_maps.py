@@ -1,4 +1,4 @@
-"""Maps as drawings and as data for Plotly: cells, scale, texts."""
+"""Maps as drawings and as data for Plotly: cells, scale, strings."""
 
 import json
 from dataclasses import replace

@@ -31,7 +31,7 @@ def test_laws_are_compared_within_each_robot():
         [at, "computed_torque, operational_space"] for at in ("all", "robot=macro", "robot=xarm7")
     ]
     assert [row[-1] for row in table.rows] == ["larger", "larger", "smaller"]
-    assert [row[4] for row in table.rows] == ["8", "8", "8"]  # n stands where the interval does
+    assert [row[4] for row in table.rows] == ["8", "8", "8"]  # n is where the interval does
 
 
 def test_every_metric_that_is_compared_is_compared_in_pairs():

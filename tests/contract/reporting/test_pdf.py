@@ -1,4 +1,4 @@
-"""Documents as PDF by Typst: any text, the same bytes each time."""
+"""Documents as PDF by Typst: any string, the same bytes each time."""
 
 from dataclasses import replace
 from typing import get_args

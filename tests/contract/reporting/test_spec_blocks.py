@@ -60,7 +60,7 @@ def test_the_report_on_several_runs_has_one_table_of_all_bounds(made):
     assert [row[0] for row in overall.rows] == ["A", "A", "A", "B"]
     assert len(own) == 2
     differing = next(block for block in outline.blocks(document) if "differ" in getattr(block, "caption", ""))
-    assert not any(row[0].startswith("spec") for row in differing.rows)  # a spec is no difference between runs
+    assert not any(row[0].startswith("spec") for row in differing.rows)  # a spec is not a difference between runs
 
 
 @pytest.mark.parametrize(

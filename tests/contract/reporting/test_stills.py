@@ -1,4 +1,4 @@
-"""Figures of curves as SVG: any text, odd values, legends."""
+"""Figures of curves as SVG: any string, odd values, legends."""
 
 import json
 from xml.etree import ElementTree

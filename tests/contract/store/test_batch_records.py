@@ -1,4 +1,4 @@
-"""Records of many runs as texts, against those of each run alone."""
+"""Records of many runs as strings, against those of each run alone."""
 
 import json
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""A disk that takes no more, by a limit on the size of files: one sentence, nothing lost, the same command goes on."""
+"""A disk that takes no more, by a limit on the size of files: one sentence, nothing lost, repeatable."""
 
 import resource
 import sys

@@ -63,7 +63,7 @@ def test_a_bound_that_is_set_after_the_result_is_kept_with_its_date_and_what_sto
     first, second, _ = (text for text, *_ in spec_rows(kept.spec))
     assert re.search(r", set after the result was known \(2026-03-04; before: at least 0 m, then at most .*\)$", first)
     assert second.endswith("largest torque at least 0 N m, set after the result was known (2026-03-04; before: none)")
-    # One that stood before keeps its date; that with which the run was made was never set late.
+    # One that was before keeps its date; that with which the run was simulated was never set late.
     again = judge_run(kept, {METRIC: low}, "2026-05-06")
     assert "known (2026-02-03; before: at least 0 m)" in spec_rows(again.spec)[0][0]
     assert spec_rows(judge_run(again, {METRIC: Bound(min=0.0, reason="none is less")}, "2026-07-08").spec) == [row]

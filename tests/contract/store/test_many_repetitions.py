@@ -1,4 +1,4 @@
-"""Runs of so many repetitions that their values stand beside the record."""
+"""Runs of so many repetitions that their values stand next to the record."""
 
 import json
 import shutil
@@ -39,7 +39,7 @@ def test_up_to_two_thousand_stand_in_the_record_and_more_beside_it(cli, many):
         assert list(many.record["metrics"][name]) == ["unit", "median", "min", "max", "quantiles"]
         values = many.values(name)
         assert values.shape == (MANY,)
-        # A repetition's numbers follow from its seed alone.
+        # A repetition's numbers follow from only its seed.
         assert np.array_equal(values[:-1], few.values(name), equal_nan=True)
         listed = few.metrics[name].values
         assert np.array_equal(few.values(name), np.array(listed, dtype=float), equal_nan=True)

@@ -23,7 +23,7 @@ GRID = "grids:\n  goal:\n    with: [robot=macro]\n"
 
 @pytest.fixture
 def paper(cli, tmp_path, monkeypatch):
-    """Reproduce a paper of some files beside those of a small one, which are replaced by name."""
+    """Reproduce a paper of some files next to those of a small one, which are replaced by name."""
     monkeypatch.setenv("RUNNER_SECRET", "hidden")
 
     def reproduce(files, *options):
@@ -53,7 +53,7 @@ def refused(ending, tmp_path, problem):
 
 
 def last_line(text):
-    """Return where the last line of a text of runs.yaml stands, as messages say it."""
+    """Return where the last line of a string of runs.yaml stands, as messages say it."""
     return f"paper/runs.yaml, line {text.count(chr(10)) + 1}: "
 
 

@@ -1,4 +1,4 @@
-"""Plans of studies: the configs know every robot and key that stands in one, though few of its runs are made."""
+"""Plans of studies: the configs know every robot and key that is in one, though few of its runs are simulated."""
 
 from collections.abc import Iterator
 
@@ -18,7 +18,7 @@ def parts(overrides: Overrides) -> set[str]:
 
 
 def covering(jobs: dict[str, Overrides]) -> Iterator[Overrides]:
-    """Yield runs so that each key, and each robot, stands in one of them; options are tested with the configs."""
+    """Yield runs so that each key, and each robot, is in one of them; options are tested with the configs."""
     left = set().union(*map(parts, jobs.values()))
     while left:
         overrides = max(jobs.values(), key=lambda run: len(parts(run) & left))

@@ -1,4 +1,4 @@
-"""Chapters of all studies, from the runs of thin plans: their sections, their texts, and conditions that can fail."""
+"""Chapters of all studies, from the runs of thin plans: their sections, their strings, and conditions that can fail."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -66,6 +66,6 @@ def test_chapters_stand_whatever_has_failed(made: Callable[[str], Made], study: 
 
 
 def faults(section: Section) -> list[str]:
-    """Return texts into which a value has gone that is none, and formulas that cannot be set."""
+    """Return strings into which a value has gone that is none, and formulas that cannot be set."""
     unfinished = [text for text in unfinished_texts(section) if not text.startswith(FINISHED)]
     return [*unfinished, *faulty(Document("", "", "", [section], "2026-01-01"))]

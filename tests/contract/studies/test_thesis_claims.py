@@ -29,7 +29,7 @@ def test_the_numbers_of_chapters_3_to_5_are_listed_in_order():
         [0.06],
         [0.0, 5e-4],
         [0.0, 0.01],
-        [],  # in words
+        [],  # as text
         [0.0, 9e-3],
     ]
 

@@ -101,7 +101,7 @@ def test_long_curves_are_envelopes_and_the_last_ticks_are_shown_as_they_are():
 
 
 def held(parted=None, share=0.02, settling=1.4):
-    """What is stored of a run that was held against Runge-Kutta."""
+    """What is stored of a run that was compared with Runge-Kutta."""
     value = {"value": settling, "difference": None, "share": None if parted else share}
     return {
         "plant": "rk4", "step": 0.01, "largest": 0.5, "at": 0.9, "end": 1e-6, "parted": parted,

@@ -90,7 +90,7 @@ def test_what_a_claim_is_like_has_the_same_seeds(some: Run) -> None:
 
 
 def test_a_bound_is_that_of_the_same_seeds(some: Run) -> None:
-    """Claim 5 contradicts claim 1 but for seeds in which the Macro itself takes long: 0.1 of 2 s or more."""
+    """Claim 5 contradicts claim 1 except for seeds in which the Macro itself takes long: 0.1 of 2 s or more."""
     slow = [1.4] * (SEEDS - 30) + [2.5] * 30
     each = judged_by(some, 5, [0.3] * SEEDS, bound=slow)
     assert each.verdict == "source contradicts itself"

@@ -1,4 +1,4 @@
-"""The xArm7 report as a document, from whole runs that are recorded; the studies stand in it as empty sections."""
+"""The xArm7 report as a document, from whole runs that are recorded; the studies are in it as empty sections."""
 
 import re
 

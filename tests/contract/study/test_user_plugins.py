@@ -1,4 +1,4 @@
-"""A control law of the user's in a study: its runs and their commands, and what is refused."""
+"""A control law of the user in a study: its runs and their commands, and what is refused."""
 
 import shutil
 import sys

@@ -39,7 +39,7 @@ def test_code_is_compiled_once_and_found_by_the_next_process(place, compilations
     first = stepped()
     (file,) = place.iterdir()
     assert stat.S_IMODE(file.stat().st_mode) == 0o600
-    program._program.cache_clear()  # as in a process of its own
+    program._program.cache_clear()  # as in its own process
     np.testing.assert_array_equal(stepped(), first)
     assert len(compilations) == 1
 

@@ -24,7 +24,7 @@ HARD = (
 HELD = ("robot=macro", "controller=adaptive", *MACRO[1:3], "plant.friction.coulomb=0.1", "duration=0.1")
 
 
-# The cost is that of the parameters: all groups on the Macro alone in a short run, on the other arms in slow tests.
+# The cost is that of the parameters: all groups on only the Macro in a short run, on the other arms in slow tests.
 SMALL = [
     (MACRO, OWN), (HARD, OWN), (INTEGRAL, ("gains", "masses")), (TWO_RATES, ("lengths",)), (SEVEN, ("masses",)),
     (HELD, ("lengths",)),

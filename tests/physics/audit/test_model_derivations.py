@@ -1,4 +1,4 @@
-"""Reference derivations of models: right for every robot of ours, and enough for a folder of YAML alone."""
+"""Reference derivations of models: right for every robot of ours, and enough for a folder of only YAML."""
 
 import numpy as np
 import pytest

@@ -119,7 +119,7 @@ def test_errors_are_as_large_as_the_covariance_says(meca500, postures, deviation
 
 
 def test_errors_of_the_orientations_alone_are_as_large_as_the_covariance_says(meca500, postures):
-    # Far beyond the arm's repeatability, as its part in the covariance would else not be seen beside the sensor's.
+    # Far beyond the arm's repeatability, as its part in the covariance would else not be seen next to the sensor's.
     deviation, truth = 1e-3, orientations_at(meca500, postures)
     readings = read(truth, noise_free())
     errors, covariances = [], []

@@ -65,7 +65,7 @@ def test_the_covariance_holds_the_first_pose_once_for_all_rows():
     position_only = np.zeros((6, 6))
     position_only[:3, :3] = 1e-10 * np.eye(3)
     found = identify_tool_centre_point(poses_about(TIP, half_turns), np.tile(position_only, (4, 1, 1)))
-    # Along x: rows 3 and 4 hold 2 x = b, so that x errs by ((e_3 - e_1) + (e_4 - e_1)) / 4: (1 + 1 + 4) / 16.
+    # Along x: rows 3 and 4 hold 2 x = b, so that x is wrong by ((e_3 - e_1) + (e_4 - e_1)) / 4: (1 + 1 + 4) / 16.
     np.testing.assert_allclose(found.covariance, 6.0 / 16.0 * 1e-10 * np.eye(3), atol=1e-24)
 
 

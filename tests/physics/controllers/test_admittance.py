@@ -22,7 +22,7 @@ def turned(model, rows) -> np.ndarray:
     ids=["force", "moment x", "moment y", "moment z"],
 )  # fmt: skip
 def test_each_axis_answers_a_push_as_its_mass_damper_and_spring(simulated, checked_config, load):
-    """Rotations add up to first order alone, so that each of them has a run of its own."""
+    """Rotations add up to first order alone, so that each of them has its own run."""
     load = np.array(load)
     axes = np.flatnonzero(load)
     overrides = (*PUSH, f"environment.force={load[:3].tolist()}", f"environment.moment={load[3:].tolist()}")
@@ -48,7 +48,7 @@ def test_a_moving_tool_is_felt_as_nothing_when_it_is_compensated_and_as_itself_w
     moving = ("robot=meca500", "trajectory=circle", "trajectory.duration=2", "duration=2", "controller.tip_speed=1")
     assert np.abs(simulated(*moving).contact.felt).max() < 1e-9
     weight = simulated(*moving, "controller.compensation=none").contact.felt
-    assert weight[1, 2] == pytest.approx(-0.25 * 9.81)  # of the first tick, before the arm gives way to it
+    assert weight[1, 2] == pytest.approx(-0.25 * 9.81)  # of the first tick, before the arm yields to it
     gravity_only = simulated(*moving, "controller.compensation=gravity")
     inertial = 0.25 * np.linalg.norm(gravity_only.desired[:, 2], axis=1).max()  # m a of the desired motion
     felt = np.linalg.norm(gravity_only.contact.felt[:, :3], axis=1).max()

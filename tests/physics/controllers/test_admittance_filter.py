@@ -125,7 +125,7 @@ def test_a_pure_force_through_the_tip_turns_nothing():
 
 
 def test_turns_add_along_fixed_axes():
-    # Guided by hand a quarter turn about x and, after rest, a quarter turn about y, of the frame that stands still.
+    # Guided by hand a quarter turn about x and, after rest, a quarter turn about y, of the frame that rests.
     law = Admittance(np.full(6, 0.01), np.full(6, 0.1), np.zeros(6))
     admittance = AdmittanceFilter(law, 0.001)
     quarter = 0.5 * np.pi * 0.1 / 1.0  # moment of B times the angle over a second

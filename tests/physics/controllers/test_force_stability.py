@@ -46,7 +46,7 @@ def test_a_wall_s_own_damping_slows_what_remains_of_a_law_without_gain():
 
 
 def _grows(rate, force_gain, delay):
-    """Tell whether a mass grows, by the exact motion under a held push: x = u/w^2 + (x - u/w^2) cos w + v/w sin w."""
+    """Return True if a mass grows, by the exact motion under a held push: x = u/w^2 + (x - u/w^2) cos w + v/w sin w."""
     square = rate**2 / (1.0 + force_gain)
     w, x, v, pushes = np.sqrt(square), 1.0, 0.0, [0.0] * delay
     sizes = []

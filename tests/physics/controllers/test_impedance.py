@@ -1,4 +1,4 @@
-"""A tip that gives way as its own mass on a spring and a damper."""
+"""A tip that yields as its own mass on a spring and a damper."""
 
 import numpy as np
 import pytest

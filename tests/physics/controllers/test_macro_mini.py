@@ -16,7 +16,7 @@ TARGETS = {"coupling": COUPLINGS, "macro_target": ("minus_home", "tip_goal"), "w
 
 
 class Spy:
-    """In a stage's law's place: keeps what it is told."""
+    """In a stage's law's place: keeps what it receives."""
 
     def __init__(self, model, law, home):
         self.model, self.feedforward = model, law.feedforward
@@ -37,7 +37,7 @@ class Spy:
 
 @pytest.fixture
 def spied(monkeypatch, checked_config):
-    """Build the loops that overrides ask for, with a spy in place of each stage's law."""
+    """Build the loops that overrides ask for, with a spy instead of each stage's law."""
 
     def make(*overrides):
         config = checked_config("robot=combined", *overrides)
@@ -198,7 +198,7 @@ def test_the_mini_knows_gravity_as_its_base_sees_it(spied, coupling, wrist_rotat
         x_E, R = place(arm, q, wrist_rotation == "parallel")
         ask(loops[1], laws[1], q, dq, np.vstack([x_E + way, derivatives]))
         np.testing.assert_allclose(laws[1].gravity, R.T @ [0.0, 0.0, -9.81], atol=1e-12)
-    assert laws[0].gravity is None  # the Macro stands on the ground
+    assert laws[0].gravity is None  # the Macro is on the ground
 
 
 def test_each_stage_gets_its_own_numbers(spied):
@@ -289,7 +289,7 @@ def test_a_known_payload_lets_the_macro_sink_less(simulated, combined, macro):
 
 
 def test_two_way_coupling_lets_the_mini_stretch(simulated):
-    # The Macro gives way to where the Mini stands: nothing draws the Mini back.
+    # The Macro yields to where the Mini stands: nothing draws the Mini back.
     one_way, two_way = (simulated(*TRACKED, f"controller.coupling={c}") for c in ("one_way", "two_way"))
 
     def stretch(trace):

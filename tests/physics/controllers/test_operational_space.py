@@ -1,4 +1,4 @@
-"""Operational space control of three joints: its equations, the linear error, singular postures and purity."""
+"""Operational space control of three joints: its equations, the linear error, singular configurations and purity."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,7 @@ def tip_reference(model, q, error):
 
 @st.composite
 def states(draw, name=None):
-    """A state away from the singular postures, and a reference, in units of the arm's own scale."""
+    """A state away from the singular configurations, and a reference, in units of the arm's own scale."""
     name = draw(st.sampled_from(sorted(MODELS))) if name is None else name
     number, s = st.floats(-1.0, 1.0), SCALE[name]
     q = np.array([3.0 * draw(number), 3.0 * draw(number), draw(number)])
@@ -161,7 +161,7 @@ def test_torques_beside_a_singular_posture_are_bounded_by_the_damping(name, q):
     for offset in (0.0, 1e-12, 1e-6, 1e-3):
         posture = np.add(q, [0.0, 0.0, offset])
         torque = torque_of(law(name, damping=0.3), posture, np.zeros(3), reference)
-        # |ddq| is at most |F*| / (2 lambda), lambda = 0.3 |e| but for the fading; |F*| = wn^2 |e|.
+        # |ddq| is at most |F*| / (2 lambda), lambda = 0.3 |e| except for the fading; |F*| = wn^2 |e|.
         inertia = np.linalg.norm(MODELS[name].mass_matrix(posture), 2)
         bound = inertia * 900.0 / s**2 / (2.0 * 0.3) * 1.1
         assert np.linalg.norm(torque - MODELS[name].gravity_torque(posture)) < bound

@@ -16,7 +16,7 @@ REACH = 0.2
 
 
 class Spy:
-    """In a stage's law's place: keeps what it is told."""
+    """In a stage's law's place: keeps what it receives."""
 
     gravity_compensation, parameters = True, ()
 
@@ -137,7 +137,7 @@ def test_the_carrier_s_turn_ends_where_the_first_rider_reaches_its_own_target(th
     law = Spy(three_stages.stages[0].model)
     macro_loop = MacroController(three_stages, law, np.zeros(3), False, REACH, 0.01)
     x_E = three_stages.stages[0].model.tip_position(Q_NINE[:3])
-    later = np.array([0.0, 0.1, 0.1])  # at home the second Mini stands on the first, as this on the Macro
+    later = np.array([0.0, 0.1, 0.1])  # at home the second Mini is on the first, as this on the Macro
     for distance, expected in ((REACH * (1.0 - 1e-9), "hold"), (REACH * (1.0 + 1e-9), "move")):
         target = np.array([x_E + later + along(distance, direction), np.zeros(3), np.zeros(3)])
         macro_loop.torque(0.01, Q_NINE, np.zeros(9), target)
@@ -252,7 +252,7 @@ def test_a_macro_torque_is_held_for_its_own_period(simulated, period, ticks):
 
 
 class Recorder:
-    """In a controller's place: keeps what it is told."""
+    """In a controller's place: keeps what it receives."""
 
     def __init__(self):
         self.calls = []

@@ -144,7 +144,7 @@ def bias(name, task, q, dq):
 
 
 def states(name, task, count=12):
-    """States around home, away from the singular postures, with references, in the arm's own units."""
+    """States around home, away from the singular configurations, with references, in the arm's own units."""
     arm, s = arm_of(name), scale_of(name)
     generator, found = np.random.default_rng(4), []
     regular = min(0.15 * arm.model.reach, 0.5 * smallest(name, task, arm.home))
@@ -286,7 +286,7 @@ def test_gravity_off_leaves_the_model_of_others_alone(kind, name, task):
     np.testing.assert_array_equal(arm_of(name).model.gravity_torque(arm_of(name).home), before)
 
 
-# Singular postures
+# Singular configurations
 
 
 @functools.cache
@@ -304,8 +304,8 @@ def singular_posture(name, task):
     return found.x
 
 
-# The stretched combined arm, whose mass matrix is singular, too, stands in test_whole_body.
-# Sliding joints alone are never singular, and the search does not find a singular posture of 30 joints.
+# The stretched combined arm, whose mass matrix is singular, too, is in test_whole_body.
+# Sliding joints alone are never singular, and the search does not find a singular configuration of 30 joints.
 @of([law for law in LAWS[1:] if law[1] not in ("gantry", "snake")])
 def test_torques_at_a_singular_posture_are_bounded_by_the_damping_alone(kind, name, task):
     model, q = arm_of(name).model, singular_posture(name, task)
@@ -319,7 +319,7 @@ def test_torques_at_a_singular_posture_are_bounded_by_the_damping_alone(kind, na
     for offset in (1e-9, 1e-7, 1e-5):
         beside, rest = q + offset, np.zeros(model.nq)
         M, G = model.mass_matrix(beside), model.gravity_torque(beside)
-        # |J^#| <= 1 / (2 lambda), lambda = 0.3 |e| but for the fading, and |F*| = wn^2 |e|: an acceleration.
+        # |J^#| <= 1 / (2 lambda), lambda = 0.3 |e| except for the fading, and |F*| = wn^2 |e|: an acceleration.
         posture = OMEGA_N**2 * np.linalg.norm(beside - arm_of(name).home)
         bound = np.linalg.norm(M, 2) * (1.2 * omega_of(name) ** 2 / 0.6 + posture)
         assert np.linalg.norm(ask(laws[0], beside, rest, reference) - G) < bound

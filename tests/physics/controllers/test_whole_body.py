@@ -37,7 +37,7 @@ def config(**changes):
 
 @st.composite
 def states(draw):
-    """A state of the six joints away from the singular postures, and a reference."""
+    """A state of the six joints away from the singular configurations, and a reference."""
     number = st.floats(-1.0, 1.0)
     q = np.array([np.pi * draw(number) for _ in range(6)])
     J = MODEL.tip_jacobian(q)[:3]
@@ -210,7 +210,7 @@ def test_the_mini_s_posture_is_held_at_rest(simulated):
 
 
 def small_motion(frequency, start, ticks, tick=1e-3):
-    """Let the arm go beside its rest posture, its tip told to stay; yield joint positions and velocities."""
+    """Let the arm go next to its rest posture, its tip told to stay; yield joint positions and velocities."""
     controller = WholeBody(MODEL, config(null_space_frequency=frequency), REST)
     reference = np.array([MODEL.tip_position(REST), np.zeros(3), np.zeros(3)])
     plant = Rk4(MODEL, tick, 1)

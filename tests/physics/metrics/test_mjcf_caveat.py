@@ -1,4 +1,4 @@
-"""Caveat of what stands in a robot's file, MJCF or URDF, and has no part in the run."""
+"""Caveat of what is in a robot's file, MJCF or URDF, and has no part in the run."""
 
 from textwrap import dedent
 

@@ -56,7 +56,7 @@ def test_servers_are_lent_and_given_back(servers_before, macro_urdf):
     first, second = servers.open(macro_urdf), servers.open(macro_urdf)
     assert (len(servers.lent), connected()) == (2, servers_before + 2)
     servers.give_back(first, reusable=True)
-    servers.give_back(first, reusable=True)  # once more does no harm
+    servers.give_back(first, reusable=True)  # again does no harm
     servers.give_back(second, reusable=True)  # one of an arm is enough
     assert (servers.lent, connected()) == ([], servers_before + 1)
     again = servers.open(macro_urdf)

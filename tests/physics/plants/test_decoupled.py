@@ -145,7 +145,7 @@ def test_the_macro_moves_as_the_macro_alone(make, engine, macro, macro_urdf, kin
 
 
 class Rock:
-    """A plant that stands still."""
+    """A plant that rests."""
 
     def __init__(self, q):
         self.q, self.dq = np.array(q), np.zeros(3)

@@ -1,4 +1,4 @@
-"""Arm under torques in every engine: energy, rest, contact and delays, but for the order of the step."""
+"""Arm under torques in every engine: energy, rest, contact and delays, except for the order of the step."""
 
 import numpy as np
 import pytest

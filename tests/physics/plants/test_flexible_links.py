@@ -58,7 +58,7 @@ def test_damping_takes_energy_away():
 
 
 def test_at_rest_the_springs_carry_the_weight_and_the_tip_sags_as_a_beam_does():
-    """A straight level link under the weight of its end alone: m g L^3/(3 EI) (1 - 1/(4 n^2)), for small bends."""
+    """A straight level link under the weight of only its end: m g L^3/(3 EI) (1 - 1/(4 n^2)), for small bends."""
     arm = clamped_arm(LENGTH, 0.5)
     arm.pin_model.gravity.linear = np.array([0.0, 0.0, -9.81])
     for parts in (1, 3):

@@ -189,7 +189,7 @@ def test_each_joint_of_a_staged_robot_has_its_own_friction(simulated, dynamics):
         "trajectory=quintic",
         "duration=0.5",
     )
-    assert np.abs(trace.q[:, 3:]).max() < 1e-6  # what the carrier's speeds change within a tick
+    assert np.abs(trace.q[:, 3:]).max() < 1e-6  # what the base stage's speeds change within a tick
     assert np.ptp(trace.q[:, :3], axis=0).max() > 1e-3
 
 

@@ -37,7 +37,7 @@ def test_a_motor_stands_still_from_the_first_tick_that_begins_with_its_brake_clo
     arm = plant(braked * TICK)
     expected = [SPIN] * turns + [0.0] * (6 - turns)
     assert speeds(arm, 6) == pytest.approx(expected, abs=1e-9)
-    assert speeds(arm, 6) == pytest.approx(expected, abs=1e-9)  # after a reset the time begins anew
+    assert speeds(arm, 6) == pytest.approx(expected, abs=1e-9)  # after a reset the time begins again
 
 
 def test_a_closed_brake_holds_the_motor_against_any_torque():

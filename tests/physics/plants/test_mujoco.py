@@ -23,7 +23,7 @@ def pendulum(across=0.0, along=0.0, dynamics=""):
 
 
 def make(urdf, tip, step=1e-4, steps=1, model=None, integrator="euler", min_inertia=1e-12):
-    """Make MuJoCo's arm; the model may be of another text than MuJoCo reads."""
+    """Make MuJoCo's arm; the model may be of another string than MuJoCo reads."""
     return Mujoco(urdf, model or RobotModel(urdf, tip), step, steps, integrator, min_inertia)
 
 

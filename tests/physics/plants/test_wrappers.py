@@ -105,7 +105,7 @@ def test_the_tip_sticks_within_the_cone_of_friction_and_slides_beyond(checked_co
     moved, force = (model.tip_position(plant.q) - model.tip_position(q)) @ along, plant.contact_wrench()[:3]
     plant.close()
     assert np.linalg.norm(force - (force @ NORMAL) * NORMAL) <= 0.3 * force @ NORMAL * (1 + 1e-9)
-    assert moved < 4e-4 if pull < 1 else moved > 2e-3  # it gives way by 3 N of 1e4 N/m
+    assert moved < 4e-4 if pull < 1 else moved > 2e-3  # it yields by 3 N of 1e4 N/m
 
 
 def test_friction_brakes_a_sliding_tip_by_its_share_of_the_push():

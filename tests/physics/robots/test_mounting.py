@@ -83,7 +83,7 @@ def test_the_rider_stands_where_the_mount_says(macro_urdf, mini_urdf, mini, fram
     for q in np.random.default_rng(0).uniform(-3.0, 3.0, (5, 6)):
         placed, base = model.frame_poses(q, (frame, root))
         np.testing.assert_allclose(base, placed @ step, atol=1e-12)
-        # Pinocchio orders joints by name where a link carries two: the rider's own angles are asked for by name.
+        # Pinocchio orders the joints of a link by name, so the angles of the mounted stage are read by name.
         own = [q[model.joint_names.index(f"mini_{name}")] for name in mini.joint_names]
         np.testing.assert_allclose(model.tip_pose(q), base @ mini.tip_pose(np.array(own)), atol=1e-12)
 

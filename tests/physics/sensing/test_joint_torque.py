@@ -1,4 +1,4 @@
-"""Torque sensors in the joints: their errors, what stands behind friction, and the observer that reads them."""
+"""Torque sensors in the joints: their errors, what is behind friction, and the observer that reads them."""
 
 import numpy as np
 import pytest

@@ -66,7 +66,7 @@ def test_motor_friction_leaves_the_blind_tip_off_and_the_sensed_one_there(simula
 
 
 def test_for_the_arm_that_bends_itself_it_is_an_encoder_behind_the_springs(simulated):
-    """Not beside the motors, so the fast law that is stable by their encoders is not by the sensor."""
+    """Not next to the motors, so the fast law that is stable by their encoders is not by the sensor."""
     macro = ("robot=macro", "plant=rk4_flexible", "noise=none", "torque_limits=none", "trajectory=goal",
              "trajectory.goal=[0.1,0.9,0.9]", "duration=8", f"{KEY}.static_deflection=unknown", f"{KEY}.stiffness=3000",
              f"{KEY}.damping_ratio=0.1", "plant.step=0.005")  # fmt: skip
@@ -150,7 +150,7 @@ def modal_masses():
 
 
 def test_the_mini_by_its_sensor_neither_damps_nor_excites_and_the_macro_vibrates_almost_bare():
-    """Of the Mini's two masses the one at its tip stands still; the one at its elbow is carried on."""
+    """Of the Mini's two masses the one at its tip rests; the one at its elbow is carried on."""
     omega, weight, _ = modal_masses()
     assert weight[:2] == pytest.approx([1.333, 2.0], abs=1e-3)
     f, zeta = damping_ratios(300, SENSED)

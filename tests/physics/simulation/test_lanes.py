@@ -20,7 +20,7 @@ def sliding(checked_config):
 
 
 def together(sliding, count):
-    """Return the signals of equal runs, each from a start of its own."""
+    """Return the signals of equal runs, each from its own start."""
     config, loop_program, q_start = sliding
     times = np.arange(config.timing.ticks + 1) * config.timing.tick
     q = q_start + 0.05 * np.arange(count)[:, None]

@@ -42,7 +42,7 @@ class Integrator(Plant):
 
 
 class Recorder:
-    """A controller that keeps what it is told, and answers with what a function of the tick says."""
+    """A controller that keeps what it receives, and answers with what a function of the tick says."""
 
     def __init__(self, answer=lambda tick: np.zeros(3)):
         self.calls, self.resets, self._answer = [], 0, answer

@@ -43,7 +43,7 @@ def sources_of(graph, name):
 
 
 def macro_side(graph):
-    """What the Macro's controller gets beside its own measurement."""
+    """What the Macro's controller gets next to its own measurement."""
     edges = [edge for edge in graph.edges if edge.target == "macro_controller" and edge.leave == "right"]
     return {name for edge in edges for name in {edge.source} | sources_of(graph, edge.source)}
 
@@ -99,7 +99,7 @@ def test_both_loops_are_closed():
 
 
 class Recorder:
-    """Stands in for a stage's law and notes what it is told."""
+    """Stands in for a stage's law and notes what it receives."""
 
     def move(self, arm, numbers, q, dq, reference, gravity=None):
         self.told, self.gravity = ("move", reference.copy()), gravity
@@ -116,7 +116,7 @@ def riding(checked_config):
 
 
 def told_by_graph(graph, config, time, q, dq, reference):
-    """Follow the graph's signals up to both controllers: what each is told, and gravity as the Mini sees it."""
+    """Follow the graph's signals up to both controllers: what each receives, and gravity as the Mini sees it."""
     robot, names = config.arm, {node.name: node.label for node in graph.nodes}
     base = StageBase(robot, 1, config.controller.wrist_rotation == "parallel")
     base.update(q, dq)
@@ -207,7 +207,7 @@ def test_every_picture_keeps_the_rules():
     "flags",
     [
         pytest.param(flags, id=name_of(flags), marks=() if flags["goal"] else pytest.mark.slow) for flags in FIGURES
-    ],  # those to a goal have the most texts; drawing takes time
+    ],  # those to a goal have the most strings; drawing takes time
 )
 def test_no_text_of_the_picture_stands_on_a_line(flags):
     check_texts(macro_mini_graph(**flags))

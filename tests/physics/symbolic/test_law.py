@@ -57,7 +57,7 @@ def smallest(model, q, rows):
 
 
 def states(model, home, rows=3, wide=1.0, count=12, near=False):
-    """Measurements with references, away from singular postures or near one."""
+    """Measurements with references, away from singular configurations or near one."""
     generator, found, directions = np.random.default_rng(3), [], min(rows, model.nq)
     while len(found) < count:
         q = home + wide * generator.normal(size=model.nq)
@@ -105,7 +105,7 @@ def test_torques_of_a_pose_are_those_of_pinocchio(controller):
     config = configured("xarm7", controller, "controller.task=pose")
     (loop,) = config.loops
     ours, measured = loop.controller, states(config.arm.model, config.arm.home, rows=6, wide=0.2)
-    # A mobility of six rows has a condition number of some 1e4.
+    # A mobility of six rows has a condition number of about 1e4.
     assert_agree(loop.controller, ours, measured, 1e-11)
 
 
@@ -144,7 +144,7 @@ def test_memory_goes_on_from_tick_to_tick_until_it_is_reset():
     assert_agree(loop.controller, loop.controller, measured)
     assert_agree(
         loop.controller, loop.controller, measured[::-1]
-    )  # it starts anew where this measurement finds the arm
+    )  # it starts again where this measurement finds the arm
 
 
 def test_numbers_are_parameters_and_zeros_are_not(monkeypatch):

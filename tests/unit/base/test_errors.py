@@ -1,4 +1,4 @@
-"""Errors for users: one and many problems, the nearest name, safe texts."""
+"""Errors for users: one and many problems, the nearest name, safe strings."""
 
 import pickle
 

@@ -1,4 +1,4 @@
-"""Expressions in double braces within a text: where each begins and ends, and what stands in their place."""
+"""Expressions in double braces within a string: where each begins and ends, and what is in their place."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Texts of quantities: digits, units, ranges and missing values."""
+"""Strings of quantities: digits, units, ranges and missing values."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Texts for terminals and tables: control characters, length and formulas."""
+"""Strings for terminals and tables: control characters, length and formulas."""
 
 import csv
 import io

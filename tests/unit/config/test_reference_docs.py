@@ -1,4 +1,4 @@
-"""The page of all keys against the models, and types of keys in words."""
+"""The page of all keys against the models, and types of keys as text."""
 
 from typing import Annotated, Literal
 

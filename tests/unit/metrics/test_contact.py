@@ -19,7 +19,7 @@ CONTEXT = MetricContext(Goal(np.zeros(3), np.ones(3)), 0.02, 0.01)
 
 
 def touched(hand_made_trace, external, felt=0.0, t=T):
-    """Metrics of a trace with the world's forces and those felt; moments, reading and load are large, and no part."""
+    """Metrics of a trace with forces of the environment and measured ones; moments, reading and load are large."""
 
     def wrench(force):
         return np.hstack([np.zeros((len(t), 3)) + force, np.full((len(t), 3), 500.0)])

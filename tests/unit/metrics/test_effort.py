@@ -15,7 +15,7 @@ CONTEXT = MetricContext(Goal(np.zeros(3), np.ones(3)), 0.02, 0.01)
 
 
 def rows(**cells):
-    """Rows for two joints, zero but for the cells given as t{tick}_q{joint}=value."""
+    """Rows for two joints, zero except for the cells given as t{tick}_q{joint}=value."""
     values = np.zeros((len(T), 2))
     for name, value in cells.items():
         tick, joint = name.split("_")

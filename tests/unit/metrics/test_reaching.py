@@ -41,7 +41,7 @@ def test_the_share_of_ticks_with_the_target_beyond_reach_of_the_base(hand_made_t
     base = np.array([0.3, 0.4, 0.5])
     distances = np.array([0.0, 0.1, 0.19, 0.21, 0.3, 0.1, 5.0, 0.0, 0.0, 0.0])
     target = base + away(distances)
-    # The tip stands where it is wanted, then far off: neither has a say.
+    # The tip is where it is wanted, then far off: neither has a say.
     for tip in (target, np.full(3, 9.0)):
         assert lost(hand_made_trace, target, base, tip) == 3 / 10
 

@@ -1,4 +1,4 @@
-"""Figures of curves as data for Plotly: texts, ranges, colours, gaps."""
+"""Figures of curves as data for Plotly: strings, ranges, colours, gaps."""
 
 import base64
 import json

@@ -67,7 +67,7 @@ def test_axes_that_are_not_named_are_pooled_and_a_draw_counts_once():
     assert one.comparison.differences == pytest.approx(by_draw.differences)
     assert one.comparison.a == pytest.approx(by_draw.a)
     assert (other.at, other.comparison.n) == ({"robot": "xarm7"}, 8)
-    # What the pooled axis does to both is no difference: the shift is one, whatever the noise does.
+    # What the pooled axis does to both is not a difference: the shift is one, whatever the noise does.
     assert other.comparison.difference == pytest.approx(1.0, abs=5e-3)
 
 
@@ -156,7 +156,7 @@ def test_repetitions_that_are_copies_of_each_other_count_once():
 
 
 def test_the_error_of_the_plant_is_that_of_the_difference():
-    """Both sides err by 0.3 and the second by 0.02 beyond that, in the first repetitions, which alone are known."""
+    """Both sides are wrong by 0.3, and the second by 0.02 more in the first repetitions, which only are known."""
 
     def error(measurements):
         return compare(level_pairs(measurements, "controller")[0], "rms").error

@@ -1,4 +1,4 @@
-"""Marks on parts of a text that the other text lacks."""
+"""Marks on parts of a string that the other text lacks."""
 
 from runner.reporting.audit.marks import LONG, cut, pieces
 

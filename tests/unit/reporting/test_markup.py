@@ -1,4 +1,4 @@
-"""Markup in texts: mathematics, links, literals."""
+"""Markup in strings: mathematics, links, literals."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Texts of equations compared piece by piece, and cut to what differs."""
+"""Strings of equations compared piece by piece, and cut to what differs."""
 
 from runner.base.expressions.tree import ELLIPSIS
 from runner.reporting.audit.marks import LONG, cut, pieces

@@ -18,7 +18,7 @@ def drawn(repetitions, *key):
 
 
 def sweep(repetitions=8, axes=AXES, **metrics):
-    """Laws that err alike but for their draws, and whose torques turn over between the levels of noise."""
+    """Laws that are wrong alike except for their draws, and whose torques turn over between the levels of noise."""
     given = metrics or {
         "max_tracking_error": lambda noise, law, *_: np.exp(drawn(repetitions) + 0.3 * drawn(repetitions, law)),
         "peak_torque": lambda noise, law, *_: 50.0 + law * (20.0 if noise else -10.0) + drawn(repetitions, law, noise),

@@ -107,7 +107,7 @@ def test_cells_with_the_largest_differences_are_named_in_relation_to_their_size(
     first, second = found.cells
     assert (first.at, first.comparison.effect) == ({"robot": "macro", "gravity": "9.6"}, -1.0)
     assert (second.at, second.comparison.effect) == ({"robot": "macro", "gravity": "9.81"}, 1.0)
-    assert found.candidates == 4  # of the metric that is no joint's
+    assert found.candidates == 4  # of the metric that is not a joint's
 
 
 def test_cells_of_opposite_sign_are_counted():

@@ -60,7 +60,7 @@ class Names:
         self.metrics = {*metric_names()}
 
     def problems(self, text: str) -> Iterator[str]:
-        """Yield names in the code of a text that do not exist."""
+        """Yield names in the code of a string that do not exist."""
         for line in code(text):
             yield from (
                 f"command {name}"

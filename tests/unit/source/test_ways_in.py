@@ -26,7 +26,7 @@ READING = {
 
 
 def reads(node):
-    """Tell whether a node of a syntax tree reads something; `open` does where it is not told to write."""
+    """Return True if a node of a syntax tree reads something; `open` does where it is not told to write."""
     if isinstance(node, ast.Call) and _last(node.func) == "open" and _dotted(node.func) != "os.open":
         given = [*node.args, *(each.value for each in node.keywords if each.arg == "mode")]
         modes = [each.value for each in given if isinstance(each, ast.Constant) and isinstance(each.value, str)]
@@ -44,7 +44,7 @@ def _dotted(node):
 
 
 def readers(text):
-    """Return the lines of a text of Python that read something."""
+    """Return the lines of a string of Python that read something."""
     return sorted({node.lineno for node in ast.walk(ast.parse(text)) if reads(node)})
 
 

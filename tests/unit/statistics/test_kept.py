@@ -1,4 +1,4 @@
-"""Repetitions that keep a spec, from values alone."""
+"""Repetitions that keep a spec, from only values."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Clopper and Pearson's interval against its closed forms, its definition, and its coverage, worked out exactly."""
+"""Clopper and Pearson's interval against its closed forms, its definition, and its coverage, computed exactly."""
 
 import math
 

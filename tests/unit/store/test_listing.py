@@ -1,4 +1,4 @@
-"""What stands in an outputs folder, and what may be removed of it."""
+"""What is in an outputs folder, and what may be removed of it."""
 
 import os
 

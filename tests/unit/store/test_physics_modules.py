@@ -1,4 +1,4 @@
-"""The table of the physics is complete; moves and texts leave its digest, what computes changes it."""
+"""The table of the physics is complete; moves and strings leave its digest, what computes changes it."""
 
 import pytest
 

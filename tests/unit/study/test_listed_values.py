@@ -1,4 +1,4 @@
-"""Numbers over the runs that patterns stand for, and tables whose cells stand in the chapter."""
+"""Numbers over the runs that patterns stand for, and tables whose cells are in the chapter."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Cells whose configs differ in nothing but the seed."""
+"""Cells whose configs differ in only the seed."""
 
 import pickle
 
@@ -16,7 +16,7 @@ SHORT = ("robot=macro", "duration=0.05", "outputs=somewhere")
         (["seed=range(0,20)", "controller.natural_frequency=8,10"], 2),
         (["controller.natural_frequency=8,10", "sweep.trace=never", "seed=3,1,2", "noise.position=1e-4,1e-3"], 4),
         (["controller=operational_space,whole_body", "seed=1,2,3"], 2),
-        (["seed=1,2", "+robot.note=${seed}"], 2),  # the seed stands in two places
+        (["seed=1,2", "+robot.note=${seed}"], 2),  # the seed is in two places
         (["seed=4", "controller.natural_frequency=8,10"], 2),
         (["controller.natural_frequency=8,10"], 2),
     ],

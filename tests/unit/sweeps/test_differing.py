@@ -1,4 +1,4 @@
-"""Keys that differ beside the swept ones, against configs that differ by known keys."""
+"""Keys that differ next to the swept ones, against configs that differ by known keys."""
 
 import numpy as np
 import pytest

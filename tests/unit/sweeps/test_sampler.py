@@ -83,7 +83,7 @@ def test_a_search_in_which_everything_fails_goes_on(objectives):
 
 
 def test_several_objectives_are_traded_off():
-    # Along x one gets better and the other worse; y is bad for both beside 0.5.
+    # Along x one gets better and the other worse; y is bad for both next to 0.5.
     def both(params):
         return (
             math.log10(params["x"]) + 5 * (params["y"] - 0.5) ** 2,

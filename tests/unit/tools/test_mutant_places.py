@@ -10,7 +10,7 @@ BARE = "def f(a, b, c):\n    "
 
 
 def changed(source):
-    """Return the lines that mutants put in place of a module's own, those left out that change nothing."""
+    """Return the lines that mutants put instead of a module's own, those left out that change nothing."""
     return [mutant.change(source)[1].strip() for mutant in places("runner/m.py", source) if mutant.changes(source)]
 
 

@@ -1,4 +1,4 @@
-"""Mutants written by hand: each is of a line that stands in its module, and of a test file that is there."""
+"""Mutants written by hand: each is of a line that is in its module, and of a test file that is there."""
 
 from pathlib import Path
 

@@ -25,7 +25,7 @@ def hit(index: int) -> None:
 
 
 def taken() -> bytes:
-    """Return what ran, and begin anew."""
+    """Return what ran, and begin again."""
     seen = hits[:]
     hits[:] = bytes(len(seen))
     return seen

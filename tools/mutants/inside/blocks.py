@@ -1,4 +1,4 @@
-"""Blocks of statements that run one after the other: where each begins, and which one a node of a tree stands in.
+"""Blocks of statements that run one after the other: where each begins, and which one a node of a tree is in.
 
 A block begins where the body of a function, branch or loop begins, behind a statement that has such bodies, and at the
 expression of a lambda. Statements that run when a module is imported have no block.

@@ -35,7 +35,7 @@ class Selection:
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
-        """Take the tests asked for, and before them those of whole files, but for those that are left out."""
+        """Take the tests asked for, and before them those of whole files, except for those that are left out."""
         place = {test: index for index, test in enumerate(self._request["tests"])}
         left_out, whole = set(self._request["left_out"]), set(self._request["whole"])
         ranked = []
