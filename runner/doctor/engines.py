@@ -22,7 +22,7 @@ _LEAST = 1e-12  # kg and kg m^2, of MuJoCo's moving links, as in conf/plant/mujo
 
 
 def compare_engines(urdf: str, model: RobotModel, generator: np.random.Generator) -> list[Finding]:
-    """Return how far the motion of PyBullet and of MuJoCo is from Pinocchio's, at random states within joint limits.
+    """Return the distance of PyBullet's and MuJoCo's motion from Pinocchio's, at random states within joint limits.
 
     It is that of one step of theirs, under random torques, as the torques that would make up for it. Where PyBullet is
     not installed a note says so.
@@ -57,7 +57,7 @@ def _compare(
 
 
 def _off(plant: "Bullet | Mujoco", model: RobotModel, generator: np.random.Generator) -> float:
-    """Return what torque is missing in an engine's step from a random state, as a share of the largest one."""
+    """Return the torque missing in an engine's step from a random state, as a fraction of the largest one."""
     lower, upper = model.usual_range
     q = 0.5 * (lower + upper) + 0.45 * (upper - lower) * generator.uniform(-1.0, 1.0, model.nq)  # away from the stops
     dq, asked = generator.uniform(-1.0, 1.0, (2, model.nq))

@@ -52,7 +52,7 @@ class Arm:
 
 @dataclass(frozen=True)
 class Examination:
-    """What was found of an arm.
+    """Findings on an arm.
 
     Attributes:
         name: The name under which the robot is to be chosen; see choose_name.
@@ -132,13 +132,13 @@ def _take(tree: UrdfTree, source: str, urdf: str, tip: str, findings: list[Findi
 
 
 def _left_out(mjcf: Mjcf) -> list[Finding]:
-    """Return what an MJCF holds beside bodies, joints and sites."""
+    """Return the elements of an MJCF other than bodies, joints and sites."""
     moves = [Finding("note", "left out of the motion", text) for text in mjcf.left_out.motion]
     return [*moves, *(Finding("note", "left out", text) for text in mjcf.left_out.rest)]
 
 
 def _taken(dynamics: FileDynamics, model: RobotModel) -> list[Finding]:
-    """Return what the config takes from the file beside masses."""
+    """Return the values that the config takes from the file, without masses."""
     return [
         Finding("note", what, by_value(values, model.joint_names), f"--output gives it by {key}")
         for what, key, values in dynamics.by_key()

@@ -12,7 +12,7 @@ _NO_LIMIT = "1e6"  # what the runner takes for none
 
 
 def check_joints(tree: UrdfTree, tip: str) -> list[Finding]:
-    """Return what is wrong with the joints of an arm, and fix in place what leaves no choice.
+    """Return the problems of the joints of an arm, and fix in place what leaves no choice.
 
     Joints that move and do not lie between base and tip are held: the runner takes serial arms.
     """

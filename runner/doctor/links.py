@@ -13,7 +13,7 @@ from runner.robots.tree import TENSOR, UrdfTree, absurd_inertial, number, wrong_
 
 
 def check_links(tree: UrdfTree) -> list[Finding]:
-    """Return what is wrong with the inertials of a tree's links, and fix in place what leaves no choice."""
+    """Return the problems of the inertials of a tree's links, and fix in place what leaves no choice."""
     return [finding for name, link in tree.links.items() for finding in _check_link(tree, name, link)]
 
 
@@ -65,7 +65,7 @@ def check_placements(tree: UrdfTree) -> list[Finding]:
 
 
 def check_meshes(tree: UrdfTree, urdf: Path, packages: Sequence[Path]) -> list[Finding]:
-    """Return the meshes that are not there, or lie outside the folder of the URDF or of their package.
+    """Return the meshes that are missing, or outside the folder of the URDF or of their package.
 
     Args:
         tree: The arm.
@@ -87,7 +87,7 @@ def check_meshes(tree: UrdfTree, urdf: Path, packages: Sequence[Path]) -> list[F
 
 
 def _wrong(name: str, folder: Path, packages: Sequence[Path]) -> str:
-    """Return what is wrong with the mesh of a name; "" for nothing."""
+    """Return the problem of the mesh of a name; "" without a problem."""
     roots, inner = [folder], name.removeprefix("file://")
     if name.startswith("package://"):
         package, _, inner = name.removeprefix("package://").partition("/")

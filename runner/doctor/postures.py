@@ -17,7 +17,7 @@ SINGULAR = 0.1  # of the reach: the smallest singular value below which controll
 
 
 def check_gravity(model: RobotModel, postures: FloatArray) -> list[Finding]:
-    """Return the joints that cannot hold the arm against gravity in every one of some postures, shape (N, nq)."""
+    """Return the joints that cannot support the arm's weight in each of some postures, shape (N, nq)."""
     largest = np.abs([model.gravity_torque(q) for q in postures]).max(axis=0)
     findings = []
     for name, need, effort, unit in zip(
@@ -55,7 +55,7 @@ def _scaled(M: FloatArray) -> FloatArray:
 
 
 def check_tasks(model: RobotModel) -> list[Finding]:
-    """Return which tasks the arm has joints enough for."""
+    """Return the tasks for which the arm has enough joints."""
     position, pose = (len(task_basis(model, turned)) for turned in (False, True))
     if not position:
         text = f"no joint moves '{model.tip_name}' from its place: the axes pass through it"
@@ -87,7 +87,7 @@ def _singular_values(model: RobotModel, postures: FloatArray, pose: bool) -> Flo
 
 
 def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
-    """Return how much of some postures, shape (N, nq), is nearly singular for the tip's position."""
+    """Return the fraction of postures, shape (N, nq), that are nearly singular for the tip's position."""
     if model.nq < len(task_basis(model, pose=False)):
         return []
     values = _singular_values(model, postures, pose=False)

@@ -19,7 +19,7 @@ _SPARE = 0.5  # of the effort that gravity leaves at home
 
 @dataclass(frozen=True)
 class StartingPoint:
-    """What a robot's file needs beside its URDF.
+    """Values that a robot's file needs in addition to its URDF.
 
     Attributes:
         home: Joint positions, shape (nq,), in rad (m where joints slide).
@@ -82,7 +82,7 @@ def _home(model: RobotModel, postures: FloatArray) -> FloatArray:
 
 
 def _goal(model: RobotModel, home: FloatArray, postures: FloatArray) -> FloatArray:
-    """Return where the tip comes on the way from home to the posture that keeps it farthest from singular ones."""
+    """Return the tip positions on the way from home to the posture farthest from singular ones."""
     tip, (lower, upper) = model.tip_position(home), model.position_limits
     best, most = tip, -1.0
     for way in postures - home:

@@ -50,7 +50,7 @@ def choose_tip(tree: UrdfTree, wanted: str | None) -> str:
 
 
 def name_tips(tree: UrdfTree, tip: str) -> Finding:
-    """Return which link is the tip, and which others could be: with the same joints, or with more or fewer."""
+    """Return the link that is the tip, and other candidates: with the same joints, or with more or fewer."""
     same = [frame for frame in frames_at(tree, tip) if frame != tip]
     told = [f"--tip takes another that the same joints move: {few(same)}"] if same else []
     way = moving(tree, tip)
@@ -78,7 +78,7 @@ def moving(tree: UrdfTree, link: str) -> list[str]:
 
 
 def _order(tree: UrdfTree, link: str) -> tuple[int, int]:
-    """Return what sorts links as tips: by name, then the farthest first."""
+    """Return the sort key of links as tips: by name, then the farthest first."""
     named = [] if _FINGERS.search(link) else [name for name in _TIPS if re.fullmatch(name, link.lower())]
     return _TIPS.index(named[0]) if named else len(_TIPS), -len(tree.way(link))
 

@@ -31,12 +31,12 @@ class Signal(NamedTuple):
 
     @property
     def words(self) -> str:
-        """What it is called."""
+        """Name of the column."""
         return f"tip {self.of}" if self.kind == "tip" else f"{self.kind} of {self.of}"
 
 
 class TimeColumn(StrictModel):
-    """Where the time stands.
+    """Column of the time.
 
     Attributes:
         column: Name of the column.
@@ -48,7 +48,7 @@ class TimeColumn(StrictModel):
 
 
 class Column(StrictModel):
-    """What a column holds: one of joint, torque and tip says which signal.
+    """Signal of a column: a joint, a torque or a coordinate of the tip.
 
     Attributes:
         joint: The joint whose position it holds.
@@ -88,10 +88,10 @@ class Column(StrictModel):
 
 
 class ColumnsMap(StrictModel):
-    """What the columns of a recording are.
+    """Signals in the columns of a recording.
 
     Attributes:
-        time: Where the time stands; None where rows come at an even rate.
+        time: Column of the time; None if rows have an even rate.
         rate: Rows in a second, in Hz; beside a column of time it must agree with that.
         columns: What each column holds, by its name; columns that are not named are not read.
         torque: held if a torque acts from its row to the next one, as a controller commands it: it is centred, half a
@@ -118,7 +118,7 @@ class ColumnsMap(StrictModel):
 
 
 class Factor(NamedTuple):
-    """What makes the numbers of a column SI.
+    """Conversion of a column's numbers to SI units.
 
     Attributes:
         factor: SI units in one of the column's.
@@ -130,7 +130,7 @@ class Factor(NamedTuple):
 
 
 def read_map(path: Path, joints: Sequence[str], units: Sequence[str]) -> tuple[ColumnsMap, dict[str, Factor]]:
-    """Return what a file says of a recording's columns, and the factor of each column to SI.
+    """Return the column map of a file, and the factor of each column to SI.
 
     Args:
         path: The file, YAML.

@@ -25,13 +25,13 @@ _SHORTEST = 2.0  # s, of a recording whose friction is identified: four blocks o
 
 @dataclass(frozen=True)
 class RecordingComparison:
-    """A recording beside a run.
+    """A recording and a run.
 
     Attributes:
         run: The run.
         recording: The recording.
         offset: When the run began on the recording's clock.
-        residuals: Each recorded signal beside the run's, at the run's ticks.
+        residuals: Each recorded signal and the run's, at the run's ticks.
         metrics: Each metric of the run and of the recording over these ticks, by name; None for no value.
         friction: What was identified; None where nothing could be.
         no_friction: Why nothing could be; empty otherwise.
@@ -55,7 +55,7 @@ class RecordingComparison:
 
 
 def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.0) -> RecordingComparison:
-    """Hold a recording against a run.
+    """Compare a recording with a run.
 
     Args:
         run: The run.

@@ -22,7 +22,7 @@ _MOST_TOLD = 5  # problems of one file
 def read_csv_columns(path: Path, wanted: Sequence[str]) -> dict[str, FloatArray]:
     """Return columns of a CSV file whose first line names them; commas, semicolons or tabs separate its cells.
 
-    Where commas do not separate cells, they may stand for decimal points.
+    If commas do not separate cells, they may be decimal points.
 
     Args:
         path: The file.
@@ -46,7 +46,7 @@ def read_csv_columns(path: Path, wanted: Sequence[str]) -> dict[str, FloatArray]
 
 
 def places_of(path: Path, wanted: Sequence[str], names: Sequence[str]) -> list[int]:
-    """Return where the wanted columns stand among those of a file.
+    """Return the indices of the wanted columns among those of a file.
 
     Raises:
         RunnerError: if one is not there, or stands there twice.

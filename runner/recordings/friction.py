@@ -82,7 +82,7 @@ class JointFriction:
 
 @dataclass(frozen=True)
 class Friction:
-    """What was identified.
+    """Identified friction.
 
     Attributes:
         joints: The joints whose friction was found.
@@ -155,7 +155,7 @@ def identify_friction(model: RobotModel, q: FloatArray, torques: FloatArray, per
 
 
 def _unusable(torques: FloatArray, speed: FloatArray) -> str:
-    """Return why the torque of a joint tells nothing of its friction; empty if it may."""
+    """Return the reason why a joint's torque does not determine its friction; empty if it does."""
     if not np.isfinite(torques).all():
         return "no torque is recorded"
     rows = torques[speed > _STANDSTILL * speed.max()]
@@ -186,7 +186,7 @@ _Fitted = tuple[float, float, float, float, float, FloatArray, FloatArray]
 
 
 def _fit(parts: Sequence[_Part]) -> list[_Fitted | None]:
-    """Return what JointFriction holds of each joint, from its viscous friction on; None where it has none."""
+    """Return the values of JointFriction of each joint, from its viscous friction on; None without a value."""
     if not parts:
         return []
     ends = np.cumsum([len(part.residual) for part in parts]).tolist()
@@ -265,7 +265,7 @@ def _solve(
 
 
 def _half_widths(own: FloatArray, taken: FloatArray, rest: FloatArray, blocks: NDArray[np.intp]) -> FloatArray | None:
-    """Return the half-widths of the intervals, by what is left over in each block; None for one block alone."""
+    """Return the half-widths of the intervals, from the residual of each block; None for only one block."""
     numbers = np.unique(blocks)
     if len(numbers) < 2:
         return None

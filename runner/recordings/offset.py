@@ -67,7 +67,7 @@ def find_offset(
 
     Raises:
         RunnerError: if the recording is too short, moves otherwise than the run, against it, in another order of joints
-            or at another rate; or the run stands still.
+            or at another rate; or the run does not move.
     """
     lasts, run_lasts = t[-1] - t[0], run_t[-1] - run_t[0]
     if lasts < _SHORTEST * run_lasts:

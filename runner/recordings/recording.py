@@ -168,7 +168,7 @@ def _filled(
 def _gaps(
     path: Path, what: str, t: FloatArray, kept: NDArray[np.intp], wide: NDArray[np.bool_], fill_gaps: float
 ) -> list[float]:
-    """Return how long the wide steps between the kept rows are, in s, if none is longer than what is filled."""
+    """Return the lengths of the wide steps between the kept rows, in s, if none exceeds the filled length."""
     steps = np.diff(t[kept])
     longer = np.flatnonzero(wide & (steps > fill_gaps))
     if len(longer):
@@ -185,7 +185,7 @@ def _gaps(
 
 
 def _place(path: Path, row: int) -> str:
-    """Return where a row of numbers stands; the first line of a CSV file names its columns."""
+    """Return the line of a row of numbers; the first line of a CSV file names its columns."""
     return f"row {row + 1}" if is_bag(path) else f"line {row + 2}"
 
 

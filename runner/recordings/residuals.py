@@ -19,7 +19,7 @@ from runner.recordings.columns_map import Signal
 
 @dataclass(frozen=True)
 class Residual:
-    """A signal of the recording beside that of the run, at the run's ticks.
+    """A signal of the recording and that of the run, at the run's ticks.
 
     Attributes:
         signal: Which one.
@@ -57,6 +57,6 @@ class Residual:
 
     @property
     def fit(self) -> float | None:
-        """The fit; None of a signal that stands still."""
+        """The fit; None of a constant signal."""
         swing = float(np.linalg.norm(self.recorded - self.recorded.mean()))
         return None if swing == 0.0 else 1.0 - float(np.linalg.norm(self.values)) / swing

@@ -43,7 +43,7 @@ class Setting:
 
 
 def setting_of(run: Run) -> Setting:
-    """Return what a recording is compared with.
+    """Return the run that a recording is compared with.
 
     Raises:
         RunnerError: if the run failed, is damaged, or can no longer be made by its config.

@@ -21,7 +21,7 @@ _DECADE = 10.0
 
 @dataclass(frozen=True)
 class Effect(Tested):
-    """What one axis does, or two axes beyond what each does by itself.
+    """Effect of one axis, or interaction of two axes.
 
     Attributes:
         axes: Name of the axis, or of both.
@@ -108,7 +108,7 @@ def _effect(axes: tuple[str, ...], tested: Tested) -> Effect:
 
 
 def _drawn(blocks: Levels, rng: np.random.Generator) -> Levels:
-    """Return the places of as many values as are taken: whole blocks, as parts of them tell less, drawn at random."""
+    """Return the places of the drawn values: whole blocks, at random."""
     rank = rng.permutation(int(blocks.max()) + 1)
     order = np.lexsort((rng.random(len(blocks)), rank[blocks]))
     return np.sort(order[:MOST_VALUES])

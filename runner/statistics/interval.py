@@ -54,7 +54,7 @@ def median_interval(values: FloatArray, seed: int = 0) -> Interval:
 
 
 def median_intervals(samples: FloatArray, seed: int = 0) -> tuple[FloatArray, FloatArray]:
-    """Return the ends of the intervals of many samples of one size, as median_interval has them.
+    """Return the ends of median_interval for many samples of one size.
 
     Args:
         samples: The samples, shape (m, n), n as large as SMALLEST_SAMPLE or larger.
@@ -84,7 +84,7 @@ def median_intervals(samples: FloatArray, seed: int = 0) -> tuple[FloatArray, Fl
 
 @lru_cache(maxsize=64)
 def _resampled(n: int, seed: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return which two values of an ordered sample a resample's median lies between, and how often.
+    """Return the two values of an ordered sample around a resample's median, with their frequency.
 
     All samples of one size are resampled alike, so that this is done once.
 
@@ -109,7 +109,7 @@ def _middles(n: int, rng: np.random.Generator) -> NDArray[np.intp]:
 
 
 def _middles_of_many(n: int, rng: np.random.Generator) -> NDArray[np.intp]:
-    """Return what _middles does, in law, without the other places.
+    """Return values with the distribution of _middles, without the other places.
 
     The k-th smallest of n uniform draws from 0 to 1 has the distribution Beta(k, n + 1 - k); the m draws above it are
     uniform between it and 1, so that their smallest leaves the share V^(1 / m) of that, V uniform (David and Nagaraja,

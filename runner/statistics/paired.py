@@ -96,7 +96,7 @@ def _lower_tail(n: int) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """How b differs from a on the same seeds.
+    """Difference of b and a on the same seeds.
 
     Attributes:
         a: Values of the first, one for each pair, shape (n,); infinity is beyond every number.
@@ -137,7 +137,7 @@ class Comparison:
 
     @property
     def p_value(self) -> float | None:
-        """Two-sided p of the signed-rank test, alone; None with fewer than SMALLEST_SAMPLE pairs."""
+        """Two-sided p of only the signed-rank test; None with fewer than SMALLEST_SAMPLE pairs."""
         return self._ranks.p_value if self.n >= SMALLEST_SAMPLE else None
 
     def interval(self, level: float) -> tuple[float, float] | None:
@@ -148,7 +148,7 @@ class Comparison:
         return self._ranks.interval(level) if self.n >= SMALLEST_SAMPLE else None
 
     def pairs_needed(self, difference: float, level: float) -> int | None:
-        """Return how many pairs show a difference with a probability of 80 %; None if these pairs cannot estimate it.
+        """Return the number of pairs that show a difference with probability 80 %; None if it cannot be estimated.
 
         Args:
             difference: The difference.
@@ -189,7 +189,7 @@ class Comparison:
 
 
 def fewest_pairs(level: float) -> int:
-    """Return the fewest pairs of which the smallest p-value, 2 / 2^n, is below a level."""
+    """Return the fewest pairs whose smallest p-value, 2 / 2^n, is below a level."""
     return math.floor(1.0 - math.log2(level)) + 1
 
 

@@ -18,13 +18,13 @@ _NOISE = 1e-12  # share of the variation below which nothing but rounding is lef
 
 @dataclass(frozen=True)
 class Tested:
-    """How much a factor explains, and whether chance does as much.
+    """Fraction of the variation that a factor explains, with the p-value of a permutation test.
 
     Attributes:
         share: Share of the variation that it explains, 0 to 1.
         p_value: Share of permutations with as large an effect, the observed order among them; None where the sample is
             too small to say.
-        remark: Why there is no p-value; empty where there is one.
+        remark: Reason for a missing p-value; empty if it exists.
     """
 
     share: float
@@ -57,7 +57,7 @@ class Sample:
         self._total = float(np.sum((y - y.mean()) ** 2)) if y.size else 0.0
 
     def shared(self) -> float | None:
-        """Return the share of the variation that lies between blocks; None where there are none."""
+        """Return the fraction of the variation between blocks; None without blocks."""
         if len(self._sizes) < 2 or not self._varies():
             return None
         return 1.0 - float(np.sum(self._centred(self._y) ** 2)) / self._total
@@ -67,7 +67,7 @@ class Sample:
 
         Args:
             others: Levels of the other factors at each value, each of shape (n,).
-            level: Levels of the factor, likewise.
+            level: Levels of the factor, shape as above.
         """
         if len(self._y) < 2:
             return Tested(0.0, None, "fewer than two values")
@@ -105,7 +105,7 @@ class Sample:
         return bool((level == level[self._first][self._blocks]).all())
 
     def _means(self) -> "Sample":
-        """Return the means of the blocks as a sample of their own."""
+        """Return the means of the blocks as a separate sample."""
         means = np.bincount(self._blocks, self._y) / self._sizes
         return Sample(means, np.arange(len(means)), self._rng, self._permutations)
 
@@ -116,7 +116,7 @@ class Sample:
         return float(np.sum((added.T @ (centred - base @ (base.T @ centred))) ** 2)) / self._total
 
     def _bases(self, others: Sequence[Levels], level: Levels, blocks: Levels) -> tuple[FloatArray, FloatArray]:
-        """Return what other factors span beyond the blocks, and what a factor spans beyond both."""
+        """Return the space that other factors span beyond the blocks, and that of a factor beyond both."""
         columns = [_indicators(other) for other in others]
         base = _basis(_centred(np.column_stack(columns), blocks)) if columns else np.zeros((len(blocks), 0))
         added = _centred(_indicators(level), blocks)

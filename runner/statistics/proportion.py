@@ -18,7 +18,7 @@ _MOST = 10**15  # repetitions; of more nobody would speak
 
 @dataclass(frozen=True)
 class Share:
-    """How many of some independent repetitions something holds of.
+    """Number of independent repetitions for which a statement holds.
 
     Attributes:
         kept: Their number.
@@ -34,12 +34,12 @@ class Share:
 
     @property
     def share(self) -> float:
-        """The share of them."""
+        """The proportion of these repetitions."""
         return self.kept / self.of
 
     @property
     def rest(self) -> "Share":
-        """The others, of which it does not hold."""
+        """The number of the other repetitions."""
         return count_share(self.of - self.kept, self.of)
 
 
@@ -73,7 +73,7 @@ def share_ends(kept: IntArray, of: IntArray) -> tuple[FloatArray, FloatArray]:
 
 
 def needed_repetitions(seen: Share, probability: float) -> int | None:
-    """Return how many repetitions in all tell a share from a probability, where it stays what it is.
+    """Return the total number of repetitions that distinguishes a constant proportion from a probability.
 
     None where no number does: the share is the probability itself. Of a share of 0 it is ln(0.025) / ln(1 - p).
 

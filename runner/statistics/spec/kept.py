@@ -56,7 +56,7 @@ class Spec:
 
     @property
     def config(self) -> dict[str, Bound]:
-        """The bounds by metric, as the config has them."""
+        """The bounds of the config by metric."""
         return {one.metric: one.bound for one in self.bounds}
 
     @property
@@ -65,7 +65,7 @@ class Spec:
         return [one.metric for one in self.bounds if one.share is None]
 
     def record(self) -> dict[str, Any]:
-        """Return what is stored: for each bound its ends and its share, and the share that keeps all."""
+        """Return the stored record: ends and proportion of each bound, and the proportion that keeps all."""
         bounds = {one.metric: {**one.bound.model_dump(), **_record(one.share)} for one in self.bounds}
         return {"bounds": bounds, "all": _record(self.whole)}
 
@@ -79,14 +79,14 @@ def bounds_of(config: Mapping[str, Any]) -> dict[str, Bound]:
 def judge(
     bounds: Mapping[str, Bound], repetitions: int, metrics: Mapping[str, Any], values: Callable[[str], FloatArray]
 ) -> Spec:
-    """Return how many repetitions of a run keep some bounds.
+    """Return the number of a run's repetitions that keep some bounds.
 
     One that failed, or has no value, as it never settled, does not keep its bound.
 
     Args:
         bounds: The bounds by metric, one or more.
         repetitions: Number of repetitions.
-        metrics: The metrics that the run has; none of a run of which every repetition failed.
+        metrics: Metrics of the run; empty if every repetition failed.
         values: Gives one of these in each repetition, shape (repetitions,), NaN where it has no value.
     """
     kept: dict[str, NDArray[np.bool_] | None] = {}
@@ -102,7 +102,7 @@ def judge(
 
 
 def within(bound: Bound, values: FloatArray) -> NDArray[np.bool_]:
-    """Return which values keep a bound, shape of the values; NaN, which is none, does not."""
+    """Return True for values that keep a bound, shape of the values; NaN does not."""
     low = -np.inf if bound.min is None else bound.min
     high = np.inf if bound.max is None else bound.max
     kept: NDArray[np.bool_] = np.isfinite(values) & (values >= low) & (values <= high)
@@ -138,10 +138,10 @@ def _share(stored: Mapping[str, Any]) -> "Share | None":
 
 @dataclass(frozen=True)
 class Verdict:
-    """What the repetitions say of a bound.
+    """Result of the repetitions for a bound.
 
     Attributes:
-        says: It is kept; it is broken; or they are too few to tell.
+        says: Kept, broken, or too few repetitions.
         needed: How many repetitions in all would tell, where these do not and the share stays what it is; None where
             no number would, or these do.
     """
@@ -151,7 +151,7 @@ class Verdict:
 
 
 def judge_share(share: "Share", at_most: float | None) -> Verdict:
-    """Return what the repetitions say.
+    """Return the result of the repetitions.
 
     Args:
         share: Those that keep the bound.
