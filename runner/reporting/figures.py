@@ -100,7 +100,7 @@ def desired_motion(run: Run, caption: str, number: str = "", axes: tuple[str, ..
     return Curves(caption, panels, columns=3, origin=origin(run, number))
 
 
-def playback(run: Run, caption: str, until: float | None = None, frames: int = 120) -> Playback:
+def playback(run: Run, caption: str, until: float | None = None, frames: int = 120, has_still: bool = True) -> Playback:
     """Return the motion of a run in three dimensions.
 
     Args:
@@ -108,6 +108,7 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
         caption: What moves.
         until: End of the part shown, in s; None shows it all.
         frames: Largest number of instants.
+        has_still: Whether it has a still picture, which takes most of the time.
     """
     rows, model = rows_until(run, until), run.model
     finite = np.isfinite(np.hstack([run.joints("q"), run.vector("tip")])[rows]).all(axis=1)
@@ -118,7 +119,9 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
     stills = spaced_indices(len(t), _STILLS)
     moving = bool(np.ptp(desired, axis=0).any())
     path = desired if moving else np.vstack([tip[0], desired[0]])
-    still = arm_motion(model, q[stills], t[stills].tolist(), path=tip, desired=path, goal=desired[-1])
+    still = (
+        arm_motion(model, q[stills], t[stills].tolist(), path=tip, desired=path, goal=desired[-1]) if has_still else ""
+    )
     return Playback(
         caption,
         t[shown],
@@ -155,7 +158,9 @@ def overlaid(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
         label = f"{what.lower()} of {runs[0].provenance['joints'][joint]}"
         panels.append(Panel(f"{what}{label[len(what) :]}", "time (s)", f"{label} ({unit})", torques))
     caption = "Distance of the tip from its desired position, and torques; repetition 0."
-    first, *others = [replace(playback(run, ""), name=name) for run, name in shown]
+    first, *others = [
+        replace(playback(run, "", has_still=not place), name=name) for place, (run, name) in enumerate(shown)
+    ]
     told = "The motions of repetition 0." if others else "The motion of repetition 0."
     return [Curves(caption, panels, origin=origin(runs[0])), replace(first, caption=told, others=others)]
 
