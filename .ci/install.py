@@ -25,7 +25,7 @@ _NO_NETWORK = re.compile(
 
 
 class InstallError(Exception):
-    """What keeps .venv from being made, in a line that says what to do."""
+    """Reason why .venv cannot be made, with the remedy, in a line."""
 
 
 def main(arguments: list) -> int:
@@ -90,7 +90,7 @@ def choose() -> tuple:
 
 
 def candidates(version: tuple) -> list:
-    """Return where a version may be: this Python, those on the PATH, and pyenv's, newest first."""
+    """Return the places of a version: this Python, those on the PATH, and pyenv's, newest first."""
     name = "python" + dotted(version)
     on_path = [Path(folder) / name for folder in os.environ.get("PATH", "").split(os.pathsep) if folder]
     pyenv = Path(os.environ.get("PYENV_ROOT") or os.path.expanduser("~/.pyenv")) / "versions"  # noqa: PTH111
@@ -107,7 +107,7 @@ def patch(version: str) -> int:
 
 
 def describe(version: tuple, python: str, chosen: bool) -> str:
-    """Return which Python a .venv gets, and why; chosen is whether nobody asked for it."""
+    """Return the Python of a .venv with the reason; `chosen` is True if nobody asked for it."""
     why = ", as asked for"
     if chosen:
         why = "" if version == SUPPORTED[0] else f", as no Python {dotted(SUPPORTED[0])} was found"
@@ -186,7 +186,7 @@ def run(command: list, root: Path) -> None:
 
 
 def explain(printed: str, command: list) -> str:
-    """Return what to do where a command failed, from what it printed."""
+    """Return the remedy of a failed command, from its output."""
     if _NO_NETWORK.search(printed):
         return "the packages cannot be fetched: is there a network? What is there stays; run it again when there is one"
     return f"{' '.join(command[:4])} failed, see above"

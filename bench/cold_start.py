@@ -1,4 +1,4 @@
-"""What a typed command costs until its answer, each in its own process: wall time, and CPU time against Hydra's.
+"""Cost of a typed command until its answer, each in its own process: wall time, and CPU time against Hydra's.
 
 CPU time (user and system) is divided by that of `python -c "import hydra"`, measured in turn with the commands, so that
 a busy machine slows both. A TAB at a key composes the config the first time, and later in the same line reads its keys
@@ -32,7 +32,7 @@ class _Command:
     """A command whose CPU time is divided by that of importing Hydra.
 
     Attributes:
-        name: What it is, as text.
+        name: Description of the row.
         arguments: What follows `runner`.
         target: The largest ratio; None where none is asked for.
         line: The line at whose end TAB is pressed; empty for a command.

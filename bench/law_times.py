@@ -1,4 +1,4 @@
-"""How long control laws take in a tick, alone and in process: CPU time and wall-clock time, with what is rare.
+"""Times of control laws in a tick, by themselves and in process: CPU time and wall-clock time, with what is rare.
 
 Nothing is judged by it. CPU time tells whether a law's arithmetic fits into its period; wall-clock time, in which other
 processes run, too, tells of the machine as it is loaded now. Both are of laws as a user's Python calls them, through

@@ -36,7 +36,7 @@ class Row(NamedTuple):
 
     Attributes:
         block: What is timed.
-        units: Rows in whose time it is told.
+        units: Rows whose time is the unit.
         targets: Most that it may take, in the time of another row.
     """
 

@@ -1,4 +1,4 @@
-"""CPU time of a control tick on MuJoCo, against MuJoCo's own step and read calls alone.
+"""CPU time of a control tick on MuJoCo, against only MuJoCo's own step and read calls.
 
 Both are on the same arm under the same torques, with the arms and first laws of bench/arms.py, in turns.
 """

@@ -54,7 +54,7 @@ def mujoco_model(loop: TipLoop, step: float, integrator: str) -> Any:
 
 
 def plain_loop(loop: TipLoop, substeps: int) -> tuple[Callable[[], None], FloatArray]:
-    """Return what runs a closed loop by only MuJoCo, as one writes it down, and the log that it fills.
+    """Return a function that runs a plainly written closed loop by only MuJoCo, and the log that it fills.
 
     Args:
         loop: The closed loop; see TipLoop.log.
@@ -92,7 +92,7 @@ def plain_loop(loop: TipLoop, substeps: int) -> tuple[Callable[[], None], FloatA
 
 
 def trimmed_loop(loop: TipLoop, substeps: int) -> tuple[Callable[[], None], FloatArray]:
-    """Return what runs a closed loop by only MuJoCo, trimmed, and the log that it fills; see plain_loop."""
+    """Return a function that runs a trimmed closed loop by only MuJoCo, and its log; see plain_loop."""
     model = mujoco_model(loop, loop.tick / substeps, "implicitfast")
     data, tip, nq = mujoco.MjData(model), model.body(loop.tip).id, model.nv
     J, dJ, weighed, log = np.zeros((3, nq)), np.zeros((3, nq)), np.zeros(nq), loop.log()
@@ -122,7 +122,7 @@ def trimmed_loop(loop: TipLoop, substeps: int) -> tuple[Callable[[], None], Floa
 
 
 def rk4_loop(loop: TipLoop) -> tuple[Callable[[], None], FloatArray]:
-    """Return what runs a closed loop on MuJoCo's Runge-Kutta step with a law through Pinocchio, and its log."""
+    """Return a function that runs MuJoCo's Runge-Kutta step with a law through Pinocchio, and its log."""
     model, arm = mujoco_model(loop, loop.tick, "RK4"), pin.buildModelFromXML(loop.urdf)
     arm.gravity.linear = np.array([0.0, 0.0, -loop.gravity])
     data, known, log = mujoco.MjData(model), arm.createData(), loop.log()

@@ -49,7 +49,7 @@ def _seconds(repetitions: int, *more: str) -> float:
 
 
 def _memory(repetitions: int) -> float:
-    """Return how many bytes `limits.memory` counts."""
+    """Return the number of bytes that `limits.memory` counts."""
     config = validate(compose([*_OVERRIDES, f"repetitions={repetitions}"]))
     return memory_of_run(config.arm, config.timing.ticks, repetitions, config.has_contact)
 

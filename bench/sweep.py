@@ -1,4 +1,4 @@
-"""What a sweep costs next to simulating: CPU time per run, use of both cores, memory of the parent, and saving.
+"""Cost of a sweep in addition to the simulation: CPU time per run, use of both cores, memory of the parent, and saving.
 
 `python -m bench sweep` makes 2,000 short Macro runs, each with its trace in its own folder; 100,000 of the
 shortest kind, which go to shards; and 10,000 of 400 ticks with encoder noise, which are simulated together. Start-up is

@@ -1,4 +1,4 @@
-"""CPU time of a control tick, against PyBullet's own calls alone.
+"""CPU time of a control tick, against only PyBullet's own calls.
 
 F is the least that a PyBullet plant can cost: torque, step and read of the same arm, in a plain loop, under the same
 torques. What the runner adds to it is control, measurement, limits, log and tip positions. Both are measured in
@@ -111,7 +111,7 @@ def _check_all(results: Iterable[object]) -> None:
 
 
 def pybullet_alone(config: RunConfig, torques: list[list[float]]) -> Callable[[], None]:
-    """Return a loop over the raw calls, on an arm of its own that was made as the plant makes it."""
+    """Return a loop over the raw calls, on a separate arm that was made as the plant makes it."""
     loop = assemble(config)
     plant = loop.plant
     assert isinstance(plant, Bullet)

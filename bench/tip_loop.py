@@ -1,4 +1,4 @@
-"""What another program needs to run the closed loop of a run: the arm, its law's numbers, path, encoders and limits."""
+"""Data for another program that runs a closed loop: the arm, its law's numbers, path, encoders and limits."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""How far whole runs by compiled code are from the same runs through Pinocchio: every torque law on three arms.
+"""Distance of whole runs by compiled code from the same runs through Pinocchio: every torque law on three arms.
 
 Twenty seeds each, the first second, with encoder noise and torque limits, on plant=rk4; the largest difference of a
 joint position is judged. Motions keep away from singular configurations, where any two roundings part.

@@ -1,4 +1,4 @@
-"""How often the rule for what may be said is wrong: simulated sweeps of two laws at three levels, eight seeds each.
+"""Error rate of the rule for verdicts: simulated sweeps of two laws at three levels, eight seeds each.
 
 Target: of sweeps of equal laws a winner is said in at most 6 % in each family; of equal laws in another floating-point
 order in none of 1,000; and a difference of one standard deviation of the pairs in 95 % or more, of 20 pairs.
@@ -25,7 +25,7 @@ Draw = Callable[[np.random.Generator], FloatArray]
 
 
 def apart(rng: np.random.Generator) -> FloatArray:
-    """Return heavy-tailed values of which pairs have a part in common, each with its own scatter."""
+    """Return heavy-tailed values whose pairs have a part in common, each with its own scatter."""
     common = rng.standard_t(2, (1, _LEVELS, _SEEDS))
     return np.exp(0.5 * common + 0.2 * rng.standard_t(2, (2, _LEVELS, _SEEDS)))
 
@@ -37,7 +37,7 @@ def wrong_masses(rng: np.random.Generator) -> FloatArray:
 
 
 def ticked(rng: np.random.Generator) -> FloatArray:
-    """Return values in whole ticks, of which many are equal, and some beyond every number."""
+    """Return values in whole ticks; many are equal, and some are infinite."""
     ticks = 10.0 + rng.poisson(2.0, (1, 1, _SEEDS)) + rng.integers(0, 3, (2, _LEVELS, _SEEDS))
     return np.where(rng.random((2, _LEVELS, _SEEDS)) < 0.05, np.inf, ticks)
 
@@ -46,7 +46,7 @@ CASES: dict[str, Draw] = {"heavy tails": apart, "wrong masses shared by levels":
 
 
 def false_answers(draw: Draw, sweeps: int) -> tuple[float, float]:
-    """Return in which share of sweeps of equal laws a winner is said in the first metric, and in the other one."""
+    """Return the proportions of sweeps of equal laws with a winner in the first metric, and in the other one."""
     said = [_said({PRIMARY: draw(rng), OTHER: draw(rng)}) for rng in map(np.random.default_rng, range(sweeps))]
     first, other = np.mean(said, axis=0).tolist()
     return first, other
@@ -59,7 +59,7 @@ def same_law(sweeps: int) -> int:
 
 
 def true_answers(samples: int) -> float:
-    """Return in which share of samples of 20 pairs a difference of one standard deviation of these is said."""
+    """Return the proportion of samples of 20 pairs that show a difference of one standard deviation."""
     return float(np.mean([_shown(rng) for rng in map(np.random.default_rng, range(samples))]))
 
 
@@ -87,7 +87,7 @@ def _reordered(rng: np.random.Generator) -> FloatArray:
 
 
 def _rounding(rng: np.random.Generator) -> FloatArray:
-    """Return what rounding leaves of zero, of which the second law's is always ten times as large."""
+    """Return rounding errors of zero; those of the second law are always ten times as large."""
     return np.abs(rng.normal(size=(2, _LEVELS, _SEEDS))) * np.array([1e-16, 1e-15])[:, None, None]
 
 

@@ -1,4 +1,4 @@
-"""How often the 95 % intervals of identified friction hold the true one: simulated recordings of 10 s at 250 Hz.
+"""Coverage of the 95 % intervals of identified friction: simulated recordings of 10 s at 250 Hz.
 
 Friction, amplitudes, frequencies and phases are drawn at random. The fit was chosen on the Macro with seeds below
 2,000; these are others, and an arm that it was not chosen on.

@@ -21,7 +21,7 @@ Process = subprocess.Popen[bytes]
 
 @dataclass
 class Tally:
-    """What was killed, and what that did.
+    """Killed command, and the effect.
 
     `lost` are runs that the ended sweep lacks, `doubled` such that were made again though they were stored,
     `leftovers` are temporary and half-written files.
@@ -111,7 +111,7 @@ def _start(command: list[str], folder: Path) -> Process:
 
 
 def _await_runs(process: Process, command: list[str], folder: Path, known: int) -> Process:
-    """Return the process, started again where it was killed, once it makes runs."""
+    """Return the process, started again if it was killed, when it simulates runs."""
     while _count(folder / "outputs") <= known:
         if process.poll() is not None:
             if process.returncode == 0:
@@ -137,7 +137,7 @@ def _workers_of(pid: int) -> Iterator[int]:
 
 
 def _metrics(outputs: Path) -> dict[str, object]:
-    """Return what all runs of an outputs folder measured, by their names."""
+    """Return the metrics of all runs of an outputs folder, by name."""
     return {path.name: open_run(path).record["metrics"] for path in (outputs / "runs").iterdir()}
 
 
@@ -146,7 +146,7 @@ def _reports(folder: Path) -> list[bytes]:
 
 
 def _is_as_undisturbed(name: str, command: list[str], kills: tuple[int, int], pause: float) -> bool:
-    """Kill a command at work; return whether its runs and reports are those of one that was left alone."""
+    """Kill a command at work; return True if its runs and reports are those of an undisturbed one."""
     with tempfile.TemporaryDirectory() as folder:
         alone, killed = Path(folder, "alone"), Path(folder, "killed")
         for place in (alone, killed):

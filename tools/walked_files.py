@@ -15,7 +15,7 @@ OURS = tuple(str(PACKAGE / name) + os.sep for name in ("runner", "hydra_plugins"
 
 
 def main() -> None:
-    """Run a command line in this process, then print how many files and functions of ours ran and the CPU time."""
+    """Run a command line in this process, then print the number of executed files and functions and the CPU time."""
     sys.path.insert(0, str(PACKAGE))
     arguments = sys.argv[1:]
     listed = arguments[:1] == ["--list"]
@@ -42,7 +42,7 @@ def main() -> None:
 
 
 def _is_body(code: CodeType) -> bool:
-    """Return True if code is the body of a module or of a class: only functions have local variables of their own."""
+    """Return True if code is the body of a module or of a class: only functions have local variables."""
     return not code.co_flags & 0x2
 
 

@@ -33,11 +33,11 @@ _HEADERS = ("", "eigen3", "urdfdom_headers", "urdfdom")
 
 
 class MissingError(Exception):
-    """Why there is no L."""
+    """Reason for a missing L."""
 
 
 def least_loop(loop: TipLoop) -> tuple[Callable[[], None], FloatArray]:
-    """Return what runs a closed loop in C++ with one Runge-Kutta step in a tick, and the log that it fills.
+    """Return a function that runs a closed loop in C++ with one Runge-Kutta step in a tick, and its log.
 
     Raises:
         MissingError: without a compiler or the headers.

@@ -1,1 +1,1 @@
-"""What writes the generated pages, pictures and tables of the docs, and what builds the site."""
+"""Writers of the generated pages, pictures and tables of the docs, and the build of the site."""

@@ -1,4 +1,4 @@
-"""What a config key may hold, as text, from its type."""
+"""Allowed values of a config key, as text, from its type."""
 
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
@@ -35,7 +35,7 @@ _BOUNDS = {"gt": "above {:g}", "ge": "of {:g} or more", "lt": "below {:g}", "le"
 
 
 def describe(annotation: Any, metadata: list[Any] | tuple[Any, ...] = ()) -> str:
-    """Return what a type and its constraints allow."""
+    """Return the values that a type and its constraints allow."""
     for known, words in _IN_WORDS.items():
         if any(item in get_args(known)[1:] for item in metadata):
             return words

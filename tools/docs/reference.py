@@ -236,7 +236,7 @@ def _metrics() -> Iterator[str]:
 
 
 def _bullets(docstring: str) -> dict[str, str]:
-    """Return what a docstring's bullets `- name, name: meaning.` say of each name."""
+    """Return the meaning that a docstring's bullets `- name, name: meaning.` give each name."""
     entries = re.findall(r"^\s*- ([\w, ]+): (.+?)(?=^\s*- |\Z)", docstring, re.M | re.S)
     return {name.strip(): " ".join(text.split()) for names, text in entries for name in names.split(",")}
 

@@ -1,4 +1,4 @@
-"""Pages of the site that do not stand in docs/: a hook of MkDocs, which `make docs` runs.
+"""Pages of the site from outside docs/: a hook of MkDocs, which `make docs` runs.
 
 The README becomes the start page; changelog, contributing and security pages come from the root, too. A link of a page
 to a file of the source, such as ../runner/base/trace.py, leads to a page that shows it, so that the site needs no other
@@ -73,12 +73,12 @@ def relinked(uri: str, text: str) -> str:
 
 
 def targets(uri: str, text: str) -> set[str]:
-    """Return what a page links to, as paths in the checkout."""
+    """Return the link targets of a page, as paths in the checkout."""
     return {_in_checkout(uri, link[1]) for link in _LINK.finditer(text)}
 
 
 def place_of(target: str) -> str:
-    """Return where the site has a file or folder of the checkout."""
+    """Return the address of a file or folder of the checkout in the site."""
     if target in _PLACES:
         return _PLACES[target]
     if target.startswith("docs/"):

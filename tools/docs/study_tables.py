@@ -44,7 +44,7 @@ def made_from(page: str, studies: Verdicts) -> str:
     """Return a page with its tables made from the verdicts of studies.
 
     Raises:
-        KeyError: if a study or claim is not there.
+        KeyError: if a study or claim is missing.
     """
 
     def table(found: re.Match[str]) -> str:

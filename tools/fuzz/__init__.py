@@ -108,7 +108,7 @@ def _work(send: Any, seed: int, numbers: range) -> None:
 
 
 TARGETS: dict[str, Callable[[argparse.Namespace], bool]] = {"configs": try_configs, "stores": damage_stores}
-"""What can be fuzzed."""
+"""Kinds of fuzzing."""
 
 
 def main(arguments: list[str] | None = None) -> bool:

@@ -28,7 +28,7 @@ from tools.fuzz.files import experiment
 from tools.fuzz.grammar import keys_of, mutated, override
 
 CPU = 5.0  # s, over what a sound case takes
-MEMORY = 500  # MB, likewise
+MEMORY = 500  # MB
 REFUSAL = 10_000  # characters
 _HANGS = 300  # s of CPU time, which only ends what would not end
 _TICKS = 3
@@ -61,7 +61,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Ended:
-    """What became of a case.
+    """Outcome of a case.
 
     Attributes:
         refused: Whether it was refused; else it was taken.
@@ -118,13 +118,13 @@ def attempt(given: Case, folder: Path) -> Ended:
 
 
 def judge_costs(ended: Ended) -> list[str]:
-    """Return what is wrong with what a case took."""
+    """Return the problem of a case's time or memory."""
     faults = [f"{ended.seconds:.1f} s of CPU time"] if ended.seconds > CPU else []
     return faults + ([f"{ended.megabytes:.0f} MB of memory"] if ended.megabytes > MEMORY else [])
 
 
 def judge(text: str) -> list[str]:
-    """Return what is wrong with a message."""
+    """Return the problem of a message."""
     faults = [f"a message of {len(text)} characters"] if len(text) > REFUSAL else []
     strange = [sign for sign in text if not sign.isprintable() and sign != "\n"]
     return faults + ([f"control characters in a message: {strange[:5]!r}"] if strange else [])

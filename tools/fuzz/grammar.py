@@ -1,4 +1,4 @@
-"""What a careless or a hostile hand could write: values, configs, overrides and YAML files, drawn from a seed."""
+"""Input of a careless or hostile user: values, configs, overrides and YAML files, drawn from a seed."""
 
 import copy
 import json

@@ -33,11 +33,11 @@ _COMMANDS = (
 
 @dataclass(frozen=True)
 class Measured:
-    """How a command line ended.
+    """Outcome of a command line.
 
     Attributes:
         code: Exit code, below 0 where a signal ended it, or None where it did not end.
-        printed: All that it printed.
+        printed: Its output.
         seconds: CPU time.
         megabytes: Most memory that it held.
     """
@@ -86,13 +86,13 @@ def measure(words: list[str], folder: Path) -> Measured:
 
 
 def plain() -> Measured:
-    """Return what a command line without any fault takes."""
+    """Return the cost of a command line without a fault."""
     with tempfile.TemporaryDirectory() as name:
         return measure(list(_PLAIN), Path(name))
 
 
 def judge(measured: Measured, usual: Measured) -> list[str]:
-    """Return what is wrong with how a command line ended, against one without any fault."""
+    """Return the problem of a command line's outcome, compared with one without a fault."""
     faults = []
     if measured.code not in (0, 1, 2):
         faults.append("not ended" if measured.code is None else f"exit code {measured.code}")

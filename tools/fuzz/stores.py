@@ -29,7 +29,7 @@ from runner.sweeps.tuning.study import open_tuning
 
 @dataclass(frozen=True)
 class Reading:
-    """What reading a store gave.
+    """Result of reading a store.
 
     Attributes:
         values: What each thing stored holds, by its place; missing where it is refused.

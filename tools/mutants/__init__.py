@@ -24,7 +24,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 
 
 def main(arguments: Sequence[str] = ()) -> bool:
-    """Try mutants and print what became of each; return whether all that are written by hand were found."""
+    """Try mutants and print what became of each; return True if all handwritten ones were found."""
     chosen = _parser().parse_args(arguments)
     tree = chosen.tree.resolve()
     drawn = chosen.sample is not None or chosen.only is not None

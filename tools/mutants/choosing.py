@@ -18,7 +18,7 @@ _LEAST = 0.01  # CPU time that any test counts for [s]
 
 
 def short(test: str) -> str:
-    """Return a test's name without folders, as base names of test files are unique and files move."""
+    """Return a test's name without folders, because files move and their names are unique."""
     path, _, name = test.partition("::")
     return f"{path.rpartition('/')[2]}::{name}"
 
@@ -42,7 +42,7 @@ class Choice:
 
 @dataclass(frozen=True)
 class CoverageMap:
-    """Which test runs which block.
+    """Blocks that each test runs.
 
     Attributes:
         blocks: Keys of blocks.
@@ -126,7 +126,7 @@ class CoverageMap:
         return Choice(tuple(collected), tests, whole, float(total[len(found) - 1]) if found else 0.0)
 
     def _rank(self, index: int, mirrored: str | None) -> tuple[bool, float]:
-        """Return what orders tests: the mirrored file first, then cheap ones that run little."""
+        """Return the sort key of tests: the mirrored file first, then cheap ones that run little."""
         return _file(self.tests[index]) != mirrored, float((self.costs[index] + _LEAST) * self._breadth[index])
 
 

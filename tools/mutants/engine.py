@@ -59,7 +59,7 @@ class Worker:
         self._server.wait()
 
     def try_mutant(self, mutant: Mutant, choice: Choice) -> dict[str, Any]:
-        """Return what became of a mutant."""
+        """Return the outcome of a mutant."""
         path = self._copy / mutant.path
         source = path.read_text()
         self._write(path, mutant.apply(source))
@@ -130,7 +130,7 @@ def try_all(
     left_out: Iterable[str],
     done: Callable[[Mutant, dict[str, Any]], None],
 ) -> None:
-    """Try mutants by several workers, and tell each result as it comes."""
+    """Try mutants by several workers, and print each result."""
     waiting: queue.SimpleQueue[tuple[Mutant, Choice]] = queue.SimpleQueue()
     for pair in work:
         waiting.put(pair)

@@ -1,4 +1,4 @@
-"""Mutants written by hand: where each stands, and what it gets wrong."""
+"""Mutants written by hand: the location and the error of each."""
 
 from dataclasses import dataclass
 
@@ -14,7 +14,7 @@ class Listed:
         module: The module, from the root of the checkout.
         right: What is there, once.
         wrong: What is put in its place.
-        test: The module's test file, likewise.
+        test: The module's test file.
     """
 
     why: str
@@ -27,7 +27,7 @@ class Listed:
         """Return the mutant of the module's source.
 
         Raises:
-            ValueError: if what is to be replaced does not stand there once.
+            ValueError: if the replaced text does not occur exactly once.
         """
         if source.count(self.right) != 1:
             raise ValueError(f"{self.module}: {self.right!r} stands there {source.count(self.right)} times, not once")

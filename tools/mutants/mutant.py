@@ -19,7 +19,7 @@ class Mutant:
         block: Ordinal of the block among the owner's; None at import.
         name: Name that the statement assigns at import.
         why: What is wrong then, of a mutant written by hand.
-        test: Test file that has to find it, likewise; None: those that the coverage map gives.
+        test: Test file that has to find it; None: those that the coverage map gives.
     """
 
     path: str

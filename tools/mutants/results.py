@@ -20,9 +20,9 @@ def written(file: Path) -> dict[str, dict[str, Any]]:
 
 
 def again(file: Path, places: list[Mutant], sources: dict[str, str]) -> list[Mutant]:
-    """Return the mutants of a file of results; those whose lines are not there once any more are printed.
+    """Return the mutants of a file of results; those whose lines do not occur exactly once any more are printed.
 
-    Where the function has changed since, the lines decide.
+    If the function has changed since, the lines decide.
     """
     by_name = {mutant.identity: mutant for mutant in places}
     by_path: defaultdict[str, list[Mutant]] = defaultdict(list)

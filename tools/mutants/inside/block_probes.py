@@ -25,7 +25,7 @@ def hit(index: int) -> None:
 
 
 def taken() -> bytes:
-    """Return what ran, and begin again."""
+    """Return the blocks that ran, and begin again."""
     seen = hits[:]
     hits[:] = bytes(len(seen))
     return seen
@@ -37,7 +37,7 @@ def add(seen: bytes) -> None:
 
 
 def together(one: bytes, other: bytes) -> bytes:
-    """Return what ran in either."""
+    """Return the blocks that ran in either."""
     return (int.from_bytes(one, "little") | int.from_bytes(other, "little")).to_bytes(len(one), "little")
 
 

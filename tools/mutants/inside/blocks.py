@@ -90,7 +90,7 @@ class _Marking:
 
 
 def _heading(body: list[ast.stmt]) -> list[ast.stmt]:
-    """Return the docstring and the imports from the future, which have to stand first."""
+    """Return the docstring and the imports from the future, which have to be first."""
     docstring = body[:1] if body and isinstance(body[0], ast.Expr) and isinstance(body[0].value, ast.Constant) else []
     future = [node for node in body if isinstance(node, ast.ImportFrom) and node.module == "__future__"]
     return [*docstring, *future]

@@ -77,7 +77,7 @@ def main() -> None:
 
 
 def _serve(request: dict[str, Any]) -> dict[str, Any]:
-    """Run the tests of a request in a group of processes of its own, which ends with them."""
+    """Run the tests of a request in a separate group of processes, which ends with them."""
     result = Path(request["result"])
     result.unlink(missing_ok=True)
     child = os.fork()
