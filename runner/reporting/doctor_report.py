@@ -42,7 +42,6 @@ def doctor_document(found: Examination) -> Document:
         ],
         sections=[*sections, Section("Made with", (Provenance(rows),))],
         date="",
-        figures_float=False,
     )
 
 

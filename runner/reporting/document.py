@@ -376,7 +376,6 @@ class Document:
         cover: The picture of the first screen.
         key_numbers: Numbers of the first screen: what each is, its value with unit, and what is to be said of it.
         shown: Number of chapters that HTML shows; it folds the others behind "All details". None shows all.
-        figures_float: True if figures move on paper to where they leave no blank, which text between them makes up for.
         notes: Lines below the count of verdicts there: what their words mean, caveats; inline mathematics as in Text.
     """
 
@@ -388,7 +387,6 @@ class Document:
     cover: Cover | None = None
     notes: Sequence[str] = ()
     key_numbers: Sequence[tuple[str, str, str]] = ()
-    figures_float: bool = True
     shown: int | None = None
 
     @property

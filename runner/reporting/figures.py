@@ -15,7 +15,7 @@ from runner.store import Calibration, Run
 AXES = ("x", "y", "z")
 _LAST, _LAST_ROWS = 0.02, 20  # s and rows before a failure
 _STILLS = 6  # instants in the still picture of a motion
-_FRAMES = 60
+_FRAMES = 30
 _MOST_JOINTS = 5  # panels of torques of several runs
 
 
@@ -23,6 +23,12 @@ def origin(job: Run | Calibration, number: str = "") -> Origin:
     """Return the origin of a figure of a run or calibration: the command that made it, and its commit."""
     commit = str(job.provenance["commit"] or "")
     return Origin(number, str(job.provenance["command"]), commit[:12] + commit[40:])
+
+
+def captioned(caption: str, panels: Sequence[Panel], columns: int, where: Origin) -> Curves:
+    """Return a figure; if its caption has a line break, the first line is its finding."""
+    finding, _, shown = caption.rpartition("\n")
+    return Curves(shown, panels, columns, where, finding)
 
 
 def rows_until(run: Run, end: float | None) -> slice:

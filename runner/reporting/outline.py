@@ -96,7 +96,9 @@ def _texts(block: Block) -> Iterator[str]:
             yield block.text
         case Items():
             yield from block.items
-        case Curves() | Maps() | RunList() | Picture() | Playback():
+        case Curves():
+            yield from (block.finding, block.caption)
+        case Maps() | RunList() | Picture() | Playback():
             yield block.caption
         case Table():
             yield block.caption

@@ -40,7 +40,6 @@ def recording_document(found: RecordingComparison) -> Document:
         ],
         date=str(found.run.provenance["date"]),
         key_numbers=_key_numbers(found),
-        figures_float=False,
     )
 
 

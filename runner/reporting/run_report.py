@@ -45,7 +45,6 @@ def run_document(run: Run) -> Document:
         if run.caveats
         else [],
         key_numbers=[*key_metrics(run, _KEY_METRICS)],
-        figures_float=False,
     )
 
 

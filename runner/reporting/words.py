@@ -2,7 +2,7 @@
 
 import re
 
-PRESET = {"as_reported": "as the thesis ran it", "full_equations": "with its full equations"}
+PRESET = {"as_reported": "as fitted", "full_equations": "by the printed equations"}
 """The presets of the studies, in the order of their columns."""
 
 PLANT = {

@@ -16,7 +16,7 @@ from runner.base.limits import CHAPTER, read_text
 from runner.reporting.audit.report import rows
 from runner.reporting.document import Claim, Equations, Origin, Section, Verdicts
 from runner.reporting.outline import number_sections
-from runner.reporting.published_claims import CLAIMS, FACTOR, Verdict, load_claims
+from runner.reporting.published_claims import CLAIMS, FACTOR, PublishedClaim, Verdict, load_claims
 from runner.store import Calibration, Run
 from runner.study.claims import judged_claims, legend
 from runner.study.code import Code, public_functions
@@ -25,6 +25,7 @@ from runner.study.job import Results
 from runner.study.manifest import Manifest, Part
 from runner.study.measured import Finding, Measured
 from runner.study.prose import blocks, plots, read_chapter, signals, tables
+from runner.study.prose.compared import compare
 from runner.study.prose.reader import Reading
 from runner.study.report import parts
 
@@ -75,7 +76,7 @@ class Chapters:
         return {"holds": holds, **{name: value for name, value in made.values.named.items() if _is_plain(value)}}
 
     def reading(self, stem: str) -> Reading:
-        """Return what the file of a chapter in Markdown makes.
+        """Return the reading of a chapter in Markdown.
 
         Args:
             stem: Name of the file without its ending.
@@ -113,6 +114,7 @@ class Chapters:
             "verdict_factor": FACTOR,
             "equations": self._equations,
             "said": self.said,
+            "compare": partial(compare, self._runs, presets, self._published()),
         }
         for module in SHARED:
             found |= _filled(public_functions(module), {"runs": self._stored()})
@@ -129,15 +131,19 @@ class Chapters:
         return Results({**self._runs, **self._calibrations}, missing, dropped)
 
     def _claims(self) -> list[Claim]:
-        return judged_claims(load_claims(self._folder), self._runs, self._manifest.presets)
+        return judged_claims(self._published(), self._runs, self._manifest.presets)
+
+    def _published(self) -> list[PublishedClaim]:
+        """Return its claims; none if it has no file of them."""
+        return load_claims(self._folder) if (self._folder / CLAIMS).is_file() else []
 
     def _legend(self) -> str:
-        """Return what the words of its verdicts mean; nothing where it has no claims."""
-        return legend(load_claims(self._folder)) if (self._folder / CLAIMS).is_file() else ""
+        """Return the meaning of the words of its verdicts; empty without claims."""
+        return legend(self._published())
 
-    def _claims_that(self, verdict: Verdict, words: str) -> Measured:
-        """Return of how many claims this is the verdict under every preset; conditions call it by the words."""
-        given = [{each.verdict for each in claim.findings} for claim in self._claims()]
+    def _claims_that(self, verdict: Verdict, words: str, preset: str = "") -> Measured:
+        """Return the number of claims with this verdict under a preset, or without one under all presets."""
+        given = [{each.verdict for each in claim.findings if preset in ("", each.preset)} for claim in self._claims()]
         return Measured(words, float(given.count({verdict})))
 
     def _equations(self, caption: str) -> Equations:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from runner.base.quantities import ROUNDING as SMALLEST
@@ -151,7 +151,7 @@ class Finding(Notice):
 
     @property
     def holds(self) -> bool:
-        """Whether all of it stands."""
+        """True if all conditions hold."""
         return all(condition.holds for condition in self.conditions)
 
 
@@ -181,11 +181,6 @@ def finding(title: str, text: str, *holds: Condition, kind: NoticeKind = "findin
     reasons = " ".join(f"Not so: {condition.text} ({condition.measured})." for condition in failed)
     written = f"{reasons} It was written: {text}" if text else reasons
     return Finding("warning", f"No longer holds: {title}", written, answer, holds, title, text)
-
-
-def check_caption(title: str, caption: str, conditions: Sequence[Condition]) -> list[Finding]:
-    """Return a finding if a condition for the caption of a figure fails; the caption stands in a chapter."""
-    return [] if all(each.holds for each in conditions) else [finding(title, caption, *conditions)]
 
 
 def findings(document: Document) -> Iterator[tuple[str, Finding]]:

@@ -182,7 +182,7 @@ def study_document(
         code: What is to be said of the study's own code; nothing where it has none.
         cover: The picture of the first screen.
         bibtex: BibTeX entry of the source; empty where there is none.
-        profile: What its profile makes otherwise than the whole study.
+        profile: Sections on the profile; empty for the whole study.
     """
     missing = [_missing(runs.missing)] if isinstance(runs, Results) and runs.missing else []
     first = 1 if chapters and chapters[0].answers else 0  # the answers come before what is said of the runs

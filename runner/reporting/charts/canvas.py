@@ -2,6 +2,7 @@
 
 import functools
 import io
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, ParamSpec
@@ -34,6 +35,8 @@ _STYLE: Any = {
 
 _ASIDE = np.array([[0.6, -0.8], [0.8, 0.6]])  # turns an arrow's direction to the place of its label, next to the head
 
+_PATH, _DIGITS = re.compile(r' d="[^"]*"'), re.compile(r"(\.\d)\d+")  # a tenth of a point is not seen
+
 P = ParamSpec("P")
 
 
@@ -47,12 +50,12 @@ def drawing(make: Callable[P, Figure]) -> Callable[P, str]:
             make(*args, **kwargs).savefig(
                 stream,
                 format="svg",
-                dpi=200,
+                dpi=150,
                 bbox_inches="tight",
                 pad_inches=0.04,
                 metadata={"Date": None, "Creator": None},
             )
-        return stream.getvalue()
+        return _PATH.sub(lambda path: _DIGITS.sub(r"\1", path[0]), stream.getvalue())
 
     return draw
 

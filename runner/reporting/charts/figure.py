@@ -12,6 +12,7 @@ from runner.base.arrays import FloatArray
 
 POINTS = 2000
 """Most points of a drawn curve: more than a screen or a printed page can show."""
+_SMOOTH, _UNSEEN = 200, 5e-4  # samples from which on a curve is coarsened, and share of its range that is not seen
 
 
 @dataclass(frozen=True)
@@ -127,6 +128,7 @@ class Curves:
         panels: The axes, in reading order.
         columns: Number of panels side by side.
         origin: Its number in the source, command and commit.
+        finding: Main result in a few words, bold before the caption; empty for none.
     """
 
     block: ClassVar[str] = "chart"
@@ -134,6 +136,7 @@ class Curves:
     panels: Sequence[Panel]
     columns: int = 2
     origin: Origin = field(default_factory=Origin)
+    finding: str = ""
 
 
 @dataclass(frozen=True)
@@ -197,6 +200,26 @@ def envelope(series: Series, samples: int) -> Series:
         low=np.minimum.reduceat(series.y, starts),
         high=np.maximum.reduceat(series.y, starts),
     )
+
+
+def coarsen(series: Series) -> Series:
+    """Return every second, fourth, ... sample of a smooth curve, as few as show it.
+
+    Straight lines between the samples stay within a small share of the range of y. A curve with a band, hints or gaps,
+    or one that goes back and forth, stays as it is.
+    """
+    x, y = series.x, series.y
+    extra = series.low is not None or series.high is not None or series.hints or series.runs
+    if x.size < _SMOOTH or extra or not np.isfinite(y).all() or not (np.diff(x) > 0.0).all():
+        return series
+    every = 1
+    while x.size > 4 * every:
+        kept = np.append(np.arange(0, x.size - 1, 2 * every), x.size - 1)
+        if np.abs(np.interp(x, x[kept], y[kept]) - y).max() > _UNSEEN * np.ptp(y):
+            break
+        every *= 2
+    kept = np.append(np.arange(0, x.size - 1, every), x.size - 1)
+    return replace(series, x=x[kept], y=y[kept])
 
 
 def spaced_indices(count: int, most: int) -> list[int]:

@@ -13,7 +13,19 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.sanitize import plain
 from runner.reporting.charts import palette, scales
-from runner.reporting.charts.figure import Curves, Map, Maps, Panel, Series, band, shares_legend, thin, upright, usable
+from runner.reporting.charts.figure import (
+    Curves,
+    Map,
+    Maps,
+    Panel,
+    Series,
+    band,
+    coarsen,
+    shares_legend,
+    thin,
+    upright,
+    usable,
+)
 
 Json = dict[str, Any]
 
@@ -21,6 +33,7 @@ _SYMBOLS = ("diamond", "square")  # of points beyond the palette
 _MODES = {"line": "lines", "dashed": "lines", "dotted": "lines", "points": "markers", "points_line": "lines+markers"}
 _DASHES = {"dashed": "dash", "dotted": "dot"}
 _LEGEND_WIDTH, _TITLE_WIDTH = 40, 45
+_POINTS = 500  # of a curve on a page: two for each pixel of a panel
 _MOST_NAMES = 16
 _FEW_DECADES = 2
 _LARGEST = float(np.finfo("<f4").max)
@@ -81,7 +94,7 @@ def _named_places(names: Sequence[str]) -> Json:
 
 
 def _trace(series: Series, number: int, rounds: int) -> Json:
-    thinned = thin(series)
+    thinned = coarsen(thin(series, _POINTS))
     name = plain(series.name).strip()
     pointed: Json = {"zorder": 1} if series.style in _DASHES else {}  # so that it is seen on a curve without breaks
     if series.label:
@@ -128,7 +141,7 @@ def _unit(label: str) -> str:
 
 
 def _band(series: Series, number: int) -> list[Json]:
-    outline = band(thin(series))
+    outline = band(thin(series, _POINTS))
     if outline is None:
         return []
     return [

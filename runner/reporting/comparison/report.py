@@ -67,7 +67,6 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
         sections=[_sides(sides), *compared, _caveats(sides), _made(sides)],
         date=max(max(side.provenance["made on"]) for side in sides),
         key_numbers=_key_numbers(found[0]),
-        figures_float=False,
     )
 
 

@@ -45,7 +45,6 @@ def runs_document(runs: Sequence[Run]) -> Document:
         abstract=literal("\n".join(map(one_line, [*failed, *told]))),
         sections=[Section("Side by side", _side_by_side(runs, names, differences)), *details],
         date=max(str(run.provenance["date"]) for run in runs),
-        figures_float=False,
         shown=1,
     )
 

@@ -97,7 +97,6 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
         sections=sections,
         date=max(measurements.provenance["made on"]),
         key_numbers=_key_numbers(subject),
-        figures_float=False,
         shown=shown,
     )
 

@@ -147,7 +147,6 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
         date=max(measurements.provenance.get("made on", [""])),
         cover=shown,
         key_numbers=_key_numbers(trials),
-        figures_float=False,
     )
 
 

@@ -15,8 +15,10 @@ from runner.studies.thesis.diagrams.workspace import workspace_sphere
 _SAMPLES = 4000
 
 
-def parameters(runs: Mapping[str, Run], caption: str, figure: str, arms: Mapping[str, str]) -> Table:
-    """Return the parameters of some arms, by name, each with a run of it."""
+def parameters(
+    runs: Mapping[str, Run], caption: str, figure: str, arms: Mapping[str, str], printed: Mapping[str, Sequence[str]]
+) -> Table:
+    """Return the parameters of some arms, by name, each with a run of it, and the printed ones below."""
     rows = []
     for name, run in ((name, runs[run]) for name, run in arms.items()):
         model, robot = run.model, run.config["robot"]
@@ -31,6 +33,7 @@ def parameters(runs: Mapping[str, Run], caption: str, figure: str, arms: Mapping
                 number(robot["torque_limit"]),
             ]
         )
+        rows.append([f"{name}, printed", *printed[name]])
     header = (
         *("manipulator", "link lengths (m)", "link masses (kg)", "joint limits", "joint error limit (rad)"),
         *("sample time (ms)", "max. continuous torque (N m)"),

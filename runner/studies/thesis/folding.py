@@ -1,46 +1,26 @@
-"""Folding of the Mini: distance to a singular configuration, stabilizing sag, and scatter over repetitions.
+"""Folding of the Mini: distance to a singular configuration, stabilizing sag, and time at which two draws part.
 
 The folded Mini is chaotic: the result of a single run depends on rounding; the common result of all repetitions does
 not.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import format_range, number, quantity
 from runner.store import Run
-from runner.studies.thesis.figures import at_rest
-from runner.study.measured import ROUNDING
+from runner.study.prose.signals import difference, norm, of_joints
 
 _PARTED = 1.0  # rad
 
 
 def singular_value(run: Run) -> FloatArray:
-    """Return the smallest singular value of the Mini's Jacobian at each tick, shape (T,), in m."""
-    return _singular_values(run)[:, -1]
-
-
-def volume(run: Run) -> FloatArray:
-    """Return the manipulability |det J| of the Mini at each tick, shape (T,), in m^3."""
-    return np.asarray(_singular_values(run).prod(axis=1))
-
-
-def closest(signal: Callable[[Run], FloatArray]) -> Callable[[Run], float]:
-    """Return the value of a signal where the Mini is closest to a singular posture."""
-    return lambda run: float(signal(run)[_row(run)])
-
-
-def volume_of_closest(run: Run) -> str:
-    """Return the manipulability there for a table: folded, it is smaller than what is called rounding elsewhere."""
-    return number(closest(volume)(run))
-
-
-def time_of_closest(run: Run) -> str:
-    """Return when that is, in s."""
-    return f"{run.t[_row(run)]:.2f}"
+    """Return the smallest singular value of the Mini's columns of the whole arm's Jacobian, shape (T,), in m."""
+    positions = run.joints("q")
+    values, finite = np.full(len(positions), np.nan), np.isfinite(positions).all(axis=1)
+    jacobians = [run.model.tip_jacobian(q)[:3, 3:] for q in positions[finite]]
+    values[finite] = np.linalg.svd(np.reshape(jacobians, (-1, 3, 3)), compute_uv=False)[:, -1]
+    return values
 
 
 def sag(run: Run) -> float:
@@ -49,51 +29,10 @@ def sag(run: Run) -> float:
     return missing_acceleration(run, len(run.trace()) - 1) / rate**2
 
 
-def farthest_at_rest(run: Run) -> float | None:
-    """Return the largest steady-state error of the repetitions that do not diverge, in m; None where all do."""
-    return max(at_rest(run), default=None)
-
-
-def spread_at_rest(run: Run) -> float | None:
-    """Return by how much the steady-state errors of those repetitions differ, in m; None where all diverge."""
-    errors = at_rest(run)
-    return max(errors) - min(errors) if errors else None
-
-
-def at_rest_text(run: Run) -> str:
-    """Return the range of the steady-state errors of those repetitions for a table; one number where they are alike."""
-    errors = at_rest(run)
-    if not errors:
-        return "failed"
-    low, high = min(errors), max(errors)
-    return format_range(low, high, "m") if high - low > ROUNDING else quantity(high, "m", rounding=ROUNDING)
-
-
-def parting(first: Run, second: Run) -> FloatArray:
-    """Return the distance between the joint positions of two runs at their common ticks, shape (T,), in rad."""
-    a, b = (run.joints("q") for run in (first, second))
-    rows = min(len(a), len(b))
-    return np.asarray(np.linalg.norm(a[:rows] - b[:rows], axis=1))
-
-
 def parted_at(first: Run, second: Run) -> float | None:
     """Return from when on two runs have been 1 rad apart, in s; None where they never are."""
-    apart = parting(first, second) >= _PARTED
+    apart = norm(difference(of_joints()))(first, second) >= _PARTED
     return float(first.t[int(apart.argmax())]) if apart.any() else None
-
-
-def _row(run: Run) -> int:
-    singular = singular_value(run)
-    return int(np.nanargmin(singular)) if np.isfinite(singular).any() else 0
-
-
-def _singular_values(run: Run) -> FloatArray:
-    """Return those of the Mini's columns of the whole arm's Jacobian, shape (T, 3): they depend on no frame."""
-    model, positions = run.model, run.joints("q")
-    values, finite = np.full((len(positions), 3), np.nan), np.isfinite(positions).all(axis=1)
-    jacobians = [model.tip_jacobian(q)[:3, 3:] for q in positions[finite]]
-    values[finite] = np.linalg.svd(np.reshape(jacobians, (-1, 3, 3)), compute_uv=False)
-    return values
 
 
 def missing_acceleration(run: Run, row: int) -> float:

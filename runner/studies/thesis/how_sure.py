@@ -4,15 +4,13 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from runner.base.quantities import number, quantity, with_ends
-from runner.reporting.document import Curves, Panel, Series, Table
+from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.figures import origin
 from runner.reporting.published_claims import FACTOR, load_claims
 from runner.reporting.sweep.effects import at_texts
 from runner.reporting.words import PRESET
-from runner.statistics.proportion import count_share
 from runner.store import Run
-from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
+from runner.studies.thesis.judged import Judged, judge_by_seeds
 from runner.study.measured import Measured
 from runner.study.prose.patterns import found
 
@@ -31,19 +29,6 @@ def judged(runs: Mapping[str, Run]) -> list[Judged]:
         own = {figure: runs[f"{figure}/{preset}"] for figure in seeds}
         given += [judge_by_seeds(claim, claims, seeds, own, preset) for claim in claims]
     return sorted(given, key=lambda each: each.claim.number)
-
-
-def distributions(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Table:
-    """Return median and quantiles of each claim, beside the study's own median and verdict."""
-    header = ["claim", "under", "compared with", "median", "1 % to 99 %", "verdict", "own median", "own verdict"]
-    return Table(caption, header, [_distribution(each) for each in given], (), origin(found(runs, _RUNS)[0].run))
-
-
-def turned(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Table:
-    """Return how often the claims on which some seed speaks otherwise would be judged otherwise."""
-    header = ["claim", "under", "verdict", "otherwise", "one seed", "groups drawn", "groups that share none"]
-    rows = [_turned(each) for each in given if each.otherwise(each.alone)]
-    return Table(caption, header, rows, (), origin(found(runs, _RUNS)[0].run))
 
 
 def around_printed(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Curves:
@@ -69,11 +54,6 @@ def seeds(given: Sequence[Judged], words: str) -> Measured:
     return Measured(words, max(each.values.size for each in given))
 
 
-def drawn(words: str) -> Measured:
-    """Return how many groups of seeds are drawn."""
-    return Measured(words, DRAWN)
-
-
 def of_one_seed(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
     """Return which share of the seeds alone would judge a claim otherwise, in per cent."""
     each = _find(given, claim, preset)
@@ -94,24 +74,6 @@ def most_of_groups(given: Sequence[Judged], words: str, but: int = 0) -> Measure
 def unanimous(given: Sequence[Judged], words: str) -> Measured:
     """Return of how many judgements every seed alone says the same."""
     return Measured(words, sum(bool(each.alone) and not each.otherwise(each.alone) for each in given))
-
-
-def unseen(given: Sequence[Judged], words: str) -> Measured:
-    """Return up to which share of seeds, in per cent, may judge otherwise where none did."""
-    of = max(each.values.size for each in given)
-    return Measured(words, 100.0 * count_share(0, of).high if of else None, "%")
-
-
-def median_of(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
-    """Return the median of a claim's seeds."""
-    each = _find(given, claim, preset)
-    return Measured(words, float(each.quantiles()[0]) if each.values.size else None, each.claim.unit)
-
-
-def turns_at(given: Sequence[Judged], claim: int, words: str) -> Measured:
-    """Return above which value a claim is judged larger than printed."""
-    chosen = next(each.claim for each in given if each.claim.number == claim)
-    return Measured(words, None if chosen.value is None else FACTOR * chosen.value, chosen.unit)
 
 
 def other_by_plant(given: Sequence[Judged], words: str) -> Measured:
@@ -138,38 +100,3 @@ def _find(given: Sequence[Judged], claim: int, preset: str) -> Judged:
 def _largest(words: str, unit: str, values: Sequence[float | None]) -> Measured:
     known = [value for value in values if value is not None]
     return Measured(words, max(known) if len(known) == len(values) else None, unit)
-
-
-def _distribution(each: Judged) -> list[str]:
-    unit, own = each.claim.unit, each.own_verdict or "failed"
-    if not each.values.size:
-        texts = ["–", "failed", "–", "failed"]
-    else:
-        median, low, high = each.quantiles().tolist()
-        middle, ends, _ = with_ends(median, low, high, unit, each.printed)
-        texts = [quantity(each.printed, unit), middle, ends, each.verdict or "–"]
-    own_median, _, _ = with_ends(each.own, each.own, each.own, unit, each.printed)
-    return [f"claim {each.claim.number}", PRESET[each.preset], *texts, own_median, own]
-
-
-def _turned(each: Judged) -> list[str]:
-    others = [verdict or "–" for verdict in each.alone if verdict != each.verdict]
-    told = ", ".join(f"{others.count(verdict)} {verdict}" for verdict in dict.fromkeys(sorted(others)))
-    drawn_share = f"{number(each.share_otherwise(each.drawn))} %"
-    return [
-        f"claim {each.claim.number}",
-        PRESET[each.preset],
-        each.verdict or "–",
-        told,
-        _with_interval(each.otherwise(each.alone), len(each.alone)),
-        drawn_share,
-        _with_interval(each.otherwise(each.apart), len(each.apart)),
-    ]
-
-
-def _with_interval(count: int, of: int) -> str:
-    if not of:
-        return "–"
-    share = count_share(count, of)
-    low, high = (number(100.0 * end, 2) for end in (share.low, share.high))
-    return f"{number(100.0 * count / of)} % ({low} to {high})"

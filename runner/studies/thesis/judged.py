@@ -1,4 +1,4 @@
-"""Verdicts on a claim by all seeds, by each seed, and by groups as large as the run of the study."""
+"""Verdicts on a claim by all seeds, by each seed, and by groups of seeds as large as the run of the study."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -31,7 +31,6 @@ class Judged:
         verdict: Verdict on that median.
         alone: Verdict on each seed alone.
         drawn: Verdicts on the medians of groups that are as large as the study's own run, drawn with replacement.
-        apart: Verdicts on the medians of such groups that share no seed.
         own: Median of the study's own run, on the plant by which its claims are judged.
         own_verdict: Verdict on that.
     """
@@ -43,7 +42,6 @@ class Judged:
     verdict: Verdict | None
     alone: _Verdicts
     drawn: _Verdicts
-    apart: _Verdicts
     own: float | None
     own_verdict: Verdict | None
 
@@ -124,7 +122,6 @@ def judge_by_seeds(
         verdict=verdict_on(claim, claims, of_seeds) if count else None,
         alone=by(every[:, None]),
         drawn=by(drawn),
-        apart=by(every[: count // size * size].reshape(-1, size)),
         own=of_study(run, metric),
         own_verdict=verdict_on(claim, claims, of_study),
     )

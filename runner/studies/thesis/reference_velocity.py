@@ -1,11 +1,10 @@
-"""Speed of the Mini's target, and the lag of a Mini that receives a series of goals."""
+"""Speed of the Mini's target, seen from its base and from the ground."""
 
 import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.store import Run
-from runner.study.prose.signals import largest_of
 
 
 def speed_seen(run: Run) -> FloatArray:
@@ -16,13 +15,6 @@ def speed_seen(run: Run) -> FloatArray:
 def speed_on_the_ground(run: Run) -> FloatArray:
     """Return the speed of x_d - x_E, likewise."""
     return _speeds(run, np.broadcast_to(np.eye(3), (len(run.trace()), 3, 3)))
-
-
-def lag(run: Run) -> float | None:
-    """Return the closed form of the Mini's lag behind its target, in m."""
-    controller, speed = run.config["controller"], largest_of(speed_seen)(run)
-    factor = 2.0 * float(controller["damping_ratio"]["mini"]) / float(controller["natural_frequency"]["mini"])
-    return None if speed is None else factor * speed
 
 
 def _speeds(run: Run, frames: FloatArray) -> FloatArray:

@@ -16,7 +16,7 @@ from runner.reporting.words import PLANT
 from runner.store import Run
 from runner.study import run_values
 from runner.study.measured import Measured
-from runner.study.prose.patterns import axes_of, called, found
+from runner.study.prose.patterns import axes_of, called, found, other
 from runner.study.run_values import Signal, config_value, number_of
 
 
@@ -68,7 +68,7 @@ def plant_of(runs: Mapping[str, Run], run: str) -> str:
 
 
 def integration_error(runs: Mapping[str, Run], run: str, *metrics: str) -> str:
-    """Return a run's plant, its step, and what that is worth in some metrics, in two sentences at most."""
+    """Return a run's plant, its step, and the error of the step in some metrics, in two sentences at most."""
     return describe_plant(runs[run], metrics)
 
 
@@ -83,12 +83,12 @@ def notice(title: str, text: str) -> Notice:
 
 
 def largest(name: str, *values: Measured) -> Measured:
-    """Return the largest of some measured values by a name of its own; none where one of them has no value."""
+    """Return the largest of some measured values by a name of its own; none if one of them has no value."""
     return _extreme(max, name, values)
 
 
 def smallest(name: str, *values: Measured) -> Measured:
-    """Return the smallest, likewise."""
+    """Return the smallest of some measured values by a name of its own; see `largest`."""
     return _extreme(min, name, values)
 
 
@@ -100,7 +100,7 @@ def of_run(
     *names: str,
     though_failed: bool = False,
 ) -> Measured:
-    """Return what a function gives for a run, or for some runs, as a measured value that conditions call by words.
+    """Return the value of a function of a run, or of some runs, as a measured value that conditions call by words.
 
     A failed run has no value, unless what a function reads of it until it failed is asked for.
     """
@@ -132,16 +132,20 @@ def each(
     *patterns: str,
     only: Callable[[Run], bool] | None = None,
     levels: Mapping[str, str] | None = None,
+    others: Sequence[str] = (),
 ) -> list[Measured]:
     """Return a metric, or what a function gives, of each run that patterns stand for; see of_run and largest.
 
-    The words have axes in braces; without any, the name of the run follows them. With `only` it is of the runs of
-    which this function is true alone. `levels` has words for levels of the axes.
+    The words have axes in braces; without any, the name of the run follows them. `only` selects the runs for
+    which this function is true. `levels` has words for levels of the axes. `others` names further runs, which the
+    function gets, too.
     """
     return [
         Measured(
             called(words, one.levels, levels or {}) if axes_of(words) else f"{words} of {one.name}",
-            None if one.run.status == "failed" else number_of(what, one.run),
+            None
+            if one.run.status == "failed"
+            else number_of(what, one.run, *(other(runs, twin, one.levels) for twin in others)),
             unit,
         )
         for pattern in patterns

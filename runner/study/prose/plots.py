@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.reporting.document import Curves, Map, Maps, Panel, Series
-from runner.reporting.figures import AXES, origin
+from runner.reporting.figures import AXES, captioned, origin
 from runner.store import Run
 from runner.study.prose.patterns import axes_of, called, found, other
 from runner.study.run_values import Signal, number_of, trace_of
@@ -230,14 +230,14 @@ def curves(
 
     Args:
         runs: The runs of the study by name.
-        caption: What is seen; inline mathematics as in Text.
+        caption: What is seen, after its finding and a line break if it has one; inline mathematics as in Text.
         run: The run whose command stands under the figure.
         panels: The axes in reading order, one by one or several in one, as `same_y` gives them.
         columns: How many stand beside each other; two at most where it is left out.
         number: Its number in the source.
     """
     drawn = [each for given in panels for each in ([given] if isinstance(given, Panel) else given)]
-    return Curves(caption, drawn, columns or min(2, len(drawn)), origin(runs[run], number))
+    return captioned(caption, drawn, columns or min(2, len(drawn)), origin(runs[run], number))
 
 
 def heat_map(

@@ -68,8 +68,8 @@ def read_chapter(file: str, text: str, names: Mapping[str, Any], handed: tuple[t
         holds: turns > 10 * both
         :::
 
-    The boxes `stands`, `falls`, `turns` and `why` answer the question that is the title of the chapter. Their title may
-    be all that they say.
+    The boxes `stands`, `falls`, `turns` and `why` answer the question that is the title of the chapter. Their text
+    may be empty.
 
     Args:
         file: Name of the file, for messages.

@@ -3,11 +3,13 @@
 from dataclasses import replace
 from typing import get_args
 
+import numpy as np
 import pytest
+from support.pdf_text import pages
 from support.sample_document import HOSTILE, document
 
 from runner.reporting import pdf
-from runner.reporting.document import Block, Document, Section, Table
+from runner.reporting.document import Block, Curves, Document, Panel, Section, Series, Table, Text
 from runner.reporting.templating import quote_typst, typst_environment, typst_value
 
 
@@ -60,3 +62,29 @@ def test_a_link_leads_to_its_section_and_one_without_section_is_text():
     links = pdf.render(Document("t", "s", "a", [Section("one", [table])], "2026-01-01"))
     plain = pdf.render(Document("t", "s", "a", [Section("one", [replace(table, rows=[["1"], ["9.9"]])])], "2026-01-01"))
     assert links.count(b"/Subtype/Link") == plain.count(b"/Subtype/Link") + 1
+
+
+@pytest.mark.costs(2)
+def test_figures_and_tables_stay_in_their_section_within_a_page_of_their_mention():
+    series = [Series("a", np.arange(3.0), np.arange(3.0))]
+    names = [f"N{number}" for number in range(9)]
+    sections = [
+        Section(
+            f"Section {name}",
+            (
+                Text(f"Mention {name}. " + "Words. " * 90 * (number % 3)),
+                Curves("Shown.", [Panel("", "x", "y", series)] * (1 + 2 * (number % 2)), 1, finding=f"Finding {name}."),
+                Table(f"Listed {name}.", ["n"], [["1"]] * 4),
+            ),
+        )
+        for number, name in enumerate(names)
+    ]
+    made = pages(pdf.render(Document("T", "", "", [Section("Chapter", sections=sections)], "")))
+    text = " ".join(made)
+    # The last place of a heading: the contents name it, too.
+    order = [text.rindex(f"{word} {name}") for name in names for word in ("Section", "Mention", "Finding", "Listed")]
+    assert order == sorted(order)
+    page = {word: [next(at for at, each in enumerate(made) if f"{word} {name}" in each) for name in names]
+            for word in ("Mention", "Finding")}  # fmt: skip
+    assert max(np.subtract(page["Finding"], page["Mention"])) <= 1
+    assert len(made) > 3

@@ -15,10 +15,6 @@ SOME = {
         "mass/1.75/known": ("experiment=thesis/figure_5_12", "repetitions=1", "noise=none",
                             "robot.stages.mini.masses.link2=0.875", "robot.stages.mini.masses.link3=0.875",
                             "controller.payload=known"),
-        "stage_sampling/euler4/coupled/0.0031": (
-            "experiment=thesis/figure_5_8", "repetitions=1", "noise=none", "torque_limits=none",
-            "trajectory.goal=[0.001,1.099,1.1]", "duration=2", "plant.step=0.000775", "controller.period.mini=0.0031",
-            "controller.period.macro=0.0093", "plant.dynamics=coupled"),
         "bandwidth/bias/30.0": ("experiment=thesis/figure_5_12", "controller.payload=known", "repetitions=7",
                                 "controller.natural_frequency.mini=30", "noise.bias.macro=0.001"),
         "sampling/0.95": ("experiment=thesis/sampling", "controller.period=0.0316667"),
@@ -86,7 +82,7 @@ SOME = {
 @pytest.mark.parametrize(
     ("study", "runs", "calibrations"),
     [
-        ("thesis", 326, 0),
+        ("thesis", 275, 0),
         ("thesis_beyond", 267, 0),
         ("xarm7", 119, 0),
         ("meca500", 244, 36),

@@ -165,7 +165,7 @@ def test_a_bound_is_the_other_claims_number_or_our_median_where_that_is_larger(m
     block = blocks(runs, NUMBER, mini)[1]
     assert told(block) == ("0.3 s", verdict)
     each = f"{macro / 10:g} s"
-    ours = f"{each} (as the thesis ran it) and {each} (with its full equations)"
+    ours = f"{each} (as fitted) and {each} (by the printed equations)"
     assert block.reason == f"It is scaled. A tenth of the Macro's is {ours}."
 
 
@@ -181,7 +181,7 @@ def test_repetitions_that_are_late_are_counted_where_the_error_at_rest_is_judged
 
 def test_the_table_has_a_row_for_each_claim_and_a_column_for_each_preset():
     made = blocks({"macro": run_of({"settling_time": seconds(1.4)})}, NUMBER, NUMBER | {"number": 2})
-    assert Verdicts("Verdicts.", made).ways == ["as the thesis ran it", "with its full equations"]
+    assert Verdicts("Verdicts.", made).ways == ["as fitted", "by the printed equations"]
     assert [row.number for row in made] == ["1", "2"]
     assert [(found.measured, found.verdict) for found in made[0].findings] == [("1.4 s", "matches")] * 2
 

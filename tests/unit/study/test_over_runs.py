@@ -69,10 +69,10 @@ def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
     )
     assert made.header == ["preset", "gain", "error (m)", "settles (s)", "of the full equations"]
     assert [row[:2] for row in made.rows][:4] == [
-        ["with its full equations", "1"],
-        ["with its full equations", "ten"],
-        ["with its full equations", "5"],
-        ["as the thesis ran it", "1"],
+        ["by the printed equations", "1"],
+        ["by the printed equations", "ten"],
+        ["by the printed equations", "5"],
+        ["as fitted", "1"],
     ]
     assert [row[2] for row in made.rows] == ["1", "10", "5", "2", "20", "10", "7"]
     assert {row[3] for row in made.rows} == {"never"}
@@ -92,7 +92,7 @@ def test_a_failed_run_says_so():
 
 def test_a_comparison_has_a_row_for_each_metric_and_a_column_for_each_level():
     made = tables.comparison(RUNS, "Both.", "gain/5/{preset}", "error", "settling_time")
-    assert made.header == ["metric", "with its full equations", "as the thesis ran it"]
+    assert made.header == ["metric", "by the printed equations", "as fitted"]
     assert made.rows == [["error", "5 m", "10 m"], ["settling time", "never", "never"]]
     with pytest.raises(RunnerError, match="a comparison goes over one axis"):
         tables.comparison(RUNS, "Both.", "gain/{gain}/{preset}", "error")
@@ -102,8 +102,8 @@ def test_a_number_against_an_axis_has_the_band_of_its_repetitions():
     runs = {**RUNS, "gain/10/full_equations": run_of(10.0, ends=(8.0, 13.0))}
     full_equations, reported = plots.over(runs, "gain/{gain}/{preset}", "gain", "error", "{preset}", color=3)
     assert (full_equations.name, reported.name, full_equations.color, reported.color) == (
-        "with its full equations",
-        "as the thesis ran it",
+        "by the printed equations",
+        "as fitted",
         3,
         4,
     )

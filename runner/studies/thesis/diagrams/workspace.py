@@ -13,7 +13,7 @@ from runner.reporting.charts import palette
 from runner.reporting.charts.canvas import GREY, INK, Camera, arrow, circle, drawing, triad, write
 from runner.robots.workspace import Workspace
 
-_SHOWN = 2500  # tip positions drawn in the sphere
+_SHOWN = 1000  # tip positions drawn in the sphere
 _CELLS = 40  # of the cross-section, along its radius; each shows its best sample
 _SINGULAR = palette.LIGHT[1]
 
