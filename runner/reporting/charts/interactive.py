@@ -88,7 +88,7 @@ def _named_places(names: Sequence[str]) -> Json:
         "tickmode": "array",
         "tickvals": list(range(0, len(names), step)),
         "ticktext": [neutral(name) for name in names[::step]],
-        "autotickangles": [0, -35, -90],  # names that are turned end at their place, so that the last one has room
+        "autotickangles": [0, -35, -90],  # turned names end at their place, which leaves room for the last one
         "range": [-0.5, len(names) - 0.5],
     }
 
