@@ -206,7 +206,7 @@ def coarsen(series: Series) -> Series:
     """Return every second, fourth, ... sample of a smooth curve, as few as show it.
 
     Straight lines between the samples stay within a small share of the range of y. A curve with a band, hints or gaps,
-    or one that goes back and forth, stays as it is.
+    or one that goes back and forth, stays whole.
     """
     x, y = series.x, series.y
     extra = series.low is not None or series.high is not None or series.hints or series.runs
