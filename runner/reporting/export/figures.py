@@ -28,6 +28,7 @@ _WIDTH, _HEIGHT = re.compile(r'\bwidth="([\d.]+)pt"'), re.compile(r'\bheight="([
 _POINTS = 72.0  # in an inch
 _LONGEST = 100  # letters of a file's name
 _WORD = re.compile("[a-z0-9]+")
+_OF_JOINT = re.compile(r"\b(torque|force) of \S+(?= \()")
 _UNIT_OF_LABEL = re.compile(r"\s*\([^()]*\)$")
 Figure = Curves | Maps | Picture | Playback
 Axes = TypeVar("Axes", Panel, Map)
@@ -59,6 +60,8 @@ def _content(figure: Figure) -> str:
         return plain_caption(figure.caption).partition(". ")[0]
     if isinstance(figure, Curves):
         shown, across = [panel.y_label for panel in figure.panels], [panel.x_label for panel in figure.panels]
+        if len(shown) > 1:
+            shown = [_OF_JOINT.sub(r"\1", label) for label in shown]
     else:
         shown = [f"map of {figure.value_label}"]
         across = [label for panel in figure.panels for label in (panel.x_label, panel.y_label)]
