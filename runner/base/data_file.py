@@ -1,14 +1,15 @@
 """Validated YAML data files, including untrusted ones."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 import yaml
-from pydantic import TypeAdapter, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 
 from runner.base.bounded_yaml import STORED, YamlError, read_yaml
-from runner.base.errors import RunnerError
+from runner.base.errors import RunnerError, nearest
 from runner.base.limits import read_text
 
 T = TypeVar("T")
@@ -34,7 +35,7 @@ def read_data(path: Path, model: type[T]) -> T:
         return TypeAdapter(model).validate_python(content)
     except ValidationError as error:
         lines = [
-            f"{_entry(content, each['loc'])}{each['msg'].removeprefix('Value error, ')}{_line(text, each['loc'])}"
+            f"{_entry(content, each['loc'])}{_explain(model, dict(each))}{_line(text, each['loc'])}"
             for each in error.errors()
         ]
         raise RunnerError(f"{path}: {'; '.join(lines)}") from error
@@ -44,6 +45,27 @@ def line_of(path: Path, text: str) -> int:
     """Return the number of the line of a data file that has a text, not followed by more of a name."""
     before = re.split(rf"{re.escape(text)}(?![\w.-])", read_text(path, STORED.size), maxsplit=1)[0]
     return before.count("\n") + 1
+
+
+def _explain(model: Any, problem: dict[str, Any]) -> str:
+    """Return the message of a problem; one of an unknown key names the keys that are allowed in its place."""
+    if problem["type"] != "extra_forbidden":
+        return str(problem["msg"]).removeprefix("Value error, ")
+    *groups, key = problem["loc"]
+    inside = list(_models(model))
+    for group in groups:
+        kinds = [each.model_fields[group].annotation for each in inside if group in each.model_fields]
+        inside = [nested for kind in kinds for nested in _models(kind)] or inside
+    keys = list(dict.fromkeys(field.alias or name for each in inside for name, field in each.model_fields.items()))
+    return f"unknown key{nearest(str(key), keys)}; keys: {', '.join(keys)}"
+
+
+def _models(kind: Any) -> Iterator[type[BaseModel]]:
+    """Yield the models in an annotation."""
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        yield kind
+    for inner in get_args(kind):
+        yield from _models(inner)
 
 
 def _line(text: str, location: tuple[int | str, ...]) -> str:

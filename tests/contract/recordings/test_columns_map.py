@@ -64,7 +64,7 @@ def test_signals_and_factors(tmp_path):
         ),
         ("{a: {tip: w, unit: m}}", "columns.a.tip: Input should be 'x', 'y' or 'z'"),
         ("{}", "columns: Dictionary should have at least 1 item"),
-        ("{a: {joint: q1, unit: rad, sign: -1}}", "columns.a.sign: Extra inputs are not permitted"),
+        ("{a: {joint: q1, unit: rad, sign: -1}}", "columns.a.sign: unknown key"),
     ],
 )
 def test_what_does_not_fit_is_named(tmp_path, columns, wanted):

@@ -233,7 +233,7 @@ def test_a_profile_makes_other_levels(tmp_path):
     [
         ({"study__yaml": "title: T\n"}, r"study.yaml: source: Field required .*chapters: Field required"),
         ({"study__yaml": ABOUT.replace("one.md", "on.md")}, r"study.yaml: chapters: on.md: must be .*mean one.md\?\)"),
-        ({"study__yaml": ABOUT + "in_al: false\n"}, r"study.yaml: in_al: Extra inputs are not permitted"),
+        ({"study__yaml": ABOUT + "in_al: false\n"}, r"study.yaml: in_al: unknown key"),
         ({"study__yaml": "title: [\n"}, r"study.yaml, line 2"),
         ({"runs__yaml": "grids: {goal: {wiht: []}}\n"}, r"runs.yaml: grids.goal.*wiht"),
         ({"caveats__yaml": "- {rules: [satration], runs: [a], why: W.}\n"}, r"no rule 'satration' \(did you mean satu"),
@@ -307,7 +307,7 @@ def test_its_printed_equations_are_judged_by_yaml_alone(tmp_path, made):
         (
             "unit: m",
             "truth: model.position",
-            r"1.yaml: entries.0 \(1\).truth: Extra inputs are not permitted \(line 4\)",
+            r"1.yaml: entries.0 \(1\).truth: unknown key; keys: id, .*derivation.* \(line 4\)",
         ),
     ],
 )

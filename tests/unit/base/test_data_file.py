@@ -40,7 +40,7 @@ def test_a_file_or_a_list_of_entries_is_read(tmp_path):
     [
         ("- {value: 1.0}\n- {name: mass}", ": 1 (mass).value: Field required"),
         ("- {number: 7, value: one}", ": 0 (7).value: Input should be a valid number"),
-        ("- {value: 1.0, unit: kg}", ": 0.unit: Extra inputs are not permitted"),
+        ("- {value: 1.0, unit: kg}", ": 0.unit: unknown key; keys: name, number, value"),
         ("- mass", ": 0: Input should be"),
         ("mass: 1", "yaml: Input should be a valid list"),
         ("", "yaml: Input should be a valid list"),
@@ -56,9 +56,9 @@ def test_all_problems_are_told_at_once(tmp_path):
 
 
 def test_a_problem_has_its_line(tmp_path):
-    text = "title: A\nitems:\n- name: a\n  value: 1\n- value: 2\n  unit: kg\n- name: b\n"
+    text = "title: A\nitems:\n- name: a\n  value: 1\n- value: 2\n  nmae: kg\n- name: b\n"
     message = refused(tmp_path, text, File)
-    assert "items.1.unit: Extra inputs are not permitted (line 6)" in message
+    assert "items.1.nmae: unknown key (did you mean name?); keys: name, number, value (line 6)" in message
     assert "items.2 (b).value: Field required (line 7)" in message
 
 
