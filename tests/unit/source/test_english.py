@@ -47,7 +47,7 @@ MOST = {
     "runner/base": 38,
     "runner/cli": 7,
     "runner/config": 26,
-    "runner/reporting": 163,
+    "runner/reporting": 164,
     "runner/robots": 42,
     "runner/studies": 471,
     "runner/study": 156,
