@@ -137,7 +137,9 @@ def digits_between(low: float, high: float) -> int:
     return 3 if high <= low else min(12, max(3, 2 - math.floor(math.log10((high - low) / largest))))
 
 
-def format_range(low: float | None, high: float | None, unit: str, beside: float | None = None) -> str:
+def format_range(
+    low: float | None, high: float | None, unit: str, beside: float | None = None, word: str = "to"
+) -> str:
     """Return a range with one unit for both ends, such as "7 to 44 mm".
 
     Args:
@@ -145,9 +147,10 @@ def format_range(low: float | None, high: float | None, unit: str, beside: float
         high: The upper end, which determines the unit by default.
         unit: The SI unit.
         beside: A value for comparison; its unit is used unless another one needs fewer powers of ten.
+        word: Word between the ends.
     """
     factor, name = _shared((low, high), unit, beside)
-    return f"{_scaled(low, factor)} to {_scaled(high, factor)} {name}".strip()
+    return f"{_scaled(low, factor)} {word} {_scaled(high, factor)} {name}".strip()
 
 
 def with_interval(value: float, half: float) -> tuple[str, str]:

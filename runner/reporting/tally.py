@@ -73,7 +73,7 @@ def tallies(document: Document) -> list[Tally]:
 
 
 def _square(claim: str, found: ClaimResult) -> Square:
-    hangs = f"; hangs on {', '.join(found.hangs)}" if found.hangs else ""
+    hangs = f"; depends on {', '.join(found.hangs)}" if found.hangs else ""
     words = f"Claim {claim}: {found.verdict}{hangs}"
     return Square(claim + "*" * bool(found.hangs), found.verdict, claim_place(claim), words)
 
@@ -86,7 +86,7 @@ def find_conditional_claims(document_blocks: Iterable[Block]) -> str:
             for what in dict.fromkeys(what for result in row.findings for what in result.hangs):
                 found.setdefault(what, []).append(row.number)
     told = "; ".join(f"on {what}: claim {', '.join(claims)}" for what, claims in found.items())
-    return f"* Verdicts that hang {told}." if told else ""
+    return f"* Verdicts that depend {told}." if told else ""
 
 
 def _counted(verdicts: Iterator[str]) -> tuple[tuple[str, int], ...]:

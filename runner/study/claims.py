@@ -159,7 +159,7 @@ class _Claimed:
         others = Counter(other for other in alone if other != verdict)
         if others:
             told["the seed"] = ", ".join(
-                f"{count} of {len(alone)} repetitions alone: {other}" for other, count in others.items()
+                f"{count} of {len(alone)} single repetitions: {other}" for other, count in others.items()
             )
         if claim.longer and (text := self._lasting(run, preset, verdict)):
             told["the end of the run"] = text

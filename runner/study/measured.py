@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from runner.base.quantities import ROUNDING as SMALLEST
-from runner.base.quantities import number, quantity
+from runner.base.quantities import format_range, number, quantity
 from runner.reporting.document import Document, Notice, NoticeKind
 from runner.reporting.outline import chapters
 
@@ -61,6 +61,10 @@ class Measured:
     def _above(self, limit: float) -> str:
         small = self.value is not None and 0.0 < abs(self.value) < limit
         return f"less than {quantity(limit, self.unit)}" if small else quantity(self.value, self.unit)
+
+    def beside(self, other: Measured) -> str:
+        """Return it and another value of the same kind in one unit, such as "0.775 and 108 mm"."""
+        return format_range(self.value, other.value, self.unit, word="and")
 
     def __mul__(self, factor: float) -> Measured:
         """Return it so many times."""

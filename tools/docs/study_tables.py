@@ -66,7 +66,7 @@ def _lines(verdicts: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _found(ours: Mapping[str, Any]) -> str:
-    hangs = f"; hangs on {', '.join(ours['hangs'])}" if ours["hangs"] else ""
+    hangs = f"; depends on {', '.join(ours['hangs'])}" if ours["hangs"] else ""
     return f"{ours['verdict']}: {ours['measured']}{hangs}"
 
 

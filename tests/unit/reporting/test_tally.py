@@ -33,8 +33,8 @@ def test_a_verdict_that_hangs_on_something_has_a_star_and_a_line():
     verdicts = Verdicts("All.", [Claim("7", "It holds", "page 1", "1", [found], ""), claim("8", "matches")])
     (tally,) = tallies(Document("", "", "", [Section("A", [verdicts])], ""))
     assert [square[0] for square in tally.squares] == ["7*", "8"]
-    assert tally.squares[0].words == "Claim 7: matches; hangs on the engine"
-    assert find_conditional_claims([verdicts]) == "* Verdicts that hang on the engine: claim 7."
+    assert tally.squares[0].words == "Claim 7: matches; depends on the engine"
+    assert find_conditional_claims([verdicts]) == "* Verdicts that depend on the engine: claim 7."
     assert find_conditional_claims([Verdicts("All.", [claim("8", "matches")])]) == ""
 
 

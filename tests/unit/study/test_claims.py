@@ -112,7 +112,7 @@ def test_a_verdict_hangs_on_the_engine_where_the_same_noise_is_judged_otherwise_
 def test_a_verdict_hangs_on_the_seed_where_repetitions_alone_are_judged_otherwise():
     assert hanging(run_of({"settling_time": seconds(1.3, 1.4, 1.5)})) == {}
     found = hanging(run_of({"settling_time": seconds(0.1, 1.4, 1.4, 1.5, 9.0)}))
-    told = "1 of 5 repetitions alone: smaller than printed, 1 of 5 repetitions alone: larger than printed"
+    told = "1 of 5 single repetitions: smaller than printed, 1 of 5 single repetitions: larger than printed"
     assert found == {"the seed": told}
 
 

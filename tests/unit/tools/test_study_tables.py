@@ -68,7 +68,7 @@ def test_rows_are_made_in_the_order_that_the_page_names():
         "| claim | printed | full |",
         "|---|---|---|",
         "| Statement 3 | 9 mm | matches: 6 mm |",
-        r"| Statement 2 | 9 mm | matches: 7 \| mm; hangs on the seed |",
+        r"| Statement 2 | 9 mm | matches: 7 \| mm; depends on the seed |",
         "",
         "Between.",
         "",
