@@ -20,7 +20,7 @@ Value = str | float | None
 
 @dataclass(frozen=True)
 class Change:
-    """Something that is not the same in both.
+    """A difference between two versions.
 
     Attributes:
         kind: One of KINDS.
@@ -36,7 +36,7 @@ class Change:
 
     @property
     def size(self) -> float:
-        """How far a number moved, as a share of what it was; infinite where that cannot be said."""
+        """Relative change of a number; infinite if the old value is 0 or one of them is not a number."""
         if not isinstance(self.old, float) or not isinstance(self.new, float) or self.old == 0.0:
             return float("inf")
         return abs(self.new / self.old - 1.0)
@@ -63,7 +63,7 @@ def read_conclusions(path: Path) -> Mapping[str, Any]:
 
 
 def changes(old: Mapping[str, Any], new: Mapping[str, Any]) -> list[Change]:
-    """Return what is not the same in two versions, by kind, numbers that moved most first.
+    """Return the differences of two versions, by kind, the largest changes of numbers first.
 
     Args:
         old: Conclusions by the studies' names, also those of an earlier version of this package.

@@ -94,10 +94,10 @@ class Chapters:
         return self._readings[stem]
 
     def names(self, stem: str) -> dict[str, Any]:
-        """Return what a chapter in Markdown may call and read, by name.
+        """Return the functions and values that a chapter in Markdown may use, by name.
 
         These are the shared blocks, which find calibrations among the runs; the public functions of `figures.py` and of
-        the module that bears the chapter's name; and what study.yaml, runs.yaml and claims.yaml hold. A function whose
+        the module with the chapter's name; and what study.yaml, runs.yaml and claims.yaml hold. A function whose
         first argument is `runs` or `calibrations` gets these.
         """
         presets, tunings = self._manifest.presets, self._grids.tunings
@@ -174,7 +174,7 @@ class Chapters:
         return section
 
     def _title(self, chapter: str | Part) -> str:
-        """Return what a chapter is called where it is left out: its title, of one in Python the file."""
+        """Return the title of a chapter, or the file name of one in Python, to show if it is left out."""
         if isinstance(chapter, Part):
             return chapter.title
         heading = self._text(chapter).partition("\n")[0] if chapter.endswith(".md") else ""

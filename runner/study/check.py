@@ -96,7 +96,7 @@ _NAMED = re.compile(
 
 
 def typed_numbers(file: str, text: str, levels: Set[str]) -> Iterator[str]:
-    """Yield each number that stands typed in a finding of a chapter, with file and line.
+    """Yield each number that is typed into a finding of a chapter, with file and line.
 
     Args:
         file: Name of the chapter's file.
@@ -117,7 +117,7 @@ def levels_in(names: Iterable[str]) -> set[str]:
 
 
 def typed_in(words: str, levels: Set[str]) -> set[str]:
-    """Return the numbers, with their units, that stand in some words and are neither a name nor a level."""
+    """Return the numbers in a string, with their units, that are neither part of a name nor a level."""
     return set(_NUMBER.findall(_NAMED.sub("", _MATHEMATICS.sub("", words)))) - levels
 
 
@@ -131,7 +131,7 @@ def _blank(box: str) -> str:
 _CHANGES: tuple[Callable[[float], float | None], ...] = (
     lambda value: 1000.0 * value,
     lambda value: value / 1000.0,
-    lambda value: value + 1000.0,  # what is of the size of rounding, or none, becomes large by this alone
+    lambda value: value + 1000.0,  # only this makes 0, or a rounding error, large
     lambda value: value - 1000.0,
 )
 
@@ -155,7 +155,7 @@ def never_failing(file: str, reading: Reading) -> list[str]:
 
 
 def _may_fail(file: str, stated: Stated, values: Values) -> bool:
-    """Tell whether each condition of an expression fails for some change."""
+    """Return True if each condition of an expression fails for some change."""
     given = conditions_of(file, stated, values)
     fell = {
         index

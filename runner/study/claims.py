@@ -36,7 +36,7 @@ _DIGITS = 4  # at least as many as a source prints
 
 
 def legend(claims: Sequence[PublishedClaim]) -> str:
-    """Return what the words of the verdicts on a study's claims mean: of the kinds of claims that it has."""
+    """Return the meanings of the verdicts on the kinds of claims that a study has."""
     numbers, motions = [claim for claim in claims if claim.metric], [claim for claim in claims if claim.extents]
     told = []
     if numbers:
@@ -51,7 +51,7 @@ def legend(claims: Sequence[PublishedClaim]) -> str:
         told += ["The source contradicts itself where another of its numbers, so widened, stays below the printed one."]
     if motions:
         told += [
-            "A stated motion matches when the tip moves as told, to half a unit of the last printed digit, and differs "
+            "A stated motion matches when the tip follows it to half a unit of the last printed digit, and differs "
             "otherwise. The source contradicts itself where the path that it prescribes is another motion."
         ]
     if any(claim.fails for claim in motions):
@@ -100,7 +100,7 @@ def run_name(name: str, preset: str) -> str:
 
 
 class _Claimed:
-    """One claim, with all that it is judged by.
+    """One claim, with everything that decides its verdict.
 
     Args:
         claim: The claim.
@@ -149,7 +149,7 @@ class _Claimed:
         )
 
     def _hangs(self, run: Run, preset: str, verdict: Verdict) -> dict[str, str]:
-        """Return what a verdict on a number hangs on: what else was made in its place would be judged otherwise."""
+        """Return the conditions that a verdict on a number depends on, each with the result under another one."""
         claim, told = self._claim, dict[str, str]()
         alone = [self._with(preset, None if np.isnan(value) else value) for value in run.values(claim.metric).tolist()]
         error = run.plant_error or {}
@@ -166,7 +166,7 @@ class _Claimed:
         return told
 
     def _lasting(self, run: Run, preset: str, verdict: Verdict) -> str:
-        """Return what becomes of a claim's number in a run that lasts longer; nothing where it stays as it is."""
+        """Return the effect of a longer run on a claim's number; empty if it has none."""
         longer = self._run(self._claim.longer, preset)
         value = longer.median(self._claim.metric)
         (end, lost), (_, own_lost) = map(_reach_lost, (longer, run))
@@ -180,7 +180,7 @@ class _Claimed:
         return "no value" if value is None else quantity(value, self._claim.unit)
 
     def _with(self, preset: str, value: float | None) -> Verdict:
-        """Return the verdict with another value in place of the claim's own."""
+        """Return the verdict if another value replaces the claim's own."""
         own = self._claim.simulated_by
         return self._of_number(lambda *key: value if key == own else self._median(preset, *key), preset)
 
@@ -189,7 +189,7 @@ class _Claimed:
         return judge_motion(self._claim.extents, self._claim.fails, tip, desired)
 
     def _moved(self, run: Run) -> str:
-        """Return where the tip moves along the axes that the claim speaks of."""
+        """Return the range of the tip along each axis of the claim, in m."""
         tip = run.vector("tip")
         paths = {extent.axis: tip[:, "xyz".index(extent.axis)] for extent in self._claim.extents}
         return ", ".join(f"{axis} {path.min():.4f} to {path.max():.4f} m" for axis, path in paths.items())
@@ -217,7 +217,7 @@ class _Claimed:
         return " ".join(text for text in told if text)
 
     def _late(self, preset: str) -> str:
-        """Return how many repetitions have not settled when the error at rest is taken; nothing where all have."""
+        """Return the number of repetitions that have not settled at the end; empty if all have."""
         run = self._run(self._claim.simulated_by[0], preset)
         band = float(run.config["robot"]["settling_band"])
         errors = run.values("steady_state_error") if "steady_state_error" in run.metrics else np.zeros(0)
@@ -251,10 +251,10 @@ _JUDGED_BY = {"printed", "metric", "extents", "fails", "bound", "like"}
 
 
 def late_claims(outputs: Path, study: Study, runs: Mapping[str, Run], date: str = "") -> list[str]:
-    """Return for each claim that was changed since these runs were first judged when that was, and what stood before.
+    """Return a line for each claim that was changed after these runs were first judged: the date and the old values.
 
-    What claims are judged by is kept in `claims/NAME.json` of the outputs folder, on this date, or where it is empty
-    today; a claim whose run is missing is not judged.
+    The judged fields of each claim are stored in `claims/NAME.json` of the outputs folder with this date, or with
+    today's if it is empty. A claim whose run is missing is not judged.
 
     Raises:
         StoreError: if the file is damaged, or the disk does not take it.

@@ -36,7 +36,7 @@ class Code:
     def functions(self, stem: str) -> dict[str, Callable[..., Any]]:
         """Return the public functions that a module of the folder defines, by name; none where there is no such module.
 
-        Where code may not run, each of them says so when it is called.
+        If code may not run, each of them raises MissingError when it is called.
 
         Raises:
             RunnerError: if the module cannot be imported; names the place.
@@ -79,7 +79,7 @@ def public_functions(module: ModuleType) -> dict[str, Callable[..., Any]]:
 
 def _not_run(path: Path) -> Callable[..., NoReturn]:
     def refuse(*_: object, **__: object) -> NoReturn:
-        raise MissingError(f"{path.name} was not run: code in a folder runs with --code alone")
+        raise MissingError(f"{path.name} was not run: code in a folder runs only with --code")
 
     return refuse
 
@@ -95,13 +95,13 @@ def _defined(path: Path) -> list[str]:
 
 @dataclass(frozen=True)
 class UserPlugin:
-    """A part of the user's that stands beside those of a study.
+    """A user-supplied part of a study.
 
     Attributes:
         group: Its config group, such as "controller".
         name: What the group calls it.
         module: What names its module: a file, or a module that Python finds.
-        folder: The folder of its module, in which its config stands as GROUP/NAME.yaml.
+        folder: The folder of its module, which contains its config as GROUP/NAME.yaml.
         function: True if it is one function, which needs no config.
     """
 
@@ -113,12 +113,12 @@ class UserPlugin:
 
     @property
     def override(self) -> str:
-        """What chooses it for a run."""
+        """Override that chooses it for a run."""
         return f"{self.group}={self.name}"
 
     @property
     def options(self) -> tuple[str, ...]:
-        """What a command that uses it has before the overrides."""
+        """Options of a command that uses it."""
         folders = [word for folder in self.config_dirs for word in ("--config-dir", os.path.relpath(folder))]
         return *folders, "--plugin", named_part(f"{self.group}={self.module}")
 
@@ -132,7 +132,7 @@ def read_user_plugins(lines: Sequence[str]) -> tuple[UserPlugin, ...]:
     """Return parts from what names them, GROUP=MODULE each, files by their whole paths.
 
     Raises:
-        RunnerError: if the config of one does not stand beside its module.
+        RunnerError: if the folder of a module does not contain the config.
     """
     parts = [_part(line) for line in lines]
     for part in parts:

@@ -25,7 +25,7 @@ def conclusions(
     calibrations: Mapping[str, Calibration],
     expected: Sequence[ExpectedCaveat],
 ) -> dict[str, object]:
-    """Return all that a report concludes, as plain data.
+    """Return the conclusions of a report, as plain data.
 
     Args:
         document: The report.

@@ -26,7 +26,7 @@ _CHOSEN = 0.05  # s in which the command chooses, composes and checks a trial
 
 @dataclass(frozen=True)
 class Amount:
-    """What there is to make with one robot, or with all.
+    """Number and cost of the pending runs with one robot, or with all.
 
     Attributes:
         trials: Number of trials of all tunings.
@@ -58,9 +58,9 @@ class Amount:
 
 
 def counted(study: Study, tunings: Sequence[Tuning], chosen: Collection[str]) -> dict[Overrides, Counts]:
-    """Return how many trials, long runs and runs that follow have some overrides.
+    """Return the numbers of trials, long runs and following runs, by their overrides.
 
-    The gains are left out, as they are not known yet. What is stored counts as what is not.
+    The gains are omitted because they are not known yet. Stored runs count like missing ones.
 
     Args:
         study: The study.
@@ -84,7 +84,7 @@ def planned(cells: Iterable[Overrides], way: Way) -> Listed:
 
 
 def estimate_all(plan: Plan, counts: Sequence[Counts]) -> dict[str, Amount]:
-    """Return what the cells of a plan take, by robot, each made as often as its counts say.
+    """Return the cost of the cells of a plan, by robot; the counts are the numbers of runs of each cell.
 
     Raises:
         ConfigError: if one of them cannot be made.
@@ -108,7 +108,7 @@ def _runs(study: Study, tunings: Sequence[Tuning], chosen: Collection[str]) -> I
 
 
 def told(laws: Sequence[str], amounts: Mapping[str, Amount], workers: int) -> str:
-    """Return which laws there are or how many, on how many arms, and what they take."""
+    """Return a line with the law or the number of laws, the number of arms, and the cost."""
     total = sum(amounts.values(), start=Amount(0, 0, 0, Estimate(0.0)))
     named_laws = laws[0] if len(laws) == 1 else f"{len(laws)} laws"
     return f"{named_laws} on {len(amounts)} arm{'s' if len(amounts) > 1 else ''}: {total.in_words(workers)}"

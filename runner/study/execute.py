@@ -24,7 +24,7 @@ from runner.sweeps.plan import Item
 def make_all(
     study: Study, outputs: Path, overrides: Sequence[str] = (), command: str = "runner reproduce"
 ) -> tuple[Results[Run], Results[Calibration]]:
-    """Make the runs and calibrations of a study that are not stored yet; return all by name.
+    """Execute the missing runs and calibrations of a study; return all by name.
 
     Gains that its runs take and that are not known are tuned at first.
 
@@ -32,7 +32,7 @@ def make_all(
         study: The study.
         outputs: Folder in which they are stored.
         overrides: How they are made: keys of hydra.sweeper, sweep and limits.
-        command: The command that makes them and goes on with it.
+        command: The command that executes and continues them.
 
     Raises:
         ConfigError: if one cannot be made, or all would cost too much; nothing has been started then.
@@ -78,7 +78,7 @@ def _command(study: Study, overrides: Sequence[str], run: Run) -> str:
 
 
 def count_missing(study: Study, outputs: Path) -> int:
-    """Return how many runs and calibrations of a study are not stored."""
+    """Return the number of runs and calibrations of a study that are not stored."""
     names = check(listed(_items(study), Way(outputs), Composer(study.config_dirs))).names
     in_shards = store.Finished(outputs).places_of(names) >= 0
     left = {name for name, there in zip(names, in_shards.tolist(), strict=True) if not there}

@@ -28,7 +28,7 @@ class ExpectedCaveat:
     Attributes:
         rule: Name of the rule that finds it.
         runs: Pattern of the names of the runs, such as "figure_5_*/as_reported".
-        why: Why it is there, and why the study's conclusions stand; a sentence.
+        why: Cause of the caveat, and why the study's conclusions hold nevertheless; a sentence.
     """
 
     rule: str
@@ -36,7 +36,7 @@ class ExpectedCaveat:
     why: str
 
     def covers(self, name: str, caveat: Mapping[str, Any]) -> bool:
-        """Tell whether it speaks of a caveat of the run of that name."""
+        """Return True if it covers a caveat of the run of that name."""
         return str(caveat["rule"]) == self.rule and fnmatchcase(name, self.runs)
 
 
@@ -64,7 +64,7 @@ def caveats_as_data(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat])
 
 
 def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> Section:
-    """Return which caveats a study's runs have, and why; a warning on top where one is not expected."""
+    """Return the caveats of a study's runs with their causes, and a warning if one is not expected."""
     lines = unexpected_caveats(runs, expected)
     blocks: list[Block] = []
     if lines:
@@ -119,7 +119,7 @@ class Entry(StrictModel):
     Attributes:
         rules: Names of the rules that find them.
         runs: Patterns of the names of the runs, such as "figure_5_*/as_reported".
-        why: Why they are there, and why the study's conclusions stand; a sentence.
+        why: Cause of the caveats, and why the study's conclusions hold nevertheless; a sentence.
     """
 
     rules: _Texts
@@ -131,7 +131,7 @@ def read_expected(folder: Path) -> tuple[ExpectedCaveat, ...]:
     """Return the caveats that a study expects: those of its file, if it has one, and one that is the machine's.
 
     Raises:
-        RunnerError: if the file does not fit, or names a rule that does not exist; tells entry and key.
+        RunnerError: if the file does not fit, or names a rule that does not exist; with entry and key.
     """
     path = folder / FILE
     if not path.is_file():

@@ -45,10 +45,10 @@ class Tick:
 
 @dataclass
 class Fit:
-    """How a law fits.
+    """Compatibility of a law with a study.
 
     Attributes:
-        problems: What is wrong, each with the first run that has it and the number of them.
+        problems: Problems, each with the first run that has it and the number of others.
         ticks: The first control ticks, by robot.
         amounts: What there is to make, by robot; none where something is wrong.
         tuned: Whether there are ranges to tune it in.
@@ -61,7 +61,7 @@ class Fit:
 
     @property
     def problems(self) -> list[str]:
-        """What is wrong, a sentence each, with the first run that has it and the number of others."""
+        """Problems, a sentence each, with the first run that has it and the number of others."""
         return [
             f"{first}{f' and {count - 1} more' if count > 1 else ''}: {text}"
             for text, (first, count) in self._found.items()
@@ -75,7 +75,7 @@ class Fit:
 
 
 def fit(study: Study, without: Study, part: UserPlugin) -> Fit:
-    """Return how a law of the user's fits among those of a study; nothing is stored.
+    """Return the compatibility of a user-supplied law with a study; nothing is stored.
 
     Args:
         study: The study with the controller.
@@ -130,14 +130,14 @@ def _validated(composed: Composed, part: UserPlugin) -> RunConfig:
 
 
 def _unlike(own: tuple[str, Composed], other: Composed) -> list[str]:
-    """Return what a law changes beside itself, against another one."""
+    """Return the first setting in which a law differs from another one, other than the law itself."""
     (name, composed), settings = own, setting(other.resolved)
     text = difference((name, setting(composed.resolved)), (other.choices["controller"], settings))
     return [text] if text else []
 
 
 def _first_ticks(config: RunConfig) -> Tick:
-    """Return how the first control ticks went.
+    """Return the period and computing time of the first control ticks, and any divergence.
 
     Raises:
         ConfigError: if the law raises, or gives no finite torques of the right shape.
@@ -174,7 +174,7 @@ _LAW = ("controller", "disturbance_observer")
 
 
 def setting(config: Mapping[str, Any]) -> dict[str, str]:
-    """Return all that decides about a run but its law, with what the law carries; of the law the period stays.
+    """Return the settings of a run without its law and disturbance observer, but with the period of the law.
 
     Args:
         config: The resolved config of the run.

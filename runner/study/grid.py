@@ -18,18 +18,18 @@ from runner.schema.model import StrictModel
 from runner.study.code import UserPlugin
 
 Level = str | int | float
-"""What a name stands for: a number or a text."""
+"""Value of a name: a number or a string."""
 
-_LONGEST = 2000  # characters of a text with expressions
+_LONGEST = 2000  # characters of a string with expressions
 _OPERATIONS = 1000
 
 
 def fill(text: str, scope: Mapping[str, Level]) -> str:
-    """Return a text with its expressions worked out, numbers with nine digits at most: 1.0 is put in as "1".
+    """Return a string with its expressions evaluated, numbers with nine digits at most: 1.0 is inserted as "1".
 
     Args:
-        text: The text, as "robot.mass={{ mass / 2 }}".
-        scope: What each name stands for.
+        text: The string, such as "robot.mass={{ mass / 2 }}".
+        scope: Value of each name.
 
     Raises:
         RunnerError: if an expression is none, or has no value that can be put in.
@@ -51,13 +51,13 @@ def alone(text: str) -> str | None:
 
 
 def names_in(text: str) -> set[str]:
-    """Return the names in the expressions of a text."""
+    """Return the names in the expressions of a string."""
     pieces = [text[start:stop] for start, stop in insertions.insertions(text)]
     return {name for piece in pieces for name in re.findall(r"[A-Za-z_][\w.]*", piece)}
 
 
 def _rounded(value: float, digits: float | None = None) -> float:
-    return round(value) if digits is None else round(float(value), int(digits))  # of an int Python works out 10**digits
+    return round(value) if digits is None else round(float(value), int(digits))  # Python computes 10**digits for an int
 
 
 def _shown(value: Any) -> str:
@@ -114,7 +114,7 @@ class Grid(StrictModel):
         with_: Overrides that all have.
         over: Levels by axis, and what each label stands for.
         values: Numbers that expressions may name, by name.
-        plugins: Config group of an axis that takes parts of the user's as further levels, by axis.
+        plugins: Config group of an axis that takes user-supplied parts as further levels, by axis.
     """
 
     name: str = ""
@@ -131,7 +131,7 @@ class Grid(StrictModel):
         return self
 
     def with_parts(self, parts: Sequence[UserPlugin]) -> Self:
-        """Return the grid with parts of the user's as further levels of the axes that take parts of their group.
+        """Return the grid with user-supplied parts as further levels of the axes of their group.
 
         Raises:
             RunnerError: if an axis has a level of that name.

@@ -55,8 +55,8 @@ class Grids:
 
     Args:
         path: Its runs.yaml.
-        profile: Levels and repetitions in place of those in the file.
-        parts: Parts of the user's, which are levels of the axes that take some.
+        profile: Levels and repetitions instead of those in the file.
+        parts: User-supplied parts, which are levels of the axes of their group.
 
     Attributes:
         runs: Overrides of every run by name.
@@ -113,7 +113,7 @@ class Grids:
 
     @property
     def plugins(self) -> frozenset[str]:
-        """The groups of which its axes take parts of the user's."""
+        """The groups of the user-supplied parts that its axes take."""
         return frozenset(group for grid in self._grids.values() for group in grid.plugins.values())
 
     def compared(self, part: UserPlugin) -> Iterator[tuple[str, Overrides, Overrides]]:

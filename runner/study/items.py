@@ -13,12 +13,12 @@ from runner.sweeps.run import Engine, run_sweep
 
 @dataclass(frozen=True)
 class Way:
-    """How they are made.
+    """Settings of the execution of runs and calibrations.
 
     Attributes:
         outputs: Folder in which they are stored.
         overrides: Overrides of the engine: keys of hydra.sweeper, sweep and limits.
-        command: The command that makes them and goes on with them.
+        command: The command that executes and continues them.
         config_dirs: Config folders.
     """
 
@@ -42,7 +42,7 @@ class MadeItem:
 
     @property
     def missing(self) -> str:
-        """Why there is nothing to read of it; empty where there is."""
+        """Why it has no result to read; empty if it has one."""
         if self.end is None:
             return "not begun"
         return self.end.failure if self.end.cut_short else ""

@@ -37,7 +37,7 @@ class Results(dict[str, Thing]):
         self.missing = dict(missing)
         self.dropped = dict(dropped or {})
         self.derived: dict[object, Any] = {}
-        """Values that a study computes from all results, by keys of its own."""
+        """Values that a study computes from all results, by the keys that it chooses."""
 
     def __missing__(self, name: str) -> Thing:
         if name in self.missing:

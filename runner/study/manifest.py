@@ -21,11 +21,11 @@ G = TypeVar("G", bound=Grid)
 
 
 class Profile(StrictModel):
-    """What differs from the whole study.
+    """Differences of a smaller or larger version from the whole study.
 
     Attributes:
         repetitions: Repetitions of every run; None leaves those of the grids.
-        levels: Levels of axes in place of those in runs.yaml, by grid and axis; of an axis with labels some of these.
+        levels: Levels of axes instead of those in runs.yaml, by grid and axis; an axis with labels takes some of these.
         without: Grids and tunings that it does without.
         tuned_anew: Whether gains are tuned, and not taken from gains.yaml.
     """
@@ -73,7 +73,7 @@ class Profile(StrictModel):
 
 
 class Part(StrictModel):
-    """A chapter whose sections are files of their own.
+    """A chapter whose sections are separate files.
 
     Attributes:
         title: Its title.
@@ -85,7 +85,7 @@ class Part(StrictModel):
 
 
 class CoverRun(StrictModel):
-    """What moves on the first screen of the report.
+    """Run that is animated on the first screen of the report.
 
     Attributes:
         run: Name of the run.
@@ -99,7 +99,7 @@ class CoverRun(StrictModel):
 
 
 class Manifest(StrictModel):
-    """All that `study.yaml` says.
+    """Content of `study.yaml`.
 
     Attributes:
         title: Title of the report.
@@ -138,10 +138,10 @@ class Manifest(StrictModel):
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """Return what a study's folder says of it.
+    """Return the manifest in a study's folder.
 
     Raises:
-        RunnerError: if `study.yaml` cannot be read or does not fit, or names a file that is not there.
+        RunnerError: if `study.yaml` cannot be read or does not fit, or names a missing file.
     """
     path = folder / STUDY_FILE
     manifest = read_data(path, Manifest)

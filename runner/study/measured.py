@@ -11,17 +11,17 @@ from runner.base.quantities import format_range, number, quantity
 from runner.reporting.document import Document, Notice, NoticeKind
 from runner.reporting.outline import chapters
 
-ROUNDING = 1e-9  # m, rad, N or a share: far below what any of our runs can tell, far above what arithmetic loses
+ROUNDING = 1e-9  # m, rad, N or a ratio: far below the resolution of any run, far above rounding errors
 
 
 @dataclass(frozen=True)
 class Condition:
-    """Something that must be true of measured values for a sentence to stand.
+    """Condition on measured values that makes a sentence true.
 
     Attributes:
-        text: The condition in words.
+        text: The condition, written out.
         holds: Whether it is true; a value that is missing makes it false.
-        measured: The values that it is about, in words.
+        measured: The values in it with their names.
     """
 
     text: str
@@ -41,7 +41,7 @@ class Measured:
         name: What it is, in a few words, such as "tip error of the pair".
         value: The number; None for a metric without a value.
         unit: Its unit.
-        parts: The measured values that it was worked out from; itself where it was not.
+        parts: The measured values from which it was computed; empty if it was not.
     """
 
     name: str
@@ -73,7 +73,7 @@ class Measured:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Measured | float) -> Measured:
-        """Return a share of it, or its ratio to another value."""
+        """Return it divided by a number, or its ratio to another value."""
         if isinstance(other, Measured):
             unit = "1" if other.unit == self.unit else f"{self.unit}/{other.unit}"
             return self._with(other, f"{self.name} over {other.name}", lambda a, b: a / b if b else math.inf, unit)
@@ -100,7 +100,7 @@ class Measured:
         return self._compare(other, "≥", lambda a, b: a >= b)
 
     def near(self, other: Measured | float, share: float) -> Condition:
-        """Return the condition that it equals another value up to a share of that."""
+        """Return the condition that its relative difference to another value is at most `share`."""
         right = _as_measured(other, self.unit)
         text = f"{self.name} within {number(100.0 * share)} % of {right.name}"
         return _condition(text, self, right, lambda a, b: abs(a - b) <= share * abs(b))
@@ -123,7 +123,7 @@ def _as_measured(value: Measured | float, unit: str) -> Measured:
 
 
 def _literal(part: Measured) -> str:
-    """Return the name of a number that stands in a condition itself."""
+    """Return the name of a number that is typed into a condition."""
     return quantity(part.value, part.unit)
 
 
@@ -141,10 +141,10 @@ def _has(part: Measured) -> bool:
 
 @dataclass(frozen=True)
 class Finding(Notice):
-    """A conclusion; where a condition of it fails, its notice says so in place of it.
+    """A conclusion; if one of its conditions fails, a warning replaces it.
 
     Attributes:
-        conditions: What must be true for its sentences to stand.
+        conditions: Conditions under which its sentences are true.
         claim: Its title as it was written.
         sentences: Its text as it was written.
     """
@@ -175,7 +175,7 @@ def finding(title: str, text: str, *holds: Condition, kind: NoticeKind = "findin
         kind: "finding", or one of ANSWERS.
 
     Raises:
-        ValueError: if there is no condition.
+        ValueError: if `holds` is empty.
     """
     if not holds:
         raise ValueError(f"finding '{title}': needs one condition or more; what nothing can refute concludes nothing")

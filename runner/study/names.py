@@ -17,7 +17,7 @@ GROUP = "runner.studies"
 
 @dataclass(frozen=True)
 class Location:
-    """Where a study is.
+    """Location of a study.
 
     Attributes:
         name: What it is called.
@@ -36,7 +36,7 @@ def study_names() -> tuple[str, ...]:
 
 
 def find_study(text: str, others: Sequence[str] = ()) -> Location:
-    """Return where a study is, by its name or its folder.
+    """Return the location of a study, by its name or its folder.
 
     Args:
         text: The name of an installed study, or a path to the folder of another.
@@ -87,13 +87,13 @@ def write_new(folder: Path) -> list[Path]:
     """Write a small study that runs at once; return its files.
 
     Args:
-        folder: Where; made if it is not there.
+        folder: Its folder; created if it does not exist.
 
     Raises:
         RunnerError: if there is something in the folder already, or it cannot be written.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise RunnerError(f"{folder}: is there already, and not empty; name a new folder")
+        raise RunnerError(f"{folder}: exists and is not empty; name a new folder")
     sources = sorted(path for path in example_study_dir().iterdir() if path.suffix in (".yaml", ".md"))
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -48,7 +48,7 @@ class Item(StrictModel):
         name: What it is called: "Figure 3.5" where the source has a number.
         about: What it shows, or where the source has it.
         state: What became of it in the report.
-        section: Title of our section where it stands; where none is named it is found by its number in the source.
+        section: Title of the section of the report that contains it; if empty, its number in the source finds it.
         absent: Why it is not to be expected in the report; empty where it is.
     """
 
@@ -60,7 +60,7 @@ class Item(StrictModel):
 
 
 class Checklist(StrictModel):
-    """All that a source shows, and what is said of it.
+    """Figures, tables and formulas of a source, with text on them.
 
     Attributes:
         title: Title of the section.
@@ -125,7 +125,7 @@ def load_checklist(study: str | Path) -> Checklist | None:
     """Return the checklist of a study; None where it has none.
 
     Args:
-        study: One of ours by its name, such as "thesis", or the whole path of a study's folder.
+        study: Name of a built-in study, such as "thesis", or the whole path of a study's folder.
 
     Raises:
         RunnerError: if its file cannot be read or does not fit; names the file, and the items and keys.
@@ -135,14 +135,14 @@ def load_checklist(study: str | Path) -> Checklist | None:
 
 
 def _row(item: Item, place: str | None) -> list[str]:
-    """Return an item's name, what it is about, its state, and where it stands."""
+    """Return an item's name, its subject, its state, and its section."""
     if place is not None:
         return [item.name, item.about, _DRAWN if item.absent else item.state, place]
     return [item.name, item.about, f"{item.state}: {item.absent}" if item.absent else _MISSING, _NOWHERE]
 
 
 def _places(sections: Sequence[Section]) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the section of each title, and that in which each number of the source stands first, in small letters."""
+    """Return the section of each title, and the first section of each number of the source in lower case."""
     titles: dict[str, str] = {}
     numbers: dict[str, str] = {}
     for chapter in outline.number_sections(sections):
@@ -178,7 +178,7 @@ def study_document(
         runs: The stored runs of the study's plan, by name.
         calibrations: The stored calibrations of the study, by name.
         expected: The caveats that the study expects of them.
-        checklist: What of the study is to stand where, for the last chapter; None where the study has no list.
+        checklist: Checklist of the source, for the last chapter; None if the study has no list.
         code: What is to be said of the study's own code; nothing where it has none.
         cover: The picture of the first screen.
         bibtex: BibTeX entry of the source; empty where there is none.
@@ -195,7 +195,7 @@ def study_document(
 
 
 def _notes(chapters: Sequence[Section], runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[str]:
-    """Return what the words of verdicts mean, what these hang on, and how many caveats the runs have."""
+    """Return the meanings of the verdicts, the conditions that they depend on, and the number of caveats."""
     blocks = [block for each in number_sections(chapters) for block in each.section.blocks]
     legends = dict.fromkeys(block.legend for block in blocks if isinstance(block, Verdicts))
     everything = distinct(runs)
@@ -242,14 +242,14 @@ def parts(makers: Iterable[tuple[str, Callable[[], Section]]]) -> list[Section]:
 def _missing(missing: Mapping[str, str]) -> Section:
     rows = [literals(item) for item in missing.items()]
     table = Table("Not made, and so missing in this report; the same command makes them.", ["name", "why"], rows)
-    return Section("What is missing", (table,))
+    return Section("Missing results", (table,))
 
 
 _SPECIAL = re.compile(r"[&%$#_{}~^\\]")
 
 
 def citing_section(title: str, source: str, bibtex: str, runs: Mapping[str, Run]) -> Section:
-    """Return how the report is cited, and its source where that is known.
+    """Return the citations of the report and, if it is known, of its source.
 
     Args:
         title: Title of the study.
@@ -277,5 +277,5 @@ def _report(title: str, source: str, newest: Run | None) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return a text in which no character has a meaning of its own in BibTeX."""
+    """Return a string without characters that have a meaning in BibTeX."""
     return _SPECIAL.sub(lambda found: f"\\{found[0]}" if found[0] in "&%$#_{}" else " ", text)

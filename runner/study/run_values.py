@@ -15,7 +15,7 @@ from runner.study.measured import Measured
 
 
 def measured(run: Run, metric: str, name: str) -> Measured:
-    """Return the median of a metric as a measured value, of which findings state conditions.
+    """Return the median of a metric as a measured value for the conditions of findings.
 
     Args:
         run: The run.
@@ -40,7 +40,7 @@ def values(runs: Iterable[Run], metric: str) -> FloatArray:
 
 
 def delay_of(run: Run) -> int:
-    """Return how late the commands of a run's last control loop act, without jitter, in ticks of the fastest loop."""
+    """Return the delay of the commands of a run's last control loop, without jitter, in ticks of the fastest loop."""
     delay = run.config["plant"].get("computation", {"delay": 0})["delay"]
     return int(list(delay.values())[-1] if isinstance(delay, Mapping) else delay)
 

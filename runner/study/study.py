@@ -37,9 +37,9 @@ class Study:
 
     Args:
         location: Location of its folder.
-        allow_code: Whether Python of a folder that is no installed package may run.
+        allow_code: Whether Python of a folder that is not an installed package may run.
         profile: Name of the profile by which it is made; empty for the one that study.yaml names, or the whole study.
-        parts: Parts of the user's that stand beside its own.
+        parts: User-supplied parts in addition to its own.
 
     Attributes:
         name: What it is called.
@@ -73,11 +73,11 @@ class Study:
         self._check_given()
         self.expected: tuple[ExpectedCaveat, ...] = read_expected(location.folder)
         if (location.folder / CLAIMS).is_file():
-            load_claims(location.folder)  # told before anything is simulated
+            load_claims(location.folder)  # reports problems before anything is simulated
         self._plugins = self._parts()
         if self._plugins and not self._code.runs:
             named = ", ".join(self.manifest.plugins)
-            raise RunnerError(f"{self.name}: its runs need {named}: code in a folder runs with --code alone")
+            raise RunnerError(f"{self.name}: its runs need {named}: code in a folder runs only with --code")
         if self._plugins:
             use_plugins(self._plugins)
 
@@ -92,7 +92,7 @@ class Study:
         return () if ships(self.folder / RUNS) and not (self.folder / "robot").is_dir() else (self.folder,)
 
     def options(self, overrides: Sequence[str]) -> tuple[str, ...]:
-        """Return what a command that makes one of its runs has before the overrides."""
+        """Return the options of a command that executes one of its runs."""
         folders = (word for folder in self._own_dirs for word in ("--config-dir", os.path.relpath(folder)))
         parts = (text.partition("=") for text in self._plugins)
         named = (word for group, _, file in parts for word in ("--plugin", f"{group}={os.path.relpath(file)}"))
@@ -118,7 +118,7 @@ class Study:
         ]
 
     def compared(self) -> Iterator[tuple[str, Overrides, Overrides]]:
-        """Yield name and overrides of what parts of the user's are to make, and what it is compared with.
+        """Yield name and overrides of each run with a user-supplied part, and the overrides compared with it.
 
         See Grids.compared.
         """
@@ -126,7 +126,7 @@ class Study:
             yield from self._grids.compared(part)
 
     def take(self, gains: Gains) -> None:
-        """Take gains that were tuned beside those that are known."""
+        """Add tuned gains to those that are known."""
         self.tuned = gains
         self._gains = {**self._gains, **gains}
 
@@ -147,7 +147,7 @@ class Study:
         return changed
 
     def chapters(self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> "Chapters":
-        """Return what makes its chapters from its stored runs and calibrations, by name."""
+        """Return its chapters, made from its stored runs and calibrations by name."""
         from runner.study.chapters import Chapters
 
         command = self.name if self.installed else os.path.relpath(self.folder)
@@ -183,7 +183,7 @@ class Study:
         Args:
             runs: Its stored runs by name.
             calibrations: Its stored calibrations by name.
-            chapters: What makes its chapters from these, if some have been read.
+            chapters: Its chapters, if some have been read.
         """
         from runner.study.report import load_checklist, study_document
 

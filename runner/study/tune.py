@@ -20,7 +20,7 @@ from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.sampler import make_optuna_trial, propose
 
 ROUNDS = 3
-"""A half of the trials is spread over the ranges; each half of the rest is chosen by all that ended before it."""
+"""A half of the trials is spread over the ranges; earlier trials determine each half of the rest."""
 
 _GROWS = "its error grows"
 _GROWN = 1.1  # last error over an earlier one; what differs between periods by noise is less
@@ -50,7 +50,7 @@ class _Search:
 
     @property
     def objective(self) -> Objective:
-        """What is to be small."""
+        """Metric to minimize."""
         return Objective(self.tuning.minimize, "minimize")
 
     def proposed(self, number: int) -> list[Mapping[str, float]]:
@@ -93,7 +93,7 @@ class _Search:
         return list(takewhile(lambda number: number not in self.proven, ranked))[:most]
 
     def prove(self, number: int, runs: Sequence[Run | None]) -> None:
-        """Take the longer runs of a trial, the first of which is the trial gone on with.
+        """Take the longer runs of a trial. The first one continues the trial.
 
         One that is not stable in all of them, or whose error is larger at the end of the first, has failed.
         """
@@ -109,9 +109,9 @@ class _Search:
 
 
 def find_gains(tunings: Sequence[Tuning], way: Way) -> Gains:
-    """Return what tunings find, by name; their trials are made where they are not stored yet.
+    """Return the gains that tunings find, by name; missing trials are executed.
 
-    Where every trial fails, a law keeps the values that it has before.
+    If every trial fails, a law keeps its previous values.
 
     Raises:
         RunnerError: if a key has no value for a factor, or as make_items does.
@@ -134,7 +134,7 @@ def find_gains(tunings: Sequence[Tuning], way: Way) -> Gains:
 def _prove(searches: Sequence[_Search], way: Way) -> None:
     """Make the longer runs of the trials that are best, until the best one of each search is stable.
 
-    Where one is not, twice as many are looked at next, as a sweep of few runs takes nearly as long as one of many.
+    If one is not, twice as many follow, because a sweep of few runs takes nearly as long as one of many.
     """
     most = 1
     while left := [(search, place) for search in searches for place in search.unproven(most)]:
@@ -149,7 +149,7 @@ def _prove(searches: Sequence[_Search], way: Way) -> None:
 
 
 def _make(items: Sequence[Item], way: Way) -> list[Run | None]:
-    """Make runs as one sweep; None for one that was not made."""
+    """Execute runs as one sweep; return None for each missing one."""
     made = make_items({str(number): item for number, item in enumerate(items)}, way, trace="never")
     finished = store.Finished(way.outputs)
     return [None if one.missing else finished.open(one.place) for one in made.values()]
@@ -193,7 +193,7 @@ def read_number(tuning: Tuning, key: str, resolved: Mapping[str, Any]) -> float:
     """Return the value that a key of a tuning has in a config.
 
     Raises:
-        RunnerError: if it is no number, or 0.
+        RunnerError: if it is not a number, or is 0.
     """
     value = get(resolved, key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not value:

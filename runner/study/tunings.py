@@ -50,7 +50,7 @@ Ranges = Mapping[str, Range]
 
 @dataclass(frozen=True)
 class Tuning:
-    """What is tuned, towards what, with which budget.
+    """Keys, ranges, objective and budget of a tuning.
 
     Attributes:
         name: Its name.
@@ -111,7 +111,7 @@ class TunedGrid(Grid):
         return self
 
     def with_parts(self, parts: Sequence[UserPlugin]) -> Self:
-        """Return the grid with parts of the user's as further levels, with the ranges that stand beside them."""
+        """Return the grid with user-supplied parts as further levels, with the ranges next to their modules."""
         made = super().with_parts(parts)
         axis = self._axis
         own = {part.name: _ranges_of(part) for part in parts if part.group == self.plugins.get(axis)}
@@ -209,7 +209,7 @@ def write_gains(folder: Path, gains: Gains) -> None:
 
 
 def put_in(overrides: Overrides, gains: Gains) -> Overrides:
-    """Return a run's overrides with the gains of a tuning in place of the override that names it.
+    """Return a run's overrides with the gains of a tuning instead of the override that names it.
 
     One whose gains are not known yet stays as it is.
 

@@ -83,12 +83,12 @@ def notice(title: str, text: str) -> Notice:
 
 
 def largest(name: str, *values: Measured) -> Measured:
-    """Return the largest of some measured values by a name of its own; none if one of them has no value."""
+    """Return the largest of some measured values under a new name; without a value if one of them has none."""
     return _extreme(max, name, values)
 
 
 def smallest(name: str, *values: Measured) -> Measured:
-    """Return the smallest of some measured values by a name of its own; see `largest`."""
+    """Return the smallest of some measured values under a new name; see `largest`."""
     return _extreme(min, name, values)
 
 

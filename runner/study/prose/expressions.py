@@ -24,7 +24,7 @@ from runner.study.prose.signals import Quantity
 from runner.study.prose.tables import Column
 
 OPEN, CLOSE = "\uf000", "\uf001"
-"""Characters around the number of a value that stands elsewhere."""
+"""Characters around the number of a value that is stored separately."""
 PLACEHOLDER = re.compile(f"{OPEN}(\\d+){CLOSE}")
 
 PRIVATE = re.compile("[\ue000-\uf8ff]")
@@ -36,7 +36,7 @@ _HANDED = (*get_args(Block), Section, Column, Panel, Series, Claim, np.ndarray)
 
 
 class Values:
-    """The values of a chapter's expressions, each with the line that it stands on.
+    """The values of a chapter's expressions, each with its line.
 
     Args:
         file: Name of the chapter's file.
@@ -55,7 +55,7 @@ class Values:
         self._lines = [1]
 
     def put_away(self, text: str) -> str:
-        """Return a chapter with a placeholder for each of its expressions; `line_of` tells where its lines were.
+        """Return a chapter with a placeholder for each of its expressions; `line_of` returns their lines.
 
         Raises:
             ProseError: if one cannot be evaluated, or there is a branch, a loop or a private character.
@@ -91,7 +91,7 @@ class Values:
         return _SET.sub(lambda found: "\n" * found[0].count("\n"), text)
 
     def line_of(self, number: int) -> int:
-        """Return on which line of the file a line of the text without expressions stands; both count from 1."""
+        """Return the line of the file that became a line of the text without expressions; both count from 1."""
         return self._lines[min(number, len(self._lines)) - 1]
 
     def _keep(self, piece: str, line: int, parts: list[str]) -> int:
@@ -112,8 +112,8 @@ class Values:
 
         Args:
             expression: The expression.
-            line: Where it stands.
-            instead: Values that some names have in place of their own.
+            line: Its line, counted from 1.
+            instead: Values that replace those of some names.
 
         Raises:
             ProseError: if it has none; names the place.

@@ -36,7 +36,7 @@ class Heading:
     Attributes:
         level: 1 for the chapter's title, 2 for a section of it.
         title: Its text.
-        line: Where it stands.
+        line: Its line, counted from 1.
     """
 
     level: int
@@ -45,7 +45,7 @@ class Heading:
 
 
 Piece = Heading | Block | Section
-"""What a chapter is made of, in reading order."""
+"""Element of a chapter."""
 
 
 class Paragraphs:
@@ -100,7 +100,7 @@ class Paragraphs:
                 raise self._refused(token, line)
 
     def _inline(self, inline: Token, line: int) -> str:
-        """Return the text of a paragraph, marked as Text has it."""
+        """Return the text of a paragraph, with the marks of Text."""
         parts: list[str] = []
         children = iter(inline.children or ())
         for child in children:
@@ -141,13 +141,13 @@ def _is_block(value: Any) -> bool:
 
 
 def filled(text: str, values: Values, file: str, mathematics: bool = False) -> str:
-    """Return a text with its placeholders replaced by their values, none of which can become markup.
+    """Return a string with its placeholders replaced by their values. No value can become markup.
 
     Args:
-        text: The text.
+        text: The string.
         values: The values of the chapter.
         file: Name of the chapter's file.
-        mathematics: Whether the text stands between dollar signs, where only numbers may be inserted.
+        mathematics: True if the string is between dollar signs, where only numbers may be inserted.
 
     Raises:
         ProseError: if a value is nothing that a sentence shows.
@@ -158,7 +158,7 @@ def filled(text: str, values: Values, file: str, mathematics: bool = False) -> s
         shown = _shown(value)
         if shown is None or (mathematics and not isinstance(value, int | float)):
             what = "a formula takes numbers" if mathematics else "a sentence takes texts, numbers and measured values"
-            hint = "; a block stands in a paragraph of its own" if not mathematics else ""
+            hint = "; put a block in a separate paragraph" if not mathematics else ""
             raise ProseError(file, line, f"{what}, not {type(value).__name__}{hint}")
         return PRIVATE.sub("\ufffd", shown).replace("$", "$$")
 

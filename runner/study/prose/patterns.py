@@ -43,7 +43,7 @@ def found(runs: Mapping[str, Run], pattern: str, by: Sequence[str] = ()) -> list
     Args:
         runs: The runs of a study by name, in the order of its plan.
         pattern: A run's name in which an axis in braces stands for any of its levels.
-        by: In which order the axes are gone through, the outermost first; the others follow as the pattern has them.
+        by: Axes from the outermost to the innermost loop; the others follow in the pattern's order.
 
     Raises:
         RunnerError: if it stands for none, or `by` names another axis.
@@ -76,7 +76,7 @@ def other(runs: Mapping[str, Run], pattern: str, levels: Mapping[str, str]) -> R
 
 
 def filled_in(pattern: str, levels: Mapping[str, str]) -> str:
-    """Return a text with levels in place of the axes in braces.
+    """Return a string with the axes in braces replaced by levels.
 
     Raises:
         RunnerError: if it names an axis that has no level here.
@@ -88,7 +88,7 @@ def filled_in(pattern: str, levels: Mapping[str, str]) -> str:
 
 
 def called(text: str, levels: Mapping[str, str], words: Mapping[str, str]) -> str:
-    """Return a text with levels in words in place of the axes in braces, whole numbers without decimals."""
+    """Return a string with the axes in braces replaced by words for levels, whole numbers without decimals."""
     whole = {axis: _WHOLE.sub(r"\1", level) for axis, level in levels.items()}
     return filled_in(text, {axis: words.get(level, in_words(whole[axis])) for axis, level in levels.items()})
 

@@ -45,7 +45,7 @@ def line(
         factor: What its values are multiplied by, such as 1000 for mm.
         until: End of the time, in s; None for all.
         words: What a level is called in the legend.
-        x: The signal in place of the time.
+        x: The signal that replaces the time.
     """
     series = []
     for index, each in enumerate(found(runs, pattern)):
@@ -95,7 +95,7 @@ def over(
     Args:
         runs: The runs of the study by name.
         pattern: Names of the runs, with axes in braces.
-        axis: The axis, whose levels are numbers; others stand at the places 0, 1, ...
+        axis: The axis, whose levels are numbers; other levels are drawn at 0, 1, ...
         what: Name of a metric, or a function of a run, or of others, that gives a number.
         name: What the legend calls it, with the other axes in braces.
         others: Names of the other runs, with the pattern's axes in braces.
@@ -231,9 +231,9 @@ def curves(
     Args:
         runs: The runs of the study by name.
         caption: What is seen, after its finding and a line break if it has one; inline mathematics as in Text.
-        run: The run whose command stands under the figure.
+        run: The run whose command is printed under the figure.
         panels: The axes in reading order, one by one or several in one, as `same_y` gives them.
-        columns: How many stand beside each other; two at most where it is left out.
+        columns: Number of panels in a row; at most two if it is omitted.
         number: Its number in the source.
     """
     drawn = [each for given in panels for each in ([given] if isinstance(given, Panel) else given)]

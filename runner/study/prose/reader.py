@@ -18,11 +18,11 @@ _HOLDS = re.compile(r"\s*holds:(.*)")
 
 @dataclass(frozen=True)
 class Stated:
-    """A condition as it stands in a chapter.
+    """A condition as written in a chapter.
 
     Attributes:
         expression: Its expression.
-        line: Where it stands.
+        line: Its line, counted from 1.
     """
 
     expression: str
@@ -31,12 +31,12 @@ class Stated:
 
 @dataclass(frozen=True)
 class Reading:
-    """What a chapter's file makes.
+    """Content of a chapter's file.
 
     Attributes:
         section: Its section.
         values: The values of its expressions.
-        stated: The conditions of its findings as they stand.
+        stated: The conditions of its findings as written.
     """
 
     section: Section
@@ -57,11 +57,11 @@ class _Container:
 
 
 def read_chapter(file: str, text: str, names: Mapping[str, Any], handed: tuple[type, ...] = ()) -> Reading:
-    """Return what a chapter's file makes.
+    """Return the content of a chapter's file.
 
-    Its first line is its title, `# Title`; `## Title` begins a section of it. `{{ CALL }}` in a paragraph of its own is
+    Its first line is its title, `# Title`; `## Title` begins a section of it. `{{ CALL }}` in a separate paragraph is
     a block, a list of blocks or a section, anywhere else a value in the sentence; `{% set name = EXPRESSION %}` at the
-    begin of a line gives a value a name. A conclusion stands in a box:
+    begin of a line gives a value a name. A conclusion is written in a box:
 
         ::: finding Taking turns does harm
         The error is {{ turns }}, that of both arms at once {{ both }}.
@@ -107,14 +107,14 @@ def _pieces(file: str, text: str, values: Values, stated: list[Stated]) -> Itera
             else:
                 raise ProseError(file, number, f"a box in a box; close that of line {box.line} by `:::` first")
         elif condition and box is None:
-            raise ProseError(file, number, "a condition outside a box; `holds:` stands between `::: finding` and `:::`")
+            raise ProseError(file, number, "a condition outside a box; write `holds:` between `::: finding` and `:::`")
         elif condition and box is not None:
             box.conditions.append(Stated(condition[1].strip(), number))
             box.lines.append("")
         else:
             (plain if box is None else box.lines).append(line)
     if box is not None:
-        raise ProseError(file, box.line, "a box that is not closed; write `:::` on a line of its own behind it")
+        raise ProseError(file, box.line, "a box that is not closed; write `:::` on a separate line after it")
     yield from paragraphs.blocks("\n".join(plain), first)
 
 
@@ -136,7 +136,7 @@ def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs)
     blocks = list(paragraphs.blocks("\n".join(box.lines), box.count + 1))
     answered = box.kind in ANSWERS and not blocks
     if not answered and not (blocks and all(isinstance(block, Text) for block in blocks)):
-        raise ProseError(file, box.line, "a finding holds sentences alone; blocks stand before or behind it")
+        raise ProseError(file, box.line, "a finding contains only sentences; put blocks before or after it")
     text = " ".join(block.text for block in blocks if isinstance(block, Text))
     return finding(filled(box.title, values, file), text, *conditions, kind=box.kind)
 
@@ -148,9 +148,9 @@ def conditions_of(
 
     Args:
         file: Name of the chapter's file.
-        stated: The condition as it stands.
+        stated: The condition as written.
         values: The values of the chapter.
-        instead: Values that some of its names have in place of their own.
+        instead: Values that replace those of some of its names.
 
     Raises:
         ProseError: if it states none.
@@ -166,7 +166,7 @@ def conditions_of(
 def _section(file: str, pieces: list[Piece]) -> Section:
     """Return the section that begins with a heading, with those below it."""
     heading = pieces[0]
-    assert isinstance(heading, Heading)  # noqa: S101 - told by the callers
+    assert isinstance(heading, Heading)  # noqa: S101 - ensured by the callers
     blocks: list[Block] = []
     below: list[list[Piece] | Section] = []
     for piece in pieces[1:]:
@@ -179,7 +179,7 @@ def _section(file: str, pieces: list[Piece]) -> Section:
         elif below and isinstance(below[-1], list):
             below[-1].append(piece)
         elif isinstance(piece, Section) or below:
-            raise ProseError(file, heading.line, f"'{heading.title}': sections stand in the chapter, behind its blocks")
+            raise ProseError(file, heading.line, f"'{heading.title}': put sections after the blocks of the chapter")
         elif isinstance(piece, Heading):
             raise ProseError(file, piece.line, f"leaves out a level; write {'#' * (heading.level + 1)} {piece.title}")
         else:

@@ -171,13 +171,13 @@ def scaled(factor: float, what: Callable[..., float]) -> Quantity:
 
 
 def part(what: Callable[..., Mapping[str, Any]], key: str, factor: float = 1.0) -> Quantity:
-    """Return so many times one of the numbers that a function gives, or one of its texts, by its key."""
+    """Return one of the numbers or strings that a function gives, by its key; a number is multiplied by `factor`."""
     value = Quantity(lambda *runs: what(*runs)[key])
     return value if factor == 1.0 else factor * value
 
 
 def setting(key: str, factor: float = 1.0) -> Quantity:
-    """Return so many times the number that stands in a run's config under a dotted key."""
+    """Return the number under a dotted key of a run's config, multiplied by `factor`."""
     return factor * Quantity(lambda run, *_: float(config_value(run, key)))
 
 
@@ -187,12 +187,12 @@ def metric_of(name: str, factor: float = 1.0) -> Quantity:
 
 
 def recorded(key: str, factor: float = 1.0) -> Quantity:
-    """Return so many times the number that stands in a run's record under a dotted key; None where there is none."""
+    """Return the number under a dotted key of a run's record, multiplied by `factor`; None if it is missing."""
     return factor * Quantity(lambda run, *_: get(run.record, key))
 
 
 def failed(run: Run) -> bool:
-    """Tell whether a run failed."""
+    """Return True if a run failed."""
     return run.status == "failed"
 
 

@@ -21,7 +21,7 @@ class Column:
     """A column of a table over runs.
 
     Attributes:
-        title: What stands above it.
+        title: Its header.
         cell: Gives its text for a run, from the study's runs and the run.
         metric: The metric that it shows, whose unit its title takes.
         levels: Axes that it is about, with the levels that it names of them.
@@ -38,7 +38,7 @@ def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, mi
 
     Args:
         axis: The axis, as the pattern names it.
-        title: What stands above; the axis where it is left out.
+        title: Header; the name of the axis if it is omitted.
         words: What a level is called; others are called as they are.
         missing: What stands for runs of a pattern without that axis.
     """
@@ -62,8 +62,8 @@ def column(
     A failed run says so; a settling time without a value is "never", another number without one a dash.
 
     Args:
-        title: What stands above; of a metric it takes the unit unless it has one.
-        what: Name of a metric, or a function of the run, or of these others, that gives a number or a text.
+        title: Header; the unit of a metric is added unless it has one.
+        what: Name of a metric, or a function of the run, or of these others, that gives a number or a string.
         others: Names of the runs that it is a number of, with axes in braces; the row's own run where there are none.
         digits: How many digits.
         only: Levels by axis of the rows that have it; the others have a dash.
@@ -95,7 +95,7 @@ def table(
         caption: What it lists; inline mathematics as in Text.
         pattern: Names of the runs, with axes in braces, or several of them.
         columns: Its columns.
-        by: In which order the axes are gone through, the outermost first.
+        by: Axes from the outermost to the innermost loop.
         number: Its number in the source.
     """
     patterns = [pattern] if isinstance(pattern, str) else pattern
@@ -145,7 +145,7 @@ def listing(
     *rows: Sequence[str | float | Measured | None],
     number: str = "",
 ) -> Table:
-    """Return a table whose cells stand in the chapter; the command of a run stands under it, if one is named."""
+    """Return a table whose cells are written in the chapter, with the command of a run if one is named."""
     cells = [[_told(cell, 3) for cell in row] for row in rows]
     return Table(caption, header, cells, _numeric(cells), origin(runs[run], number) if run else Origin(number))
 
@@ -181,7 +181,7 @@ def _unit(run: Run, metric: str) -> str:
 
 
 def _numeric(cells: Sequence[Sequence[str]]) -> tuple[int, ...]:
-    """Return which columns hold numbers: those in which some cell is one and no cell is another text."""
+    """Return the indices of the numeric columns: some cell is a number and no cell is another string."""
     return tuple(index for index, column in enumerate(zip(*cells, strict=True)) if _numbers(column))
 
 

@@ -104,7 +104,7 @@ def test_answers_of_the_first_chapter_open_the_report(tmp_path, made):
 
 def test_the_first_study_is_not_written_over_something(tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
-    with pytest.raises(RunnerError, match="is there already, and not empty"):
+    with pytest.raises(RunnerError, match="exists and is not empty"):
         write_new(tmp_path)
 
 
@@ -181,7 +181,7 @@ def test_a_part_has_sections_and_a_file_of_python_is_a_chapter(tmp_path, made):
     assert [section.title for section in part.sections] == ["One", "4 runs"]
     _, (part,) = read(folder, made)
     assert part.sections[1].title == "Left out: two.py"
-    assert "two.py was not run: code in a folder runs with --code alone" in part.sections[1].blocks[0].text
+    assert "two.py was not run: code in a folder runs only with --code" in part.sections[1].blocks[0].text
 
 
 def test_functions_of_the_study_are_called_where_code_may_run(tmp_path, made):
@@ -402,7 +402,7 @@ def test_a_controller_of_the_study_runs_with_code_and_its_command_names_it(tmp_p
     (folder / "controller" / "resting.yaml").write_text("kind: resting\nperiod: 0.01\n")
     command = ["reproduce", "paper", "hydra.sweeper.workers=0"]
     assert dispatch(command) == 2
-    told = "runner: paper: its runs need controller=resting.py: code in a folder runs with --code alone"
+    told = "runner: paper: its runs need controller=resting.py: code in a folder runs only with --code"
     assert told in capsys.readouterr().err
     assert dispatch([*command, "--code"]) == 0
     page = (tmp_path / "outputs" / "reports" / "paper" / "report.html").read_text()
