@@ -1,4 +1,4 @@
-"""What every test session has: hypothesis' profile, a cache folder of its own, and patience that only ends hangs."""
+"""Setup of every test session: hypothesis' profile, its own cache folder, and time limits that only end hangs."""
 
 import gc
 import re

@@ -1,4 +1,4 @@
-"""Commands as processes of their own: their outputs closed, full or unread, and two of them at once."""
+"""Commands as separate processes: their outputs closed, full or unread, and two of them at once."""
 
 import json
 import subprocess

@@ -21,7 +21,7 @@ ELSEWHERE = re.compile(r"(https?:)?//")
 
 
 class _Page(HTMLParser):
-    """What a page loads, what it links to, and its anchors."""
+    """Loaded files, links and anchors of a page."""
 
     def __init__(self):
         super().__init__()

@@ -178,7 +178,7 @@ def test_a_scheduler_that_is_lost_is_said(sweep, gate, threads, tmp_path):
 
 
 def answers(address, context=None):
-    """Return what a stranger gets who asks at an address in HTTP, as it is or through TLS without a certificate."""
+    """Return the answer at an address to HTTP, plain or through TLS, without a certificate."""
     with contextlib.suppress(OSError), contextlib.ExitStack() as stack:
         asked = stack.enter_context(socket.create_connection(address, PATIENCE))
         asked = asked if context is None else stack.enter_context(context.wrap_socket(asked))

@@ -1,4 +1,4 @@
-"""What `make install` does with the .venv that it finds; nothing here needs a network."""
+"""`make install` with an existing .venv; nothing here needs a network."""
 
 import importlib.util
 import os
@@ -159,7 +159,7 @@ def test_a_venv_that_cannot_stay_is_made_anew_and_says_why(install, checkout, co
         (venv / "bin" / "python").unlink()
     if fault in ("old", "other"):
         another_python(venv, "3 10" if fault == "old" else "3 99")
-    with pytest.raises(FileNotFoundError):  # the stamp's folder, as nothing is really made here
+    with pytest.raises(FileNotFoundError):  # the stamp's folder: nothing is really made here
         install.install(checkout, any_version=fault != "other")
     assert commands[0] == ["-m", "venv", str(venv)]
     why = {"moved": "it was made in ", "gone": "its Python is gone", "old": "it has Python 3.10", "other": "3.99"}

@@ -18,7 +18,7 @@ IN_PROCESS = "hydra.sweeper.workers=0"
 
 @pytest.fixture
 def killed(tmp_path, gate):
-    """Kill a command, and all that it started, at the gate."""
+    """Kill a command, and every process that it started, at the gate."""
 
     def kill(command):
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -77,7 +77,7 @@ def test_a_worker_that_is_killed_and_its_command_after_it_lose_double_and_leave_
 
 @pytest.mark.costs(5)
 def test_a_tuning_that_is_killed_ends_as_if_it_had_not_been(tuned, tmp_path, gate, killed):
-    """After two lines in the journal, where the command makes the runs and where its own process does."""
+    """After two lines in the journal, with runs simulated in the command and in its own process."""
     whole = tuned(trials=12)
     overrides = (*SHORT, f"outputs={tmp_path}/killed", FREQUENCY, DAMPING)
     options = ("--minimize=peak_torque", "--trials=12", "--jobs=3")

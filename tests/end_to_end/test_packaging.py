@@ -1,4 +1,4 @@
-"""The wheel carries all that a run needs, and works away from the checkout."""
+"""The wheel contains every file that a run needs, and works outside of the checkout."""
 
 import subprocess
 import sys

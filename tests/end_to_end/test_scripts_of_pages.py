@@ -1,4 +1,4 @@
-"""Scripts that pages show, for Slurm and for GitHub, run with stand-ins for what these machines have."""
+"""Scripts that pages show, for Slurm and for GitHub, run with substitutes for the programs of these machines."""
 
 import os
 import re
@@ -20,7 +20,7 @@ def scripts(name, language):
 
 
 def run_script(text, folder, environment):
-    """Run a script in a shell that has HOME and PATH, with stand-ins for Slurm, and what it is given."""
+    """Run a script in a shell that has HOME, PATH, substitutes for Slurm, and the given variables."""
     binaries = folder / "bin"
     binaries.mkdir()
     for name, body in STAND_INS.items():

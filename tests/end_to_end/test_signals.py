@@ -21,14 +21,14 @@ pytestmark = pytest.mark.usefixtures("interruptible")
 
 
 def stored(outputs):
-    """Return the durations of stored runs, each of which must be whole."""
+    """Return the durations of stored runs; each must be complete."""
     folders = list((outputs / "runs").iterdir())
     assert [sorted(path.name for path in folder.iterdir()) for folder in folders] == [WHOLE] * len(folders)
     return sorted(store.open_run(folder).config["duration"] for folder in folders)
 
 
 def test_an_interrupt_waits_until_the_processes_have_started():
-    """Else a part of a cluster would be left, and its processes, still without our code, would tell of it."""
+    """Else a part of a cluster would be left, and its processes, still without our code, would print messages."""
     before, began = signal.getsignal(signal.SIGINT), []
 
     def start():

@@ -1,1 +1,1 @@
-"""What tests of several folders share: arms, pages, hand-made documents."""
+"""Code that tests of several folders share: arms, pages, hand-made documents."""

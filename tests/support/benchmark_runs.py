@@ -11,7 +11,7 @@ from runner.store import Run
 
 SEEDS = 32  # of halves of 16, Holm's correction leaves something
 SCATTER = np.random.default_rng(5).uniform(0.8, 1.25, SEEDS)  # what all laws of a seed have in common
-# Sizes of the errors as a whole plan had them, in mm, of the laws below.
+# Sizes of the errors of the laws below in a whole plan, in mm.
 SIZES = {
     "exact": (0.22, 0.221, 0.3, 4.4, 4.6, 0.28, 0.27, 0.25, 0.24, 4.5),
     "masses": (1.0, 1.01, 0.6, 4.0, 4.2, 1.6, 0.9, 0.8, 0.5, 4.4),
@@ -33,7 +33,7 @@ LATER = {
 NEEDS = {"macro": (234.0, 38.7, 8.74), "mini": (0.183, 0.222, 0.0868)}  # peak torques, N m
 LEARNED = {"macro": 1.9, "planar": 0.3, "xarm7": 0.3}  # errors of iterative learning, mm
 TUNINGS = {"1": 1.0, "2": 1.02, "untuned": 2.2}  # factors of their errors
-CHANGES = {"slow": 0.6, "fast": 2.5, "half": 1.05, "untuned": 2.2}  # likewise, with all wrong at once
+CHANGES = {"slow": 0.6, "fast": 2.5, "half": 1.05, "untuned": 2.2}  # factors of errors, with all wrong at once
 _DRAWN = ("masses", "encoders", "all")  # conditions that differ from seed to seed
 
 

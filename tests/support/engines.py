@@ -20,7 +20,7 @@ ASKED = "plant=bullet" if has_pybullet() else "plant=mujoco"
 """Asks for the plant that `default` stands for by its own name, so that no run says that it stands in for another."""
 
 DEFAULT_PLANT = "PyBullet" if has_pybullet() else "MuJoCo"
-"""What reports call it."""
+"""Name of this plant in reports."""
 
 FOURTH_ORDER = ("mujoco rk4", "rk4", "compiled rk4")
 FIRST_ORDER = tuple(name for name in ENGINES if name not in FOURTH_ORDER)

@@ -1,4 +1,4 @@
-"""What every control graph's picture has to keep to."""
+"""Rules for the picture of every control graph."""
 
 import functools
 import itertools

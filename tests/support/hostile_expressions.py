@@ -41,7 +41,7 @@ class Length:
 
 
 class Run:
-    """What no expression is to get hold of."""
+    """An object that no expression may reach."""
 
     folder = pathlib.Path("run")
 
@@ -138,7 +138,7 @@ def expression(seed: int, number: int) -> str:
 
 
 def _sound(draw: Random, depth: int) -> str:
-    """Return what a chapter could hold; the kinds of its values need not fit."""
+    """Return an expression that a chapter could contain; the kinds of its values need not fit."""
 
     def inner() -> str:
         return _sound(draw, depth - 1)
@@ -205,11 +205,11 @@ def _hostile(draw: Random) -> str:
 
 @dataclass(frozen=True)
 class Ended:
-    """What became of an expression.
+    """Outcome of an expression.
 
     Attributes:
-        refused: Whether it was; else it has a value.
-        faults: What is wrong with that.
+        refused: True if the expression was refused; else it has a value.
+        faults: Errors of this outcome.
     """
 
     refused: bool
@@ -252,7 +252,7 @@ def _hook(event: str, arguments: tuple[Any, ...]) -> None:
 
 @functools.cache
 def _add_hook() -> None:
-    """Let Python tell of all that it does; it lets no hook be taken away again."""
+    """Add a hook that reports every action of Python; a hook cannot be removed again."""
     for text in ("totl", "\ud800"):
         with suppress(RunnerError):
             SCOPE.evaluate(text, Budget())  # imports what only messages need

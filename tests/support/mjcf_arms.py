@@ -64,7 +64,7 @@ def disagreement(path, tip, samples=20, seed=0):
         bias = ours.gravity_torque(q) + ours.coriolis_torque(q, dq)
         end = data.site(tip) if mujoco.mj_name2id(theirs, mujoco.mjtObj.mjOBJ_SITE, tip) >= 0 else data.body(tip)
         pose = np.hstack([end.xmat.reshape(3, 3), end.xpos[:, None]])
-        weight = 9.81 * ours.mass  # slides across gravity bear none
+        weight = 9.81 * ours.mass  # prismatic joints across gravity carry none
         for one, other, least in (
             (ours.mass_matrix(q), M, 0.0),
             (bias, theirs_bias, weight),

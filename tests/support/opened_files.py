@@ -13,7 +13,7 @@ _hooked: list[bool] = []  # a hook cannot be taken out again
 
 @contextmanager
 def opened() -> Iterator[set[str]]:
-    """Yield a set that takes the real path of all that is opened within the block."""
+    """Yield a set that collects the real path of each file opened within the block."""
     if not _hooked:
         _hooked.append(True)
         sys.addaudithook(_note)

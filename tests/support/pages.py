@@ -1,9 +1,9 @@
-"""Pages of the documentation, followed command by command in one shell, as a reader does.
+"""Pages of the documentation, followed command by command in one shell, like a reader.
 
 A block that is indented by four spaces and begins with `$ ` holds commands, and below each what it prints: lines in
-order, of which some may be left out; a line that ends in three dots is the start of one. A command ends with 0, or with
+order, some of them left out; a line that ends in three dots is the start of one. A command ends with 0, or with
 2 where the page shows problems in a config, or with what the page shows if the next command is `echo $?`. Commands that
-only show what they do, because they take minutes or need files of a reader's own, stand between fences.
+only show what they do, because they take minutes or need own files of a reader, are between fences.
 """
 
 import doctest
@@ -104,7 +104,7 @@ def follow(some: Sequence[Step], folder: Path) -> list[Ended]:
 
 
 def complaints(followed: Sequence[Ended]) -> list[str]:
-    """Return what a page shows otherwise than it is: a line that is not printed, or another exit code."""
+    """Return the errors of a page: a line that is not printed, or another exit code."""
     found = []
     for one, following in pairwise([*followed, None]):
         refused = any(re.search(r"\d problems? in the config", line) for line in one.step.shown)
@@ -125,7 +125,7 @@ def first_missing(shown: Sequence[str], text: str) -> list[str]:
 
 
 def wrong_snippets(page: Path) -> list[str]:
-    """Return what the Python of a page does otherwise than it shows, run in the working directory.
+    """Return the errors of the Python code of a page, run in the working directory.
 
     Examples behind `>>>` are compared with what they show, blocks between fences of python have to end; each kind is
     run in order, in one namespace.

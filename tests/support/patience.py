@@ -1,4 +1,4 @@
-"""How long a test waits for what always comes: a limit that ends hangs and measures nothing."""
+"""Time limit of a test for expected events: it ends hangs and measures nothing."""
 
 from collections.abc import Callable
 from threading import Event

@@ -1,6 +1,6 @@
 """Named assertions about laws and motions, each with the tolerance that its physics gives it.
 
-A tolerance is a share of the size of what is compared, so that one number serves arms of a metre and of a decimetre.
+A tolerance is relative to the size of the compared values, so one number serves arms of a metre and of a decimetre.
 Algebra of a handful of 6 x 6 matrices leaves about 1e-12 of it, differences of step 1e-6 about 1e-6.
 """
 
@@ -15,12 +15,12 @@ FloatArray = NDArray[np.float64]
 
 
 def torque_of(controller, q, dq, reference, time: float = 0.0) -> FloatArray:
-    """Return the torques that a law asks for, as a copy that its next call leaves alone."""
+    """Return a copy of the torques that a law asks for; its next call does not change it."""
     return controller.torque(time, np.array(q), np.array(dq), np.array(reference)).copy()
 
 
 def assert_agree(actual: ArrayLike, expected: ArrayLike, share: float, of: ArrayLike | None = None, why="") -> None:
-    """Assert that arrays agree except for a share of the largest entry.
+    """Assert that arrays agree, relative to the largest entry.
 
     Args:
         actual: What was found.
@@ -48,7 +48,7 @@ def assert_order(errors: Sequence[float], order: float, within: float) -> None:
 
 
 def assert_energy_kept(energies: ArrayLike, share: float) -> None:
-    """Assert that a motion without losses keeps its energy except for a share of the first value."""
+    """Assert that a motion without losses keeps its energy, relative to the first value."""
     energies = np.asarray(energies)
     np.testing.assert_allclose(energies, energies[0], rtol=0.0, atol=share * abs(energies[0]))
 
@@ -82,7 +82,7 @@ def assert_linear_design(acceleration, reference, x, dx, omega, xi, share=1e-9) 
 
 
 def critically_damped(t: ArrayLike, omega: float) -> FloatArray:
-    """Return what is left of a unit step after times t, in s, of a critically damped mode from rest."""
+    """Return the rest of a unit step after times t, in s, of a critically damped mode from rest."""
     return (1.0 + omega * np.asarray(t)) * np.exp(-omega * np.asarray(t))
 
 

@@ -1,4 +1,4 @@
-"""What a command prints, for tests that are not about caveats: runs aborted for a test spring some."""
+"""Printed lines of a command, for tests that are not about caveats: aborted runs of tests have some."""
 
 
 def without_caveats(text):
@@ -7,7 +7,7 @@ def without_caveats(text):
 
 
 def without_results(text):
-    """Return what a run prints on standard error without what every good one has: where it is, and its metrics."""
+    """Return the lines of a run on standard error without those of every good run: its folder and metrics."""
     lines = text.splitlines(keepends=True)
     return "".join(
         line for line in lines if not line.startswith("  ") and " repetition" not in line.partition(" in ")[0]

@@ -1,7 +1,7 @@
 """Runs of studies that were made once and are kept in tests/recorded, so that `make test` needs no simulation of them.
 
 `PYTHONPATH=tests .venv/bin/python -m support.recorded_runs [STUDY...]` records them again. Metrics have six digits,
-and a trace has a few of its rows. `make test-slow` makes the runs again and compares their metrics.
+and a trace has a few of its rows. `make test-slow` repeats the runs and compares their metrics.
 """
 
 import json
@@ -90,7 +90,7 @@ def _trace(run: Run, digits: int) -> dict[str, tuple[str, list[float | None]]]:
 
 
 def rounded(value: Any, digits: int = DIGITS) -> Any:
-    """Return numbers, in whatever groups and lists they stand, with fewer digits; None for what is not finite."""
+    """Return numbers, in any groups and lists, with fewer digits; None for what is not finite."""
     if isinstance(value, float):
         return float(f"{value:.{digits}g}") if np.isfinite(value) else None
     if isinstance(value, Mapping):

@@ -1,4 +1,4 @@
-"""What gains a sampled law bears on an arm whose joints are all flexible, by the map of one period about rest."""
+"""Stable gains of a sampled law on an arm with only flexible joints, by the map of one period about rest."""
 
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from runner.base.arrays import FloatArray
 
 @dataclass(frozen=True)
 class RestingArm:
-    """An arm with flexible joints about a posture in which it rests.
+    """An arm with flexible joints about a configuration at rest.
 
     Attributes:
         M: Mass matrix of the links, shape (nq, nq), in kg m^2.
@@ -27,7 +27,7 @@ class RestingArm:
     D: FloatArray
 
     def radius(self, omega: float, xi: float, period: float, at_motors: bool) -> float:
-        r"""Return how a small motion grows in one period under a law that believes in rigid joints; stable below 1.
+        r"""Return the growth of a small motion in one period under a law for rigid joints; stable below 1.
 
         With x = (q, theta) about rest, Spong's model is linear, and the torque holds for a period. It follows the
         readings y at its start, which are theta or q as they are:
@@ -40,7 +40,7 @@ class RestingArm:
             omega: omega_n, in rad/s.
             xi: Damping ratio of the law.
             period: Time between two torques, in s.
-            at_motors: Whether y is theta, else q.
+            at_motors: True if y is theta, else y is q.
         """
         nq, n = len(self.M), 2 * len(self.M)
         inertia, zero = self.M + np.diag(self.B), np.zeros((nq, nq))

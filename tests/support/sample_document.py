@@ -1,4 +1,4 @@
-"""Documents for the tests of the renderers: every block type, with one text in every field."""
+"""Documents for the tests of the renderers: every block type, with one string in every field."""
 
 import numpy as np
 

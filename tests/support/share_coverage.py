@@ -1,4 +1,4 @@
-"""How often the interval of a share holds the truth, computed exactly."""
+"""Coverage of the interval of a share, computed exactly."""
 
 from functools import cache
 

@@ -1,4 +1,4 @@
-"""Arms that we do not ship, as somebody who has a URDF and the doctor gets them."""
+"""Third-party arms that the doctor writes from a URDF."""
 
 import functools
 import os
@@ -108,18 +108,18 @@ def short_examination() -> Iterator[None]:
 
 @functools.cache
 def robot(name) -> str:
-    """The name under which a stranger is in the config folder."""
+    """The name of a third-party arm in the config folder."""
     write_folder(read(name), folder())
     return read(name).name
 
 
 @functools.cache
 def read(name):
-    """The doctor's examination of a stranger, the short one."""
+    """The doctor's short examination of a third-party arm."""
     with short_examination():
         return _examine(name)
 
 
 def config(name, *overrides):
-    """The checked config of a run of a stranger."""
+    """The checked config of a run of a third-party arm."""
     return validate(compose([f"robot={robot(name)}", *overrides], [folder()]))

@@ -1,4 +1,4 @@
-"""Which runs the tests of the studies' reports make: those of the plans, with what takes long cut to a moment."""
+"""Runs for tests of the studies' reports: those of the plans, with long runs cut to a moment."""
 
 import re
 from collections.abc import Mapping
@@ -8,11 +8,11 @@ from support.thin_plans import Overrides, stand_ins
 from runner.studies.precision.measure import PLANT
 from runner.study.study import load_study
 
-FULL_ALONE = ("late_and_limited.md",)  # chapters of the benchmark's full profile alone
+FULL_ALONE = ("late_and_limited.md",)  # chapters only of the benchmark's full profile
 MOMENT = 0.08  # s
 STUDIES = ("thesis", "thesis_beyond", "xarm7", "meca500", "engines", "benchmark", "precision")
 RECORDED = tuple(study for study in STUDIES if study != "meca500")
-"""Studies of which a thin plan is recorded; that of the other is made by each session of tests."""
+"""Studies with a recorded thin plan; each session of tests simulates the thin plan of the other study."""
 _ENGINES_ARM, _ENGINES_STEP = re.compile(r"^((?:open|reference|closed|least)/)(\w+)"), re.compile(r"^(wall/.*/)[^/]+$")
 _ENGINES_ARMS = {"combined": "mini", "macro_mini_mini": "mini", "xarm7_mini": "mini", "xarm7": "macro",
                  "meca500": "macro", "scara": "planar", "seven": "planar"}  # fmt: skip
@@ -50,7 +50,7 @@ def thesis_moments(study: str) -> dict[str, Overrides]:
 
 
 def xarm7_studies() -> dict[str, Overrides]:
-    """Return the runs of the studies on the xArm7, of which none is an experiment of the report's."""
+    """Return the runs of the studies on the xArm7, without the report's experiments."""
     jobs = load_study("xarm7").jobs()
     return {name: job for name, job in jobs.items() if not job[0].startswith("experiment=")}
 
@@ -76,7 +76,7 @@ def meca500_calibrations() -> dict[str, Overrides]:
 
 
 def engines_stand_ins(jobs: Mapping[str, Overrides]) -> dict[str, str]:
-    """Return which run of the report on engines stands for each: three arms for all, one step for every wall."""
+    """Return the substitute for each run of the report on engines: three arms for all, one step for every wall."""
     return {name: _ENGINES_STEP.sub(r"\g<1>0.001", _ENGINES_ARM.sub(_stand_in, name)) for name in jobs}
 
 

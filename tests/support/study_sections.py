@@ -1,4 +1,4 @@
-"""What the tests of the studies share: runs made to fail, and what a section says."""
+"""Code that tests of the studies share: runs that are changed to fail, and the words of a section."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

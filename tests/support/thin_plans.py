@@ -59,7 +59,7 @@ def make_runs(
     """Return the runs of jobs by name.
 
     Args:
-        folder: Shared by all test processes: each run is made by the first one that comes to it.
+        folder: Shared by all test processes; the first process that needs a run simulates it.
         jobs: Overrides by name.
         stands_for: Name of the run that stands for each; None lets each stand for itself.
         config_dirs: Config folders of the study's own.
@@ -74,26 +74,26 @@ def make_runs(
 
 
 def make_calibrations(folder: Path, jobs: Mapping[str, Overrides]) -> dict[str, Calibration]:
-    """Return the calibrations of jobs by name, likewise."""
+    """Return the calibrations of jobs by name."""
     return make_once(folder, jobs, calibrate, store.open_calibration)
 
 
 def make_once(
     folder: Path, jobs: Mapping[str, Overrides], make: Callable[..., Kept], read: Callable[[Path], Kept]
 ) -> dict[str, Kept]:
-    """Return what jobs give by name, each made by the first process that comes to it.
+    """Return the results of jobs by name; the first process that needs one makes it.
 
     Args:
         folder: Shared by all test processes.
         jobs: Overrides by name.
-        make: Makes one of its overrides; its name and the overrides tell what is made.
+        make: Makes a result from its overrides; this function's name and the overrides identify the result.
         read: Reads what was made from its folder.
     """
     made: dict[str, Kept] = {}
     left = dict(jobs)
     while left:
         for name, overrides in list(left.items()):
-            # What another process is at work on is left for later, but for the last.
+            # Jobs in another process are left for later, except for the last.
             with _mine(folder / _digest(make.__name__, *overrides), wait=len(left) == 1) as note:
                 if note is None:
                     continue

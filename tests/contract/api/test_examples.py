@@ -33,7 +33,7 @@ def test_all_that_is_called_has_an_example():
 
 @pytest.mark.usefixtures("no_processes")
 def test_the_notebook(tmp_path, monkeypatch):
-    """Cell by cell, in one namespace; what a cell ends with is shown, as a notebook does."""
+    """Run cell by cell, in one namespace. Show the last value of a cell like a notebook."""
     monkeypatch.chdir(tmp_path)
     notebook = json.loads((ROOT / "examples/notebook.ipynb").read_text())
     cells = ["".join(cell["source"]) for cell in notebook["cells"] if cell["cell_type"] == "code"]

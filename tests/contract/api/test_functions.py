@@ -1,4 +1,4 @@
-"""What `import runner` gives does what the commands do."""
+"""Functions of `import runner` against the commands."""
 
 import subprocess
 import sys

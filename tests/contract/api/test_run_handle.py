@@ -1,4 +1,4 @@
-"""A run in the hands of a user: short as text, whole as a page, and every repetition to be had."""
+"""A run object for users: a short string, a whole page, and access to every repetition."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""The room is above all others, and third-party tools understand it."""
+"""The API package is above all others, and third-party tools understand it."""
 
 import ast
 import os

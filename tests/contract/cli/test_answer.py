@@ -74,7 +74,7 @@ BASH = """
 
 @pytest.fixture
 def bash(tmp_path):
-    """Run lines in bash after those that turn on completion; `tab LINE` prints the words for it."""
+    """Run lines in bash after the lines that enable completion; `tab LINE` prints the words for it."""
     if shutil.which("bash") is None:
         pytest.skip("needs bash")
     command = tmp_path / "runner"

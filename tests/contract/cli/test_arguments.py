@@ -16,7 +16,7 @@ def test_latest_is_the_run_or_sweep_made_or_found_last(cli, monkeypatch):
     sweep = cli(*SWEEP).folder
     assert cli("table", "latest").folder == sweep
     assert "2 runs: 2 done" in cli("status", "latest").out
-    monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)  # its folder alone is asked for
+    monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)  # only its folder is asked for
     of_sweep = cli("report", "latest", "--format", "html").folder
     assert cli("report", sweep, "--format", "html").folder == of_sweep
     assert "is a run and" in cli("compare", "latest", second).err  # the sweep is meant, which was found last

@@ -1,4 +1,4 @@
-"""`runner benchmark check`: laws that fit and laws that do not, against a small study with one law of ours."""
+"""`runner benchmark check`: laws that fit and laws that do not, against a small study with one built-in law."""
 
 import re
 import shutil

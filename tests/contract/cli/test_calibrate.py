@@ -1,4 +1,4 @@
-"""`runner calibrate`: errors told, warnings, and what is refused."""
+"""`runner calibrate`: printed errors, warnings and refused input."""
 
 import pytest
 
@@ -33,7 +33,7 @@ def test_an_overload_and_a_heavy_tool_are_warned_of(cli):
     assert ending.code == 0
     assert "warning: robot.tool.mass and robot.payload.mass: 3 and 0 kg are more than the 0.5 kg" in ending.err
     assert "beyond the sensor's range of 20 N; its reading stayed there" in ending.err
-    assert cli("calibrate", "calibration=gravity", "robot.tool.mass=3", *SHORT) == ending  # cached, told again
+    assert cli("calibrate", "calibration=gravity", "robot.tool.mass=3", *SHORT) == ending  # cached, printed again
 
 
 def test_all_problems_are_told_at_once(cli, tmp_path):

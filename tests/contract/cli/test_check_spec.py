@@ -1,4 +1,4 @@
-"""`runner check` of what has a spec, and what a run tells of it at its end."""
+"""`runner check` of runs with a spec, and the lines on the spec at the end of a run."""
 
 import re
 

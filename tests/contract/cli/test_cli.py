@@ -255,7 +255,7 @@ def test_a_diverging_simulation_is_a_stored_result(cli):
     assert record["status"] == "failed"
     assert record["failure"]["joint"] == "q1"
     assert all(value is None for metric in record["metrics"].values() for value in metric["values"])
-    assert cli("robot=macro", *overrides, "repetitions=2") == ending  # cached, it is told again
+    assert cli("robot=macro", *overrides, "repetitions=2") == ending  # cached, it is printed again
 
 
 def test_an_internal_error_ends_with_3_and_its_trace(cli, monkeypatch):
@@ -342,7 +342,7 @@ print(found)
 
 
 def test_what_needs_no_config_imports_little(tmp_path):
-    """Help, lists, and folders that are not there or are none of the kind that a command takes."""
+    """Help, lists, and folders that do not exist or are of a kind that the command does not take."""
     command = [sys.executable, "-c", f"LIGHT = {LIGHT}\n{IMPORTS}"]
     ending = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert ending.stdout.splitlines()[-1] == "[]"

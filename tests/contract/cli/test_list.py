@@ -37,7 +37,7 @@ def test_claims_carry_printed_value_and_place(cli):
     lines = cli("list", "claims").out.splitlines()
     assert "thesis 1   Macro, goal position, settles: 1.4 s (section 3.3.1, conclusion)" in lines
     thesis = [line for line in lines if line.startswith("thesis ")]
-    assert thesis[-2].endswith("as the Mini stretches to its limit (section 5.3.4, conclusion)")  # as text, no number
+    assert thesis[-2].endswith("as the Mini stretches to its limit (section 5.3.4, conclusion)")  # a string, no number
     assert any(line.startswith("xarm7 1    Three joints, X stays constant: 0.643 m (section") for line in lines)
 
 

@@ -1,4 +1,4 @@
-"""`runner reproduce`: runs that are made or found, reports, conclusions, and what `--check` tells."""
+"""`runner reproduce`: new and cached runs, reports, conclusions, and the lines of `--check`."""
 
 import csv
 import json
@@ -30,7 +30,7 @@ grids:
 
 @pytest.fixture
 def small_study(tmp_path):
-    """A study of three short runs, one of which fails, in the folder `small`."""
+    """A study of three short runs in the folder `small`; one run fails."""
     folder = tmp_path / "small"
     folder.mkdir()
     for name, text in FILES.items():

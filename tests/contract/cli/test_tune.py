@@ -16,7 +16,7 @@ TUNE = ("tune", *SHORT, RANGE, "--minimize", "peak_torque", "--trials", 4)
 
 @pytest.fixture
 def no_report(monkeypatch):
-    """Lets no report be rendered, where its folder alone is asked for."""
+    """Let no report be rendered if only its folder is asked for."""
     monkeypatch.setattr("runner.reporting.render.write_report", lambda *_: None)
 
 

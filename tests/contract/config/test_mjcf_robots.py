@@ -38,7 +38,7 @@ robot:
 
 @pytest.fixture
 def mine(tmp_path, monkeypatch):
-    """A folder of one's own with an arm as MJCF, alone and under another."""
+    """A separate folder with an arm as MJCF, without and under another arm."""
     monkeypatch.chdir(tmp_path)
     written(tmp_path / "mine", CHAIN, "robots/arm.xml")
     written(tmp_path / "mine", ROBOT, "robot/elbow.yaml")

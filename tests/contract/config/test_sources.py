@@ -1,4 +1,4 @@
-"""What a config file may set: how and where runs are simulated, code and folders are refused, before anything runs."""
+"""Settings of a config file: keys on simulation, code and folders are refused before anything runs."""
 
 import json
 import os
@@ -20,7 +20,7 @@ WHY = "controls how or where runs are simulated, which no file may do; set it on
 
 @pytest.fixture
 def stranger(cli, tmp_path):
-    """Runs a file of a stranger's config folder, whose text may make the folder `done`, once or as a sweep."""
+    """Run a file of a third-party config folder, once or as a sweep; it may create the folder `done`."""
 
     def run(text, *mode, file="experiment/trap", head=HEAD):
         place = tmp_path / "theirs" / f"{file}.yaml"

@@ -1,4 +1,4 @@
-"""What can be run though it is unusual, said with the run."""
+"""Warnings about unusual configs that can be run, printed with the run."""
 
 import pytest
 from support import strangers
@@ -14,7 +14,7 @@ robot: {name: arm, urdf: arm.urdf, tip: tip, home: [0.2, 0.4, 0.5], goal: [0.3, 
 
 @pytest.fixture
 def told(cli, tmp_path):
-    """What a run of an arm tells on standard error."""
+    """Messages on standard error of a run of an arm."""
 
     def run(urdf, *overrides):
         own = tmp_path / "own"

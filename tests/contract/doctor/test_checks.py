@@ -31,7 +31,7 @@ def examined(tmp_path):
 
 @pytest.fixture
 def found(examined):
-    """What is said of a string at a place, next to the notes on other things."""
+    """The finding on a string at a place, without the notes on other places."""
 
     def make(text, place, tip=None):
         (finding,) = [each for each in examined(text, tip).findings if each.place == place]

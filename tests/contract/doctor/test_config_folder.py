@@ -23,7 +23,7 @@ OURS = sorted(group_options("robot"))
 
 @pytest.fixture
 def written(tmp_path):
-    """What is written of an arm in a file, whose tip has a name, too."""
+    """The config folder that is written for an arm in a file; its tip also has a name."""
 
     def make(file, tip="tip", name=None):
         text = strangers.chain(

@@ -229,7 +229,7 @@ def mine(tmp_path, monkeypatch):
 
 
 def write_part(mine, group, name, module, spoils):
-    """Write a part that spoils what it is handed, or one that does not, and use it alone."""
+    """Write a part that spoils its arguments, or one that does not, and use only this part."""
     text = SPOIL.format(spoils=spoils) + "\n".join(line[4:] for line in module.replace("NAME", name).splitlines())
     (mine / group).mkdir(parents=True, exist_ok=True)
     (mine / f"{name}.py").write_text(text)

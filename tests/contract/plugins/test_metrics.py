@@ -1,4 +1,4 @@
-"""Guarded metrics: a metric that fails loses its value alone."""
+"""Guarded metrics: if a metric fails, only its value is lost."""
 
 import re
 from types import ModuleType

@@ -69,7 +69,7 @@ def mine(tmp_path, monkeypatch):
 
 
 def forget():
-    """Let this process know no part that a test has told it of."""
+    """Remove all parts that a test has registered in this process."""
     os.environ.pop("RUNNER_PLUGINS", None)
     sys.modules.pop("spring", None)
 

@@ -24,7 +24,7 @@ def stored(tmp_path_factory):
 
 @pytest.fixture
 def compared(stored, tmp_path):
-    """Return what holds the run's own signals against it, by the text of a map."""
+    """Return a function that compares a run with its own signals, from the columns of a map."""
 
     def compare(columns, rows=slice(None), shift=0.0, change=lambda frame: frame):
         trace = stored.trace().iloc[rows].copy()

@@ -18,7 +18,7 @@ COUNT, START = 60, 1_700_000_000_123_456_789  # ns
 
 @pytest.fixture
 def write(tmp_path):
-    """Return what writes a bag: messages (stamp in ns, names, positions, efforts) of each topic."""
+    """Return the writer of a bag from messages (stamp in ns, names, positions, efforts) of each topic."""
     pytest.importorskip("rosbags", reason="the extra ros is not installed")
     from rosbags import rosbag1, rosbag2
     from rosbags.typesys import Stores, get_typestore

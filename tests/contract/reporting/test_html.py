@@ -72,7 +72,7 @@ def test_texts_add_no_tag_and_are_shown_literally(quiet, text):
 
 
 def sources(page):
-    """Return what the page's policy says of scripts."""
+    """Return the sources of scripts that the page's policy allows."""
     policies = [value for name, value in page.attributes if name == "content" and value.startswith("default-src")]
     (scripts,) = re.findall(r"script-src ([^;]*);", *policies)
     return scripts.split()

@@ -1,4 +1,4 @@
-"""What chapters read of runs: ends of metrics, settings, abscissae, and what a run gave until it failed."""
+"""Numbers that chapters read of runs: ends of metrics, settings, abscissae, and values of a run until it failed."""
 
 from dataclasses import replace
 

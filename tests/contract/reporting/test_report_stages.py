@@ -13,7 +13,7 @@ STAGES = {"html": ["writing the HTML"], "pdf": ["drawing figures", "writing the 
 
 @pytest.fixture
 def told(monkeypatch):
-    """What is begun, with its total, and the number of steps of each."""
+    """The stages that begin, each with its total and its number of steps."""
     found = {}
 
     def begin(name, total=None, unit="", count=None):

@@ -1,4 +1,4 @@
-"""What reports on runs show of their spec."""
+"""Blocks on the spec in reports on runs."""
 
 import pytest
 
@@ -14,7 +14,7 @@ from runner.reporting.spec_blocks import HEADER, bound_text
 
 @pytest.fixture(scope="module")
 def made(runs):
-    """Two runs with specs of their own, one of which lacks the metric, and one without."""
+    """Two runs with different specs, the second without the metric, and one run without a spec."""
     torque = Bound(max=1.0, reason="gear <b>2</b>")
     return [
         runs["rk4"].judged_by({"peak_torque": torque, "cross_track_error": Bound(max=1.0)}, {}),

@@ -27,7 +27,7 @@ def run(runs):
 
 @pytest.fixture
 def measured(monkeypatch):
-    """Return what is measured of the figure behind a drawing, in the style that it is drawn in."""
+    """Return a function that measures the figure of a drawing in its style."""
 
     def measure(draw, of_figure):
         found = []
@@ -89,7 +89,7 @@ def test_only_the_combined_arm_is_shown_enlarged(combined, measured):
 
 
 def walk(schedule, beyond, turn, within):
-    """Return what is done in a period, from the chart: at most every step once."""
+    """Return the actions of one period, from the chart; each step occurs at most once."""
     chart = {step.name: step for step in steps(schedule, beyond)}
     step, done = steps(schedule, beyond)[0], []
     for _ in chart:

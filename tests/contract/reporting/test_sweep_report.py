@@ -23,7 +23,7 @@ def document(sweep12):
 
 @pytest.fixture
 def part(sweep12, tmp_path):
-    """Copy some cells of the sweep, by their places, into a sweep of their own."""
+    """Copy some cells of the sweep, by their places, into a separate sweep."""
 
     def copy(*places):
         for place in places:

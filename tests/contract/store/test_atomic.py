@@ -47,7 +47,7 @@ def test_files_of_living_writers_stay_for_a_minute(tmp_path, host, process, age,
 def test_a_writer_that_ended_and_was_not_waited_for_is_gone(tmp_path):
     """As a killed command's processes are, until the system has collected them."""
     with subprocess.Popen([sys.executable, "-c", ""], stdout=subprocess.PIPE) as process:
-        assert process.stdout.read() == b""  # it has closed all that it had open, and no one has waited for it
+        assert process.stdout.read() == b""  # it has closed its files, and no process has waited for it
         left = tmp_path / f".metrics.json.{socket.gethostname()}.{process.pid}.tmp"
         left.write_bytes(b"{")
         os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)  # ended, and not collected

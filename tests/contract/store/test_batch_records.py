@@ -1,4 +1,4 @@
-"""Records of many runs as strings, against those of each run alone."""
+"""Records of many runs as strings, against the records of single runs."""
 
 import json
 from types import SimpleNamespace

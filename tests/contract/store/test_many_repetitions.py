@@ -1,4 +1,4 @@
-"""Runs of so many repetitions that their values stand next to the record."""
+"""Runs of so many repetitions that their values are stored next to the record."""
 
 import json
 import shutil

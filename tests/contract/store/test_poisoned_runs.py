@@ -93,7 +93,7 @@ def test_a_record_that_is_too_much_is_refused(cli, forged, content, told):
 
 @pytest.fixture
 def pair(forged, runs):
-    """Two runs of which each string is hostile."""
+    """Two runs whose strings are all hostile."""
     return [forged(name, hostile(runs[name]), place=name[0]) for name in ("goal", "other seed")]
 
 

@@ -25,7 +25,7 @@ def run(copy_run):
 
 
 def refuse(code):
-    """Return what raises an operating system's error, whatever it is asked for."""
+    """Return a function that raises an operating system's error for any arguments."""
 
     def call(*_, **__):
         raise OSError(code, os.strerror(code))
@@ -152,7 +152,7 @@ def test_a_run_under_the_name_of_another_is_told_and_made_again(cli, run, copy_r
     assert cli("verify").code == 1
     assert cli(*RUNS["noise"]).folder == run.folder
     assert open_run(run.folder).metrics == run.metrics
-    assert open_run(shutil.copytree(other, tmp_path / "mine")).hash == "mine"  # a copy elsewhere may bear any name
+    assert open_run(shutil.copytree(other, tmp_path / "mine")).hash == "mine"  # a copy elsewhere may have any name
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ METRIC = "rms_tracking_error"
 
 
 def a_run(errors, period=0.01):
-    """What `cells` reads of a run: its errors in m, NaN where a repetition failed, and its config."""
+    """Return a run as `cells` reads it: errors in m, NaN for a failed repetition, and its config."""
     config = {"controller": {"kind": "some", "period": period, "gain": np.random.default_rng().random()}, "seed": 0}
     return SimpleNamespace(
         metrics={"rms_tracking_error": {}}, values=lambda _: np.asarray(errors, dtype=float), config=config
@@ -78,7 +78,7 @@ def test_a_lead_that_one_tuning_turns_round_is_a_tie():
 
 
 def test_a_law_stands_in_the_group_after_the_last_one_that_is_ahead_of_it():
-    wide = SCATTER * np.where(np.arange(SEEDS) % 2, 1.4, 0.75)  # neither ahead of a nor behind b, as a is ahead of b
+    wide = SCATTER * np.where(np.arange(SEEDS) % 2, 1.4, 0.75)  # neither ahead of a nor behind b; a is ahead of b
     made = cell(a=SCATTER, b=1.2 * SCATTER, c=wide, d=2.0 * SCATTER)
     assert made.leads["a", "b"].shown
     assert [sorted(own) for own in made.groups] == [["a", "c"], ["b"], ["d"]]
@@ -132,7 +132,7 @@ def test_a_failed_repetition_is_an_error_beyond_every_number():
     assert [made.entry(law).failed for law in "abc"] == [0.0, 1.0, 0.25]
     assert made.entry("b").score == np.inf
     assert made.leads[made.best.law, "b"].shown
-    assert not made.leads["a", "c"].shown  # better in a quarter alone
+    assert not made.leads["a", "c"].shown  # better in only a quarter
 
 
 @pytest.mark.parametrize("repetitions", [1, SEEDS])

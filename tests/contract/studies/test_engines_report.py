@@ -40,7 +40,7 @@ def test_the_textbooks_mass_matrix_is_that_of_its_kinetic_energy(runs: Mapping[s
 
 
 def test_a_changed_arm_is_found_to_be_another(runs: Mapping[str, Run]) -> None:
-    """An engine that is given another mass is told from Pinocchio by what is compared."""
+    """The comparison distinguishes an engine with another mass from Pinocchio."""
     run = runs["open/planar/MuJoCo Euler/0.001"]
     heavier = run.urdf.replace('<mass value="1"', '<mass value="1.001"', 1)
     assert heavier != run.urdf

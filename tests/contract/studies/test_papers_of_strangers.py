@@ -1,4 +1,4 @@
-"""What the files of a stranger's paper may name, against a secret, a scheduler, and files outside of its folder."""
+"""Names in the files of a third-party paper, against a secret, a scheduler, and files outside of its folder."""
 
 import os
 import shutil
@@ -53,7 +53,7 @@ def refused(ending, tmp_path, problem):
 
 
 def last_line(text):
-    """Return where the last line of a string of runs.yaml stands, as messages say it."""
+    """Return the place of the last line of a string of runs.yaml, in the words of messages."""
     return f"paper/runs.yaml, line {text.count(chr(10)) + 1}: "
 
 

@@ -67,7 +67,7 @@ def test_a_pendulum_hangs_after_a_quarter_of_its_period(model: RobotModel, way: 
 
 
 def test_a_held_torque_does_its_work(model: RobotModel) -> None:
-    """What the energy gains is torque times way, by both methods."""
+    """The gain of energy is torque times way, by both methods."""
     for plant in (Adaptive(model, 0.3, 1e-15), Collocation(model, 0.3)):
         plant.reset(np.array([ANGLE]), np.zeros(1))
         plant.advance(np.array([5.0]))

@@ -36,7 +36,7 @@ SPOILED: dict[str, Callable[[Mapping[str, Run]], Mapping[str, Run]]] = {
     "all": every_run,
     **{f"third {first}": lambda runs, first=first: every_third(runs, first) for first in range(3)},
 }
-# One third goes through the same branches as another; the others are slow for the sake of what each fails alone.
+# One third goes through the same branches as another. The others are slow: each may fail by itself.
 SPOILS = [pytest.param(name, marks=() if name in ("all", "third 0") else pytest.mark.slow) for name in SPOILED]
 
 

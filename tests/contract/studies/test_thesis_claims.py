@@ -29,7 +29,7 @@ def test_the_numbers_of_chapters_3_to_5_are_listed_in_order():
         [0.06],
         [0.0, 5e-4],
         [0.0, 0.01],
-        [],  # as text
+        [],  # a string
         [0.0, 9e-3],
     ]
 
@@ -57,7 +57,7 @@ def test_only_the_minis_settling_time_is_held_against_another_printed_number():
     assert [(claim.number, claim.bound.claim) for claim in bounded] == [(5, 1)]
     macro = CLAIMS[0]
     assert (macro.number, macro.unit) == (1, bounded[0].unit)
-    assert FACTOR * bounded[0].bound.scale * macro.value < bounded[0].value  # the source alone, without any run
+    assert FACTOR * bounded[0].bound.scale * macro.value < bounded[0].value  # only the source, without any run
 
 
 def test_an_unknown_key_of_a_claim_is_refused():

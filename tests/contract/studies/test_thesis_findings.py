@@ -1,4 +1,4 @@
-"""What the thesis' chapters conclude is refuted by runs that say otherwise."""
+"""Conclusions of the thesis' chapters, refuted by runs that contradict them."""
 
 from collections.abc import Callable
 

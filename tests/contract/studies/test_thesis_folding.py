@@ -1,4 +1,4 @@
-"""What the thesis' section on folding tells of repetitions of which some diverge, and of two draws that part."""
+"""The thesis' section on folding, from repetitions that partly diverge and from two draws that part."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

@@ -61,7 +61,7 @@ def judged_by(some: Run, number: int, values: list[float | None], **others: list
 
 
 def test_one_seed_turns_by_its_own_value_and_a_group_by_the_binomial(some: Run) -> None:
-    """Of 400 seeds three in ten are judged worse: medians of 40 are as often as half of 40 draws are, or more."""
+    """Three in ten of 400 seeds are judged worse. A median of 40 is worse as often as half of 40 draws, or more."""
     worse = 120
     values = [5e-4] * (SEEDS - worse) + [9e-4] * worse  # claim 9 holds up to 6e-4
     each = judged_by(some, 9, list(np.random.default_rng(1).permutation(values)))

@@ -68,7 +68,7 @@ def test_nothing_of_the_meca500_report_fails(shared_store: Path) -> None:
 
 @pytest.mark.parametrize("study", RECORDED)
 def test_recorded_runs_are_those_that_the_runner_makes(shared_store: Path, study: str) -> None:
-    """Where they are not, `PYTHONPATH=tests .venv/bin/python -m support.recorded_runs STUDY` records them again."""
+    """If they differ, `PYTHONPATH=tests .venv/bin/python -m support.recorded_runs STUDY` records them again."""
     kept, jobs = recorded(study, shared_store), recorded_jobs(study)
     assert set(kept) == set(jobs)
     made = make_runs(shared_store, jobs, None, load_study(study).config_dirs)

@@ -139,7 +139,7 @@ def test_every_formula_can_be_set(document):
     assert faulty(document) == []
 
 
-@pytest.mark.slow  # the Meca500 report is written each time; test_every_formula_can_be_set is what may fail here alone
+@pytest.mark.slow  # the Meca500 report is written each time; only test_every_formula_can_be_set may fail here
 def test_html_and_pdf_are_written(document, tmp_path):
     html, pdf = write_report(document, tmp_path)
     page = html.read_text()

@@ -1,4 +1,4 @@
-"""A study in a folder of a stranger's: written, read, made, checked, and what is said when something is wrong."""
+"""A study in a user's folder: written, read, simulated and checked, and its messages if something is wrong."""
 
 import re
 import sys

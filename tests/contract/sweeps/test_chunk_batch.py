@@ -1,4 +1,4 @@
-"""Runs of a chunk that are simulated together: which are, and that nothing else is told of them than alone."""
+"""Runs of a chunk that are simulated together: their choice, and the same outcomes as single runs."""
 
 from types import SimpleNamespace
 
@@ -53,7 +53,7 @@ def by_name(outcomes):
 
 
 def alone(chunk, outputs):
-    """Return how the runs of a chunk end when each is made by itself, in another folder."""
+    """Return the outcomes of the runs of a chunk if each is simulated separately, in another folder."""
     return by_name(
         end
         for part in chunk.parts

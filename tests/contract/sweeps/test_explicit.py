@@ -1,4 +1,4 @@
-"""Plans of listed runs: each composed as it is alone."""
+"""Plans of listed runs: each composed like a single run."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Runs made again on a finer step: against the same runs on Runge-Kutta, and what cannot be made so."""
+"""Runs repeated on a finer step: against the same runs on Runge-Kutta, and runs that cannot be repeated so."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Journals of tunings: read as written, told when damaged, and continued wherever they were cut."""
+"""Journals of tunings: read as written, reported if damaged, and continued wherever they were cut."""
 
 import json
 import math
@@ -52,7 +52,7 @@ def test_the_journal_of_another_tuning_is_told(tmp_path):
     for read in (read_trials, lambda path: Journal(path, KEYS, GOALS)):
         with pytest.raises(StoreError, match=r"other/journal\.log: it is damaged: .*; remove it to restart"):
             read(other)
-    kept = shutil.copytree(one.parent, tmp_path / "kept")  # a copy elsewhere may bear any name
+    kept = shutil.copytree(one.parent, tmp_path / "kept")  # a copy elsewhere may have any name
     assert read_trials(kept / "journal.log") == TRIALS[:1]
 
 

@@ -1,4 +1,4 @@
-"""What a sweep states of its plant's step and of the way to the goal, against stored runs."""
+"""Statements of a sweep on its plant's step and on the way to the goal, against stored runs."""
 
 from dataclasses import replace
 

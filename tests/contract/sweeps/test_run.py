@@ -1,4 +1,4 @@
-"""A whole sweep in this process: what is stored, what is made again, and what stops it."""
+"""A whole sweep in this process: its stored and repeated runs, and the causes that stop it."""
 
 import errno
 import json

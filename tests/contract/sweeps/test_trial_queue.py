@@ -1,4 +1,4 @@
-"""What the queue does when workers die; the engine's own tests kill them."""
+"""Actions of the queue after workers die; the engine's own tests kill them."""
 
 import pytest
 from support.short_runs import SHORT

@@ -1,4 +1,4 @@
-"""A whole tuning: what is stored, what is made again, and what its trials depend on."""
+"""A whole tuning: its stored and repeated trials, and the inputs of its trials."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Nothing of the compiled room can be tried where the library that makes machine code is missing."""
+"""Skip all tests of compiled code if the library that makes machine code is missing."""
 
 from runner.symbolic.engine import evaluator
 

@@ -23,7 +23,7 @@ def place(code_cache):
 
 @pytest.fixture
 def compilations(monkeypatch):
-    """How often something is compiled."""
+    """One entry for each compilation."""
     counted, compile_ = [], program.machine_code
     monkeypatch.setattr(program, "machine_code", lambda text: counted.append(1) or compile_(text))
     return counted

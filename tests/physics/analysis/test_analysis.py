@@ -20,7 +20,7 @@ HARD = (
     "noise.velocity=finite_difference", "robot.payload.mass=0.5",
 )  # fmt: skip
 
-# What an adaptive law learns from is 0 at the first tick.
+# The signal that an adaptive law learns from is 0 at the first tick.
 HELD = ("robot=macro", "controller=adaptive", *MACRO[1:3], "plant.friction.coulomb=0.1", "duration=0.1")
 
 
@@ -69,11 +69,11 @@ def test_an_arm_that_is_heavier_in_all_links_moves_alike_with_larger_torques(ana
         for name, sum_ in (expected | {"control_effort": 2.0}).items():
             elasticities = found.elasticities(name)[masses]
             assert elasticities.sum() == pytest.approx(sum_, abs=1e-9 * max(1.0, np.abs(elasticities).max())), name
-            assert np.abs(elasticities).max() > 1e-6  # each alone does matter
+            assert np.abs(elasticities).max() > 1e-6  # each matters by itself
 
 
 def test_the_sample_s_share_of_the_noise(analysed):
-    """At rest the error is the noise's alone: it and all that follows from it are proportional to the amplitude."""
+    """At rest the error follows only from noise: it, and each metric of it, is proportional to the amplitude."""
     found = analysed(
         "robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "noise.position=1e-4",
         groups=("noise",),

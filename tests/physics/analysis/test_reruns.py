@@ -81,7 +81,7 @@ def check_derivatives(found, overrides):
     sure, largest = np.zeros((2, len(keys.parameters)))
     for name, by in differences(keys, list(keys.metrics)).items():
         gaps, size = np.abs(by.derivatives - keys.derivatives[name]), np.abs(keys.derivatives[name])
-        judged = by.doubts <= 1e-7 * size  # a doubt of 1e-6 cannot tell if two agree to 1e-6
+        judged = by.doubts <= 1e-7 * size  # a doubt of 1e-6 cannot show agreement to 1e-6
         assert np.all(gaps[judged] <= 1e-6 * size[judged]), name
         assert np.all(gaps <= 1e-6 * size + 10.0 * by.doubts), name
         sure += by.doubts <= 1e-6 * size
@@ -124,7 +124,7 @@ def test_derivatives_by_gains_are_those_of_runs_composed_again(analysed):
 
 
 def test_a_key_moves_the_keys_that_take_its_value(analysed):
-    """All numbers together move as the sum of what each moves alone."""
+    """The effect of all keys together is the sum of the effects of single keys."""
     tied = analysed(*TIED, groups=("gains",))
     alone = analysed(*TIED, f"{NULL_SPACE}=30", f"{BANDWIDTH}=30", groups=("gains",))
     names = [one.name for one in tied.parameters]

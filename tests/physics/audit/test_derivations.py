@@ -71,7 +71,7 @@ def test_the_angular_rows_of_a_rotation_about_an_axis_are_the_axis():
 
 
 def test_the_printed_angular_rows_of_the_meca500_are_derivatives_of_summed_angles():
-    """What the findings say of them: in the base frame, and in frame 6."""
+    """Statements of the findings on these rows, in the base frame and in frame 6."""
     part = next(part for part in parts("meca500") if part.entries[0].number == "Table 1, row 1")
     values = derivation_of(part.source, part.symbols)(SAMPLES, np.random.default_rng(2))
     q = meca500.positions(values)

@@ -1,4 +1,4 @@
-"""Reference derivations of models: right for every robot of ours, and enough for a folder of only YAML."""
+"""Reference derivations of models: right for every built-in robot, and enough for a folder of only YAML."""
 
 import numpy as np
 import pytest

@@ -27,7 +27,7 @@ def deviation(meca500) -> float:
 
 @pytest.fixture(scope="session")
 def touching(meca500) -> Callable[..., np.ndarray]:
-    """Postures in which a tool's tip touches POINT, the flange tilted about axes all around it by an angle."""
+    """Configurations with a tool's tip at POINT, the flange tilted by an angle about axes all around it."""
 
     def make(tip, count, tilt) -> np.ndarray:
         postures = []

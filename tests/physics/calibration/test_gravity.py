@@ -58,7 +58,7 @@ def identify_exact(orientations, readings):
 
 @pytest.fixture(scope="module")
 def postures(meca500):
-    """Sixteen postures in which the arm weighs a tool well, chosen of a thousand within its limits."""
+    """Sixteen configurations for weighing a tool well, chosen from a thousand within the arm's limits."""
     lower, upper = np.clip(meca500.position_limits, -np.pi, np.pi)
     candidates = np.random.default_rng(1).uniform(lower, upper, (1000, 6))
     orientations = np.array([meca500.tip_pose(q)[:3, :3] for q in candidates])
@@ -93,7 +93,7 @@ def test_any_tool_angle_and_bias_is_found(mass, theta, centre, bias, count):
 
 @pytest.mark.parametrize("theta", [0.0, 1.0, 2.0, 3.0, -1.0, -2.0, -3.0])
 def test_theta_keeps_its_sign_and_its_half_turn(meca500, postures, theta):
-    # What an arc cosine (sign) or an arc sine (half turn), as the report has them, would lose.
+    # The arc cosine of the report would lose the sign, its arc sine the half turn.
     orientations = orientations_at(meca500, postures)
     found = identify_exact(orientations, read(orientations, noise_free(rotation=theta)))
     assert found.theta == pytest.approx(theta, abs=1e-12)

@@ -73,7 +73,7 @@ def test_more_than_there_are_cannot_be_chosen():
         [(0.0, 0.0, a) for a in (0.1, 1.0, 2.0, 3.0)],  # about the vertical: gravity stays
         [(0.02 * a, 0.01, 0.0) for a in (1.0, 2.0, 3.0, 4.0)],
         [(0.7 * np.cos(a), 0.7 * np.sin(a), 0.0) for a in (1.0, 2.0, 4.0, 5.0)],  # on one cone
-        [(0.0, 0.0, 0.1), (0.0, np.pi, 0.0), (0.0, 0.0, 1.0)],  # up and down alone
+        [(0.0, 0.0, 0.1), (0.0, np.pi, 0.0), (0.0, 0.0, 1.0)],  # only up and down
     ],
 )
 def test_orientations_that_cannot_weigh_a_tool_are_refused(axes):

@@ -1,4 +1,4 @@
-"""Calibrations carried out on the arm: where it stands, what it finds without noise, and how sure it is with noise."""
+"""Calibrations on the arm: its configurations, its result without noise, and its uncertainty with noise."""
 
 import numpy as np
 import pytest

@@ -22,7 +22,7 @@ def turned(model, rows) -> np.ndarray:
     ids=["force", "moment x", "moment y", "moment z"],
 )  # fmt: skip
 def test_each_axis_answers_a_push_as_its_mass_damper_and_spring(simulated, checked_config, load):
-    """Rotations add up to first order alone, so that each of them has its own run."""
+    """Rotations add up only to first order, so each of them has its own run."""
     load = np.array(load)
     axes = np.flatnonzero(load)
     overrides = (*PUSH, f"environment.force={load[:3].tolist()}", f"environment.moment={load[3:].tolist()}")

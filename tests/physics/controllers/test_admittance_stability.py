@@ -73,7 +73,7 @@ def test_an_axis_without_damping_stands_no_wall():
 
 def test_a_very_heavily_damped_axis_has_a_bound():
     law = Admittance(np.full(6, 2.0), np.full(6, 1e6), np.zeros(6))
-    # A damper alone: x + h f / B, which turns over where k h / B is 2.
+    # Only a damper: x + h f / B, unstable above k h / B = 2.
     assert stiffest_wall(law, 0.01, 0, 0.0, 0) == pytest.approx(2.0 * 1e6 / 0.01, rel=1e-3)
 
 

@@ -143,7 +143,7 @@ PLAIN = """
 
 
 def test_a_law_from_outside_carries_it(own_part, cli):
-    """One that holds gravity alone, of a payload that it does not know of, sinks at a speed that its damping sets."""
+    """A law that only holds gravity sinks under an unknown payload, at a speed that its damping sets."""
     module = PLAIN.replace("{torque}", "self.robot.model.gravity_torque(q) - 5.0 * dq").replace("{name}", "holding")
     own = own_part("controller", "holding", module, "kind: holding\nperiod: 0.001\n")
     line = ("--config-dir", own, "robot=macro", "controller=holding", "trajectory=goal", "duration=1",

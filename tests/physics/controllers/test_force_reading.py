@@ -1,4 +1,4 @@
-"""The world's wrench from a wrist sensor's reading against statics about the sensor, and Newton's law for the tool."""
+"""The external wrench from a wrist sensor's reading against statics about the sensor, and Newton's law for the tool."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def flange_of(robot, q):
 
 
 def reading(robot, q, push=0.0 * PUSH, twist=0.0 * TWIST, on_tool=0.0 * PUSH):
-    """Return what the sensor shows where the world pushes on the tip, and a force acts on the tool's centre of mass."""
+    """Return the sensor's reading under a wrench on the tip and a force on the tool's centre of mass."""
     R, p = flange_of(robot, q)
     c, s = np.cos(TURN), np.sin(TURN)
     axes = R @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

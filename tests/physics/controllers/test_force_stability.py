@@ -38,7 +38,7 @@ def test_a_wall_as_believed_is_that_of_the_force_loop(delay):
 
 
 def test_a_wall_s_own_damping_slows_what_remains_of_a_law_without_gain():
-    """Without k_f, and with a belief of next to nothing, mass, wall and damper are left: exp of the slowest mode."""
+    """Without k_f, and with a small assumed stiffness, mass, wall and damper are left: exp of the slowest mode."""
     mass, stiffness, drag, period = 0.1, 1e3, 5.0, 1e-3
     modes = np.roots([mass, drag, stiffness])
     found = touch_radius((0.0, 1.0), mass, stiffness, drag, 1e-12, period, 0)

@@ -26,7 +26,7 @@ ARMS = {
 
 @pytest.fixture(scope="module")
 def push(checked_config, simulated):
-    """Let an arm push on a wall from where it stands; return the trace and the force along the normal."""
+    """Let an arm push on a wall at its home tip; return the trace and the force along the normal."""
 
     def made(arm, stiffness, *overrides, normal=NORMAL):
         model = checked_config(*ARMS[arm], *LAW).arm
@@ -39,7 +39,7 @@ def push(checked_config, simulated):
 
 
 def rise_time(trace, force):
-    """Return how long a force takes from 10 % to 90 % of where it ends, in ms."""
+    """Return the time of a force from 10 % to 90 % of its last value, in ms."""
     reached = [np.argmax(force >= share * force[-1]) for share in (0.1, 0.9)]
     return 1e3 * (trace.t[reached[1]] - trace.t[reached[0]])
 
@@ -108,7 +108,7 @@ def test_a_reading_by_joint_torques_finds_the_force(push):
 
 
 def test_an_integral_takes_away_what_a_wrong_bias_of_the_posture_leaves(push):
-    """The arm believes itself weightless, so that a part of its weight lies on the wall, which tilts upwards."""
+    """The law assumes a weightless arm, so a part of its weight lies on the wall, which tilts upwards."""
     weightless = ("controller.gravity_compensation=false", "duration=0.5")
     _, without = push("mini", 1e4, *weightless, normal=TILTED)
     _, with_integral = push("mini", 1e4, *weightless, "controller.integral_gain=50", normal=TILTED)

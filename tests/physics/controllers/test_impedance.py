@@ -12,7 +12,7 @@ LAW = ("controller=impedance", "plant=rk4", "environment=push", "environment.sta
 
 
 def pushed(checked_config, simulated, arm, *overrides):
-    """Return how far a push brings the tip of an arm that is led nowhere, shape (T, 3), and the trace."""
+    """Return the displacement of a resting arm's tip under a push, shape (T, 3), and the trace."""
     robot = checked_config(*ARMS[arm]).arm
     goal = robot.model.tip_position(robot.home).tolist()
     trace = simulated(*ARMS[arm], *LAW, f"trajectory.goal={goal}", *overrides)

@@ -25,7 +25,7 @@ TO_AND_FRO = ("robot=macro", "controller=iterative_learning", "controller.period
 
 
 def slider(**changes):
-    """Return the law of one joint that slides without weight, period 4 s, and its mass: an exactly linear arm."""
+    """Return the law of one prismatic joint without weight, period 4 s, and its mass: an exactly linear arm."""
     model = RobotModel(strangers.chain("slider", [("prismatic", strangers.X)]), "tip", gravity=0.0)
     values = {
         "kind": "iterative_learning",
@@ -89,13 +89,13 @@ def test_a_limit_bounds_what_is_learned():
 
 
 def test_a_run_tells_the_law_what_its_limits_left(checked_config):
-    """The Macro cannot hold its links up with 15 N m: what is learned comes to rest, as limit less feedforward does."""
+    """The Macro cannot hold its links up with 15 N m: the learned torque converges to limit minus feedforward."""
     config = checked_config(*CIRCLE, "duration=20", "plant=rk4", "torque_limits.max=15", "mismatch.mass=0.8")
     closed = assemble(config)
     law = closed.loops[0].controller
     simulate(closed, make_encoders(closed, config.noise, 0, 0))
     closed.plant.close()
-    assert np.abs(law.learned).max() < 15.0  # 8.7 kN m where the law is not told
+    assert np.abs(law.learned).max() < 15.0  # 8.7 kN m if the law does not know the limit
 
 
 def test_the_low_pass_ends_learning_above_its_cut_off_and_has_no_phase():
@@ -130,7 +130,7 @@ def rms(trace, q_d):
 
 
 def test_iterations_from_rest_are_those_of_the_prototype(checked_config, prototype):
-    """The prototype puts the arm back to rest at the start before each iteration, as Arimoto does."""
+    """The prototype resets the arm to rest at the start before each iteration, like Arimoto."""
     file, q_d = prototype
     config = checked_config(*TO_AND_FRO, file, "duration=6.002")
     closed = replace(assemble(config), ticks=1499)

@@ -40,7 +40,7 @@ def test_torques_are_those_of_the_equation():
 
 
 def test_it_takes_away_the_sag_of_a_wrong_gravity_term(simulated):
-    """With 0.8 of the masses believed, joint PD rests at the closed-form sag; the integral leaves nothing of it."""
+    """With 0.8 of the masses in the model, joint PD rests at the closed-form sag; the integral leaves nothing of it."""
     motion = ("trajectory=joint_quintic", "mismatch.mass=0.8", "duration=9")
     config = checked(*LINE, *motion)
     goal = config.path.sample_joints(np.array([9.0]))[0, 0]

@@ -30,7 +30,7 @@ def test_without_misses_the_mean_square_is_the_square_of_the_radius():
 
 
 def grows(trace):
-    """Whether a run's error in x grows; it is led to zero from 10 um."""
+    """Return True if a run's error in x grows; the reference is zero, the start 10 um."""
     error = np.abs(trace.error[:, 0])
     return trace.failure is not None or error[-100:].max() > error[300:400].max() + 1e-12
 
@@ -81,7 +81,7 @@ def second_moments(checked_config, rate, missed, repetitions=6000, ticks=60):
 @pytest.mark.slow
 @pytest.mark.parametrize("rate", [0.3, 0.5, 0.7])
 def test_misses_are_borne_in_the_mean_square_up_to_the_closed_form(checked_config, rate):
-    """Where second moments neither grow nor fall, as simulated runs have them, on both sides of the closed form."""
+    """Compute from both sides of the closed form the rate with constant second moments, in simulated runs."""
     shares = np.array([0.85, 1.0, 1.15])
     moments = [second_moments(checked_config, rate, share * miss_limit(rate)) for share in shares]
     growths = [np.log(np.abs(np.linalg.eigvals(each)).max()) for each in moments]

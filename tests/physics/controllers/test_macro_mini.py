@@ -278,7 +278,7 @@ def test_a_known_payload_lets_the_macro_sink_less(simulated, combined, macro):
         )
         assert np.abs(trace.dq[-1]).max() < 1e-6
         q = trace.q[-1]
-        # What the law does not know of the Mini's weight: J M^-1 (G - G_known) / omega_n^2.
+        # The sag from the unknown part of the Mini's weight: J M^-1 (G - G_known) / omega_n^2.
         missing = combined.model.gravity_torque(q)[:3] - model.gravity_torque(q[:3])
         J, M = model.tip_jacobian(q[:3])[:3], model.mass_matrix(q[:3])
         error = trace.at_stage(0).error[-1]
@@ -289,7 +289,7 @@ def test_a_known_payload_lets_the_macro_sink_less(simulated, combined, macro):
 
 
 def test_two_way_coupling_lets_the_mini_stretch(simulated):
-    # The Macro yields to where the Mini stands: nothing draws the Mini back.
+    # The Macro yields to the Mini's position: nothing draws the Mini back.
     one_way, two_way = (simulated(*TRACKED, f"controller.coupling={c}") for c in ("one_way", "two_way"))
 
     def stretch(trace):

@@ -32,7 +32,7 @@ def passed(torques, notch):
 
 
 def gain(frequency):
-    """Return the share of a sine that passes a notch of one joint, once its start is forgotten."""
+    """Return the gain of a notch of one joint for a sine, after its transient."""
     times = H * np.arange(6000)
     out = passed(np.sin(2 * np.pi * frequency * times)[:, None], Notch(np.array([F]), WIDTH, H))[3000:, 0]
     waves = np.stack([np.sin(2 * np.pi * frequency * times), np.cos(2 * np.pi * frequency * times)], axis=1)[3000:]

@@ -21,7 +21,7 @@ OWN = {
     "passivity": (),
     "sliding_mode": ("boundary_layer=0.1", "switching_gain=2"),
 }
-"""Options of one law alone, away from their defaults."""
+"""Options that only one law has, away from their defaults."""
 
 
 @pytest.mark.parametrize("chosen", covered(OPTIONS))

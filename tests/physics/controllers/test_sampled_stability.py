@@ -27,7 +27,7 @@ def bound_of(config):
 def radius(config):
     """Spectral radius of small motions about home, under the torques of the law, held for a period.
 
-    What a law keeps next to the arm's state stays as it is at the start: integrals and parameters move slowly.
+    States of the law, such as integrals and parameters, keep their initial values because they move slowly.
     """
     (loop,), model, home = config.loops, config.arm.model, config.arm.home
     law, n, small = loop.controller, model.nq, 1e-6

@@ -36,7 +36,7 @@ class Spy:
 
 @pytest.fixture
 def mini_loop(combined):
-    """A Mini's loop, and what its law is told when the tip is wanted some way off its base."""
+    """A Mini's loop, and the reference of its law if the target is some way off its base."""
 
     def make(moving_target=True, stretch=False, turn=None, later=(0.0, 0.0, 0.0)):
         law = Spy(combined.stages[1].model)
@@ -97,13 +97,13 @@ def test_a_stretching_mini_goes_towards_the_target_as_far_as_it_reaches(mini_loo
     assert np.linalg.norm(target[0]) == pytest.approx(min(distance, REACH), rel=1e-12)
     reachable = mini_loop()[1](along(0.1))[1][0]
     np.testing.assert_allclose(target[0] / np.linalg.norm(target[0]), reachable / 0.1, atol=1e-12)
-    assert (np.abs(target[1]).max() > 0.0) == (distance <= REACH)  # at its limit it stands
+    assert (np.abs(target[1]).max() > 0.0) == (distance <= REACH)  # at its limit it is at rest
     np.testing.assert_array_equal(target[2], 0.0)
 
 
 # Later stages.
 
-LATER = np.array([0.02, -0.3, 0.1])  # home offset of what rides on the Mini, longer than the Mini's reach
+LATER = np.array([0.02, -0.3, 0.1])  # home offset of the stage on the Mini, longer than the Mini's reach
 
 
 @pytest.mark.parametrize("stretch", [False, True])

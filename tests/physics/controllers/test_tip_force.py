@@ -104,7 +104,7 @@ def test_the_posture_is_not_felt_by_the_tip(three_stages):
 
 
 def test_a_riding_stage_sees_gravity_and_target_turned_and_moving(combined):
-    """Its torques are those of its own arm on a fixed base, with R^T of the base's pose and motion."""
+    """Its torques are those of the same arm on a fixed base, with R^T of the base's pose and motion."""
     tip = pushing(combined, "last_stage")
     mini, base = combined.stages[1], combined.model.with_tip(combined.stages[1].base_frame)
     alone, arm = WholeBody(mini.model, law(), mini.home, 0), PinocchioArm(mini.model)

@@ -1,4 +1,4 @@
-"""Laws that lead a tip by torques, on our arms and on strangers: each against its linear design and its model's terms.
+"""Torque laws of a tip, on built-in and third-party arms, against their linear design and their model's terms.
 
 A session takes the twelve laws of EACH_SESSION: every law, task and kind of arm. The slow ones take all.
 """
@@ -24,7 +24,7 @@ from runner.plants.rk4 import Rk4
 from runner.robots.task_space import task_basis
 
 ROBOTS = ["macro", "mini", "combined", "xarm7", "meca500", "planar"]
-# Strangers, as the doctor gives them: spatial, planar, sliding, and of 30 joints.
+# Third-party arms from the doctor: spatial, planar, prismatic, and of 30 joints.
 STRANGE = [
     *((name, "position") for name in ("kuka", "franka", "xarm6", "planar_two", "pendulum", "crane", "mixed", "snake")),
     *((name, "pose") for name in ("kuka", "pendulum", "scara", "gantry", "mixed")),
@@ -159,7 +159,7 @@ def states(name, task, count=12):
 
 
 def asked_acceleration(name, task, q, dq, reference, feedforward=True):
-    """F*, from the reference and the state alone."""
+    """F*, only from the reference and the state."""
     arm, wn = arm_of(name), omega_of(name)
     pose, velocity = arm.model.tip_pose(q), jacobian(name, task, q) @ dq
     desired = reference * np.array([[1.0], [feedforward], [feedforward]])
@@ -190,7 +190,7 @@ def test_the_tip_s_error_obeys_the_linear_design(kind, name, task, feedforward):
 
 @of(JOINT_LAWS)
 def test_each_joint_s_error_obeys_the_linear_design(kind, name, task):
-    # What is left of the joints' acceleration without their feedback is the joint motion's, whatever is measured.
+    # The rest of the joints' acceleration without feedback is the joint motion's, whatever is measured.
     k_v, k_p = 2.0 * XI * omega_of(name), omega_of(name) ** 2
     controller, start = law(kind, name, task), states(name, task, 1)[0]
 
@@ -241,7 +241,7 @@ def test_the_projector_is_dynamically_consistent(kind, name, task):
         N_T = np.eye(len(q)) - J.T @ np.linalg.solve(mobility, J @ M_inverse)
         size = np.linalg.norm(J) * np.linalg.norm(M_inverse) * np.linalg.cond(mobility)
         np.testing.assert_allclose(J @ M_inverse @ N_T, 0.0, atol=1e-12 * size)
-        # What the law adds to h and J^T Lambda (F* - dJ/dt dq) lies in the range of N^T.
+        # The remainder of the law after h and J^T Lambda (F* - dJ/dt dq) lies in the range of N^T.
         dq, reference = (
             np.zeros(len(q)),
             np.array([arm_of(name).model.tip_position(q) + 0.01, np.zeros(3), np.zeros(3)]),
@@ -305,7 +305,7 @@ def singular_posture(name, task):
 
 
 # The stretched combined arm, whose mass matrix is singular, too, is in test_whole_body.
-# Sliding joints alone are never singular, and the search does not find a singular configuration of 30 joints.
+# Prismatic joints are never singular, and the search does not find a singular configuration of 30 joints.
 @of([law for law in LAWS[1:] if law[1] not in ("gantry", "snake")])
 def test_torques_at_a_singular_posture_are_bounded_by_the_damping_alone(kind, name, task):
     model, q = arm_of(name).model, singular_posture(name, task)

@@ -210,7 +210,7 @@ def test_the_mini_s_posture_is_held_at_rest(simulated):
 
 
 def small_motion(frequency, start, ticks, tick=1e-3):
-    """Let the arm go next to its rest posture, its tip told to stay; yield joint positions and velocities."""
+    """Let the arm go next to its rest posture, its tip commanded to stay; yield joint positions and velocities."""
     controller = WholeBody(MODEL, config(null_space_frequency=frequency), REST)
     reference = np.array([MODEL.tip_position(REST), np.zeros(3), np.zeros(3)])
     plant = Rk4(MODEL, tick, 1)

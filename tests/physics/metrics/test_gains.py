@@ -1,4 +1,4 @@
-"""Caveat of gains that the control period does not bear, on both sides of the bound."""
+"""Caveat of gains that are too high for the control period, on both sides of the bound."""
 
 import pytest
 from support.caveat_runs import found

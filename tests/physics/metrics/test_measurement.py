@@ -1,4 +1,4 @@
-"""Caveats of what a controller knows: exact velocities, noise alone and exact models."""
+"""Caveats of a controller's knowledge: exact velocities, only noise, and exact models."""
 
 import pytest
 from support.caveat_runs import found, signals

@@ -24,7 +24,7 @@ MOON = CHAIN.replace("<default>", '<option gravity="0 0 -1.62" density="1.2"/><d
 
 @pytest.fixture(params=["mjcf", "urdf"])
 def told(request, tmp_path):
-    """What the rule says of a run of an MJCF's text, as it is or as the URDF made of it; None where it says nothing."""
+    """Return the rule's caveat on a run of an MJCF, or of the URDF made from it; None without a caveat."""
 
     def run(text, *overrides):
         path = written(tmp_path, text)

@@ -1,4 +1,4 @@
-"""Caveats with a run: found, stored, told."""
+"""Caveats with a run: found, stored, printed."""
 
 import subprocess
 import sys

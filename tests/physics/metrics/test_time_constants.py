@@ -32,7 +32,7 @@ def test_what_a_wrong_gravity_leaves_at_rest_fades_by_e_in_each(checked_config, 
 
 
 def test_the_rates_of_adaptation_are_those_at_which_errors_fade_at_rest(checked_config, simulated):
-    """Gravity alone excites: K_D ds/dt = -Y Gamma Y^T s, in which masses that are believed wrong cancel."""
+    """Only gravity excites: K_D ds/dt = -Y Gamma Y^T s, in which errors of the model's masses cancel."""
     law = ("controller=adaptive", "controller.adaptation_gain=0.02", "controller.friction=false")
     config = checked_config(*REST, *law)
     own = config.loops[0].controller

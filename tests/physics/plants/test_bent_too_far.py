@@ -18,7 +18,7 @@ def plant():
 
 
 def ticks_until_it_fails(arm, before=0):
-    """Return the number of ticks and the time that the failure tells, from the start of a run."""
+    """Return the number of ticks and the time of the failure, from the start of a run."""
     arm.reset(np.zeros(1), np.zeros(1))
     for _ in range(before):
         arm.advance(np.zeros(1))

@@ -37,13 +37,13 @@ def test_a_used_server_gives_what_a_fresh_one_gives(simulated):
 
 
 def connected():
-    """Return how many physics servers this process has."""
+    """Return the number of physics servers of this process."""
     return sum(pybullet.isConnected(client) for client in range(1000))
 
 
 @pytest.fixture
 def servers_before():
-    """Close all that wait; what is lent and connected when a test ends was so when it began."""
+    """Close all idle servers; a test ends with the lent and connected servers of its start."""
     SERVERS.close()
     before = list(SERVERS.lent), connected()
     yield before[1]

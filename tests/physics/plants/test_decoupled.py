@@ -1,4 +1,4 @@
-"""Plants of arms that ride on each other: coupled as one body, or each with its own dynamics."""
+"""Plants of arms mounted on each other: coupled as one body, or each with its own dynamics."""
 
 import numpy as np
 import pytest

@@ -139,7 +139,7 @@ def test_the_distance_to_the_rigid_arm_falls_as_one_over_the_stiffness():
 
 
 def _moved(model, torque):
-    """Return where a rigid arm is after 0.3 s, shape (nq,); by Pinocchio, as compiled code knows no motors."""
+    """Return the rigid arm's positions after 0.3 s, shape (nq,), by Pinocchio: compiled code has no motors."""
     plant = Rk4(model, 1e-4, 3000)
     plant._compiled = None
     plant.reset(POSTURE, np.zeros(3))

@@ -168,7 +168,7 @@ def test_friction_of_a_contact_that_the_plant_makes(closed_loop, plant):
 
 
 def test_servos_against_dry_friction_stop_short_by_no_more_than_the_friction_holds(simulated, checked_config):
-    """K (q_c - q) = (1 + A M^-1) mu, A = h D + h^2 K: the servo counts on the motion that it believes in."""
+    """K (q_c - q) = (1 + A M^-1) mu, A = h D + h^2 K: the servo relies on its predicted motion."""
     case = ("robot=xarm7", "plant=rk4", "plant.friction.coulomb=2", "trajectory=quintic", "trajectory.duration=1")
     trace = simulated(*case, "duration=3", "controller.feedback=commanded", "controller.null_space.task=none")
     arm = checked_config(*case).arm

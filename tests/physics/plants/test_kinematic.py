@@ -1,4 +1,4 @@
-"""Kinematic arm: it is where it is told, tick by tick."""
+"""Kinematic arm: it is at its commanded positions in each tick."""
 
 import numpy as np
 import pytest

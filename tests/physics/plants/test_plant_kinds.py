@@ -58,7 +58,7 @@ def test_contact_plant_gets_the_wall_and_its_wrench_is_what_the_tip_feels(own_pa
     assert ending.code == 0, ending.err
     run = open_run(ending.folder)
     assert run.status == "ok", run.failure
-    # the wall's normal is -x, its stiffness 1e4 N/m: what the loop would add of its own is not there
+    # the wall's normal is -x, its stiffness 1e4 N/m: the loop adds no wall force to the plant's
     np.testing.assert_allclose(run.trace()["external_force_x"], -10.0, rtol=1e-12)
     about_tip = run.trace()[["external_moment_x", "external_moment_y", "external_moment_z"]].to_numpy()
     point = run.trace()["tip_x"].iloc[0] + 0.005 + run.config["robot"]["tool"]["tip_radius"]

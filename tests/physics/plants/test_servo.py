@@ -46,7 +46,7 @@ def test_without_gravity_compensation_it_sags_by_torque_over_stiffness(servo, ma
 
 
 def test_the_world_s_load_moves_it_by_torque_over_the_stiffness_that_is_left(servo, macro):
-    """Of K there is M (M + h D + h^2 K)^-1 K left, as the load stops the acceleration that the servo counts on."""
+    """The load stops the acceleration that the servo relies on: the stiffness is M (M + h D + h^2 K)^-1 K."""
     plant, load, K = servo(), np.array([3.0, -6.0, 1.5]), 1500.0
     plant.load[:] = load
     for _ in range(5000):
@@ -57,7 +57,7 @@ def test_the_world_s_load_moves_it_by_torque_over_the_stiffness_that_is_left(ser
 
 
 def test_a_small_step_answers_as_a_critically_damped_spring(servo, macro):
-    """Joint 1 of the Macro turns about the vertical alone: M_11 of home, no coupling while the others hold still."""
+    """Only joint 1 of the Macro turns, about the vertical: M_11 of home, no coupling while the others hold still."""
     plant = servo(stiffness=1500.0)
     target = Q + np.array([1e-3, 0.0, 0.0])
     wn = np.sqrt(1500.0 / macro.mass_matrix(Q)[0, 0])

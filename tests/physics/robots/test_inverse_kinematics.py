@@ -110,7 +110,7 @@ def test_beyond_the_reach_is_refused_with_what_is_left(name, direction, excess):
 
 
 def told(error):
-    """What is left, the target's and the nearest tip's distance from the shoulder, in m."""
+    """Return the remaining distance, and the target's and the nearest tip's distance from the shoulder, in m."""
     number = r"([\d.e+-]+)"
     pattern = rf"{number} m are left; it lies {number} m from the shoulder, the nearest found {number} m"
     return tuple(float(value) for value in re.search(pattern, str(error)).groups())

@@ -1,4 +1,4 @@
-"""Joints held fixed against Pinocchio's model of the arm with them there; damping and friction as a file gives them."""
+"""Fixed joints, compared with Pinocchio's model with these joints fixed; damping and friction of a file."""
 
 import xml.etree.ElementTree as ET
 from dataclasses import replace

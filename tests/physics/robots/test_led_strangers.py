@@ -1,4 +1,4 @@
-"""Arms that we do not ship, led by laws of ours: the error against the reach, and two plants against each other."""
+"""Third-party arms under built-in laws: the error relative to the reach, and two plants against each other."""
 
 import numpy as np
 import pytest

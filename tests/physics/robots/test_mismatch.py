@@ -30,7 +30,7 @@ def nominal_of(robot, seed=0, **terms):
 
 @pytest.fixture(scope="module")
 def sag(simulated, checked_config):
-    """Hold the Macro still against gravity; return the tip's error, where it ends, and the true arm's model."""
+    """Hold the Macro still under gravity; return the last error and joint positions, and the true arm's model."""
 
     def hold(*overrides):
         trace = simulated(*SAGGING, *overrides)
@@ -135,7 +135,7 @@ def test_a_centre_of_mass_believed_wrong_shifts_the_weight_along_the_link(sag, c
 
 @pytest.mark.parametrize("factor", [0.95, 1.05])
 def test_lengths_believed_wrong_scale_where_the_tip_comes_to_rest(simulated, factor):
-    """The controller brings the tip that it believes in, k x, to the goal."""
+    """The controller brings the tip of its model, k x, to the goal."""
     goal = np.array([0.5, 0.1, 0.2])
     trace = simulated(
         "robot=xarm7",
@@ -159,7 +159,7 @@ def test_lengths_scale_kinematics_and_leave_each_link_its_weight(xarm7):
 
 
 def test_servos_believe_what_controllers_do(simulated, checked_config):
-    """K (q_c - q) = (1 + A M^-1) (G - k G), A = h D + h^2 K: the servo counts on the motion that it believes in."""
+    """K (q_c - q) = (1 + A M^-1) (G - k G), A = h D + h^2 K: the servo relies on its predicted motion."""
     still = ("robot=xarm7", "trajectory=goal", "trajectory.start=null", "trajectory.goal=[0.604294,0,0.150872]")
     held = ("controller.gain=0", "controller.null_space.task=none", "plant=rk4", "mismatch.gravity=0.9", "duration=3")
     trace = simulated(*still, *held)

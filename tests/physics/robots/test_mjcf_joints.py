@@ -1,4 +1,4 @@
-"""Grippers of MJCF files: fingers held fixed against MuJoCo's own model of the whole file with the fingers there."""
+"""Grippers of MJCF files: fixed fingers, compared with MuJoCo's own model of the whole file."""
 
 import mujoco
 import numpy as np

@@ -251,7 +251,7 @@ def test_joint_names(macro):
     assert macro.nq == 3
 
 
-# What is refused.
+# Refused input.
 
 
 @pytest.mark.parametrize("kind", ["continuous", "floating"])

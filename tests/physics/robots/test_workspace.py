@@ -43,7 +43,7 @@ def test_singular_surfaces(name, L):
     for q in (stretched, folded, on_axis):
         J = np.array([model.tip_jacobian(row)[:3] for row in q])
         assert manipulability(J).max() < 1e-12 * L**3
-    assert np.ptp(np.linalg.norm(model.tip_positions(on_axis), axis=1)) > L  # the whole axis, not its ends alone
+    assert np.ptp(np.linalg.norm(model.tip_positions(on_axis), axis=1)) > L  # the whole axis, not only its ends
 
 
 def test_manipulability_is_the_determinant_for_three_joints_and_its_square_for_more():

@@ -37,7 +37,7 @@ def test_so_it_is_for_any_count_of_numbers(length):
 def test_draws_of_one_run_leave_no_trace_in_the_next():
     numbers = [[0, run, 0] for run in range(6)]
     for own, generator in zip(numbers, generators(numbers), strict=True):
-        generator.integers(0, 100, dtype=np.uint32)  # half of a word, the rest of which PCG64 keeps for later
+        generator.integers(0, 100, dtype=np.uint32)  # half of a word; PCG64 keeps the rest for later
         expected = np.random.default_rng(own)
         expected.integers(0, 100, dtype=np.uint32)
         assert generator.integers(0, 2**31, dtype=np.uint32) == expected.integers(0, 2**31, dtype=np.uint32)

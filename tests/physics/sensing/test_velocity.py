@@ -14,7 +14,7 @@ WAYS = ("finite_difference", "low_pass", "luenberger")
 
 
 def velocities(way, q, h=H, bandwidth=W, position=0.0):
-    """Measure rows of true positions of one joint, and return the velocities that are told."""
+    """Measure rows of true positions of one joint, and return the measured velocities."""
     noise = EncoderNoise(np.array([position]), np.zeros(1), np.zeros(1), "gaussian", way, bandwidth)
     sensor = JointEncoders(len(q), h, noise, np.random.default_rng(0))
     return np.array([sensor.measure(k, np.array([value]), np.array([9.0]))[1][0] for k, value in enumerate(q)])

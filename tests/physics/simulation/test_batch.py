@@ -1,4 +1,4 @@
-"""Runs that are simulated together: each as it is alone, to the last bit."""
+"""Runs that are simulated together: each equals its single run to the last bit."""
 
 from dataclasses import replace
 from types import SimpleNamespace

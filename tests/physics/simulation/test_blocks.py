@@ -80,7 +80,7 @@ def test_no_block_is_larger_than_asked_for(monkeypatch):
     config = job("trajectory=quintic", "duration=0.1", "repetitions=95")
     simulate_blocks(config, threads=2, ticks=10 * config.timing.ticks)
     assert sorted(size for size, _ in asked) == [5, *[10] * 9]
-    assert len({thread for _, thread in asked}) == 3  # ours, and two more
+    assert len({thread for _, thread in asked}) == 3  # this one, and two more
     asked.clear()
     simulate_blocks(config, threads=2, ticks=config.timing.ticks - 1)
     assert asked == [(1, threading.main_thread())] * 95

@@ -76,7 +76,7 @@ def fingerprint(trace):
     return digest.hexdigest()
 
 
-# What the runs have to reach.
+# Bounds that the runs must keep.
 
 
 @pytest.mark.bullet
@@ -111,7 +111,7 @@ def test_without_noise_the_mini_s_reference_velocity_is_worth_a_hundred(measured
 
 
 def test_the_tip_is_as_good_as_the_macro_s_encoders(measured):
-    # What is left under noise is the Macro's 1e-3 rad, which puts its end point up to 2.2e-3 m elsewhere.
+    # The rest under noise is from the Macro's 1e-3 rad, which moves its end point by up to 2.2e-3 m.
     def largest(*overrides):
         return measured(*TRACKING, "torque_limits=thesis", "noise=thesis", *overrides)[1]["max_axis_error"]
 

@@ -54,7 +54,7 @@ def test_with_full_reference_velocity_the_tip_errs_by_the_acceleration_asked_wha
 
 def test_a_series_of_goals_lags_behind_a_vibrating_base(simulated):
     trace = simulated(*FLEXIBLE, *MOVE, stiff(1000), SENSED, "controller.mini_reference_velocity=zero")
-    assert worst(trace.error, trace.t <= 1.0) == pytest.approx(1.05e-3, rel=0.05)  # m, likewise
+    assert worst(trace.error, trace.t <= 1.0) == pytest.approx(1.05e-3, rel=0.05)  # m, as above
 
 
 def test_motor_friction_leaves_the_blind_tip_off_and_the_sensed_one_there(simulated):

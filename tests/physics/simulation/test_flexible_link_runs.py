@@ -21,7 +21,7 @@ from runner.trajectories.impulses import zero_vibration
 MACRO = ("robot=macro", "plant=rk4_flexible_links", "noise=none", "torque_limits=none")
 MOVE = ("trajectory=quintic", "trajectory.duration=1", "trajectory.goal=[0.4,0.7,0.6]", "duration=1.5")
 # Without gravity, whose stiffness is not in the modes. Motors so heavy that their law leads them as if nothing pulled
-# at them; link 3 alone bends, across the way of joint 1.
+# at them; only link 3 bends, across the way of joint 1.
 LED = (
     *MACRO, "plant.links.link2=null", "plant.motor_inertia=1e5", "plant.damping_ratio=0.02", "gravity=0", "duration=1",
     "controller=computed_torque", "controller.period=0.001", "trajectory=joint_quintic",
@@ -39,7 +39,7 @@ def test_the_tip_of_the_trace_is_that_of_the_bent_links(simulated):
     trace = simulated(
         *MACRO, "trajectory=goal", "trajectory.goal=[0,1,1]", "duration=0.01", "plant.step=0.0005", *stiff(30000)
     )
-    force = 2.0 * 9.81  # on the end of link 2, above which the other end mass stands
+    force = 2.0 * 9.81  # on the end of link 2; the other end mass is above it
     sag = 0.75 * force / (3.0 * 30000)
     slope = force / (2.0 * 30000)  # of the end of link 2, by which link 3 leans
     assert trace.tip[0] == pytest.approx([0.0, 1.0 + slope, 1.0 - sag], abs=2e-5)
@@ -126,7 +126,7 @@ def test_a_run_ends_where_links_bend_too_far(simulated):
 
 
 def test_a_sensor_of_the_tip_sees_what_links_bend(simulated):
-    """The sag stays where encoders alone are read; of one that is seen the springs of the law leave their share."""
+    """The sag stays if only encoders are read; of a measured sag the springs of the law leave their share."""
     rest = ("trajectory=goal", "trajectory.goal=[0,1,1]", "plant.damping_ratio=0.2", "duration=3.5")
     arm = (*MACRO, *rest, *stiff(3000))
 

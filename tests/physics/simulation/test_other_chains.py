@@ -72,7 +72,7 @@ def test_each_of_two_minis_makes_up_for_what_is_left(moved, plant):
     trace = moved("experiment=staged/macro_mini_mini", f"plant={plant}")
     assert trace.failure is None
     macro, mini, tip = (largest_error(trace, stage) for stage in range(3))
-    assert mini < 0.8 * macro  # the Macro's encoder noise is all that the Mini leaves
+    assert mini < 0.8 * macro  # the Mini leaves only the Macro's encoder noise
     assert tip < 0.5 * mini
     assert tip < 0.25 * macro
 
@@ -203,7 +203,7 @@ def test_other_ways_of_control_run(simulated, chain, changes):
 
 
 class Recorder:
-    """A law that keeps the target it is given, or None where it is told to hold."""
+    """A law that records its target, or None for the command to hold."""
 
     gravity_compensation, parameters = True, ()
 
@@ -293,7 +293,7 @@ def test_at_another_tip_position_the_posture_stays_close_to_home(xarm7):
     q, dq = settle(xarm7, lambda q, dq: move(law, q, dq, reference), XARM7_HOME)
     np.testing.assert_allclose(xarm7.tip_position(q), reference[0], atol=1e-6)
     np.testing.assert_allclose(dq, 0.0, atol=1e-4)
-    # What the null space wants is done: q - home lies in the range of J^T.
+    # The null-space motion is finished: q - home lies in the range of J^T.
     J = xarm7.tip_jacobian(q)[:3]
     wanted = q - XARM7_HOME
     left = wanted - J.T @ np.linalg.lstsq(J.T, wanted, rcond=None)[0]

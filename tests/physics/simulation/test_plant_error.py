@@ -74,7 +74,7 @@ def test_what_is_compared_is_the_run_on_runge_kutta(tmp_path):
 
 
 def test_noise_is_the_same_on_both_plants(tmp_path):
-    """Else the distance would be of the size of what noise alone does."""
+    """Else the distance would have the size of the effect of noise."""
     error = measured(tmp_path, f"plant={OTHER}", "noise=thesis").plant_error
     other = run(*CASE, "plant=rk4", "noise=thesis", "seed=1", f"outputs={tmp_path}")
     same = run(*CASE, "plant=rk4", "noise=thesis", f"outputs={tmp_path}")

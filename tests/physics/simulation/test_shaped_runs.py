@@ -13,7 +13,7 @@ from runner.store import simulated_part
 from runner.trajectories.impulses import zero_vibration
 
 FLEXIBLE = ("robot=macro", "plant=rk4_flexible", "noise=none", "torque_limits=none")
-# Motors so heavy that their law leads them as if nothing pulled at them; joint 1 alone turns, and rings on its own.
+# Motors so heavy that their law leads them as if nothing pulled at them; only joint 1 turns, and rings on its own.
 LED = (
     *FLEXIBLE, "controller=computed_torque", "controller.period=0.001", "plant.flexible_joints.motor_inertia=1e5",
     "trajectory=joint_quintic", "trajectory.goal_configuration=[0.05,0,0]", "trajectory.duration=0.2",
@@ -40,7 +40,7 @@ def test_the_residual_vibration_is_the_closed_form_whatever_the_frequency_error(
 
 @pytest.mark.parametrize("kind", ["zv", "zvd"])
 def test_the_mode_that_is_named_rests(simulated, kind):
-    """At home joint 1 rings alone, between two modes of the other joints."""
+    """At home only joint 1 rings, between two modes of the other joints."""
     arm = (*LED, "plant.flexible_joints.damping_ratio=0.02", "duration=1")
     left = simulated(*arm, f"input_shaper={kind}", "input_shaper.frequency=mode_2")
     end = 0.2 + zero_vibration(kind, F0, 0.02).delay

@@ -20,7 +20,7 @@ NOISY = ("noise.position=1e-3", "duration=0.5")
 
 
 class Integrator(Plant):
-    """A plant of three unit masses, moved by semi-implicit Euler; it leaves the domain where a test tells it to."""
+    """A plant of three unit masses, moved by semi-implicit Euler; it leaves the domain at the tick that a test sets."""
 
     def __init__(self, period, jump=None):
         self.q, self.dq = np.zeros(3), np.zeros(3)

@@ -22,7 +22,7 @@ def law(checked_config):
 
 
 def torques(law, every, postures):
-    """Return the torques in each tick of a loop with `every` ticks between two of its own."""
+    """Return the torques in each tick of a loop that acts every `every` ticks."""
     ticks, exact = len(postures), EncoderNoise(*np.zeros((3, 3)), "none", "exact")
     robot = SimpleNamespace(model=law.models[0], stages=(None,))
     loop = LoopCode(law, slice(0, 3), every, 0.01 * every)

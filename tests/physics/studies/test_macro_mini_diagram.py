@@ -1,4 +1,4 @@
-"""Block diagram of Macro and Mini: couplings and terms by option, and what each controller is told by both."""
+"""Block diagram of Macro and Mini: couplings and terms by option, and each controller's inputs by both."""
 
 import itertools
 from types import SimpleNamespace
@@ -43,7 +43,7 @@ def sources_of(graph, name):
 
 
 def macro_side(graph):
-    """What the Macro's controller gets next to its own measurement."""
+    """Return the inputs of the Macro's controller except for its own measurement."""
     edges = [edge for edge in graph.edges if edge.target == "macro_controller" and edge.leave == "right"]
     return {name for edge in edges for name in {edge.source} | sources_of(graph, edge.source)}
 
@@ -182,7 +182,7 @@ def test_the_graph_is_what_is_executed(riding):
 
 @pytest.mark.slow
 def test_every_graph_is_what_is_executed(riding):
-    """All cases, of which each session takes a sample and a pairwise cover."""
+    """All cases; each session takes a sample and a pairwise cover."""
     for number, flags in enumerate(EVERY):
         assert_told_alike(riding, flags, np.random.default_rng(number))
 
@@ -196,7 +196,7 @@ def test_the_picture_keeps_the_rules(flags):
 
 @pytest.mark.slow
 def test_every_picture_keeps_the_rules():
-    """All cases, of which each session takes the figures and a pairwise cover."""
+    """All cases; each session takes the figures and a pairwise cover."""
     for flags in EVERY:
         graph = macro_mini_graph(**flags)
         check_structure(graph)

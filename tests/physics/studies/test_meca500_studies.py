@@ -1,4 +1,4 @@
-"""What the Meca500 report's sections compute of single runs."""
+"""Numbers that the Meca500 report's sections compute from single runs."""
 
 import numpy as np
 import pytest

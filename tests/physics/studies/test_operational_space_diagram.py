@@ -23,7 +23,7 @@ def evaluate(graph, model, q, dq, reference, k_p, k_v, limit):
     edges = [edge for edge in graph.edges if edge.source != "encoders"]
 
     def signal(edge):
-        if edge.source == "reference":  # which derivative an edge carries, its label tells
+        if edge.source == "reference":  # the label of an edge names its derivative
             return reference[edge.label.count("dot") and (2 if "ddot" in edge.label else 1)]
         if edge.source in state:
             return state[edge.source]

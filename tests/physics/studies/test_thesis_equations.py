@@ -122,7 +122,7 @@ def test_an_emendation_changes_torn_subscripts_alone(name):
         mended = printed
         for before, after in torn.items():
             mended = mended.replace(before, after)
-        # c456 and c45 both stand as c4*s5: with three joints before the difference of three, with two elsewhere
+        # c4*s5 denotes both c456 and c45: with three joints before the difference of three, with two elsewhere
         mended = re.sub(r"([cs])4\*s5", r"\g<1>45", mended) if name == "3T6" else mended
         emended = entry.emendation.elements[element]
         assert mended == (emended.replace("456", "45") if name == "3T6" else emended), element

@@ -107,7 +107,7 @@ def test_the_picture_keeps_the_rules(flags):
     check_ways(graph)
 
 
-# The wide ones, of which those with both limits are the widest; drawing takes time.
+# The wide ones; those with both limits are the widest. Drawing takes time.
 @pytest.mark.parametrize("flags", covered(OPTIONS | {"torque_limited": (True,), "speed_limited": (True,)}))
 def test_its_texts_fit(flags):
     check_texts(whole_body_graph(**flags))

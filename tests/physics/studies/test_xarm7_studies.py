@@ -24,7 +24,7 @@ Make = Callable[[str], Run]
 
 @pytest.fixture(scope="module")
 def planned(shared_store: Path) -> Make:
-    """Make a run of the plan, as it is planned."""
+    """Return a run of the plan by its name."""
     return lambda name: make_runs(shared_store, {name: xarm7_studies()[name]})[name]
 
 

@@ -157,7 +157,7 @@ def test_factors_solve_and_tell_what_is_positive_definite():
     generator = np.random.default_rng(1)
     A = generator.normal(size=(5, 5))
     A, b = A @ A.T, generator.normal(size=5)
-    factors = Factors(np.triu(A).tolist())  # the upper triangle is all that is read
+    factors = Factors(np.triu(A).tolist())  # only the upper triangle is read
     np.testing.assert_allclose(factors.solve(b.tolist()), np.linalg.solve(A, b), rtol=1e-9)
     np.testing.assert_allclose(np.array(factors.inverse()) @ A, np.eye(5), atol=1e-9)
     assert min(factors.pivots) > 0.0

@@ -1,4 +1,4 @@
-"""Programs in a few lines: arithmetic, loops, delays, and what stands between two ticks."""
+"""Programs in a few lines: arithmetic, loops, delays, and state between two ticks."""
 
 import numpy as np
 import pytest

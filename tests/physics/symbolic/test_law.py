@@ -206,7 +206,7 @@ def test_a_law_of_a_user_s_is_compiled():
 
 
 def found(controller, joints=3):
-    """Return what is compiled of a loop with a controller."""
+    """Return the compiled commands of a loop with a controller."""
     law = unguarded(controller)
     robot = SimpleNamespace(model=law.models[0], stages=(None,))
     exact = EncoderNoise(*np.zeros((3, joints)), "none", "exact")

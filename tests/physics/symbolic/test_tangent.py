@@ -74,6 +74,6 @@ def test_what_does_not_vary_costs_nothing():
         Expressed([Block([(ROWS, 0, place(GIVEN, 0) * A)])], [], WIDTHS, []), lambda space, _: space != PARS
     )
     (block,) = program_.ticks
-    assert block.outputs[1][2].operation == "fmul"  # of the given number's tangent and A alone
+    assert block.outputs[1][2].operation == "fmul"  # only of the given number's tangent and A
     nothing = with_tangents(Expressed([Block([(ROWS, 0, A * A)])], [], WIDTHS, []), lambda *_: False)
     assert nothing.ticks[0].outputs[1] == (ROWS, 1, 0.0)

@@ -1,4 +1,4 @@
-"""Whole runs as compiled code against the same runs through Pinocchio, alone and together."""
+"""Whole runs as compiled code against the same runs through Pinocchio, single and together."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Line to and fro: extent, speed and acceleration against the harmonic motion."""
+"""Line in both directions: extent, speed and acceleration against the harmonic motion."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Extrapolated differences: of functions whose derivative is known, within the doubt that they tell."""
+"""Extrapolated differences: of functions whose derivative is known, within their own estimate of the error."""
 
 from importlib import import_module
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""What stands in for bullet where PyBullet is not installed, and what is said of it."""
+"""The substitute for bullet if PyBullet is not installed, and the messages about it."""
 
 import platform
 

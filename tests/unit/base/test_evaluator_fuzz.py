@@ -37,7 +37,7 @@ def test_a_printed_formula_has_a_value_or_is_refused():
 
 @pytest.mark.slow
 def test_all_of_them():
-    """The numbers are told, so that `python -m tools.fuzz.expressions --only N` shows one."""
+    """The numbers are printed, so that `python -m tools.fuzz.expressions --only N` shows one."""
     faults, refused = {}, []
     tracemalloc.start()
     try:

@@ -13,7 +13,7 @@ def test_files_of_ours_refer_to_keys_alone():
     for path in (*conf_dir().rglob("*.yaml"), *studies_dir().glob("*/experiment/*.yaml")):
         text = path.read_text()
         if path == conf_dir() / "plant" / "default.yaml":
-            text = text.replace("${default_plant:}", "")  # which plant that is, only the machine can tell
+            text = text.replace("${default_plant:}", "")  # that plant depends on the machine
         check_yaml(text, path.name)
 
 

@@ -14,7 +14,7 @@ FILES = [path for group in GROUPS for path in sorted((conf_dir() / group).glob("
 
 
 def misfit(value, schema, place=""):
-    """Return where a value does not fit the parts of JSON Schema that ours uses; empty if it fits."""
+    """Return the place of a misfit to the parts of JSON Schema that the runner uses; empty if the value fits."""
     if "anyOf" in schema:
         found = [misfit(value, form, place) for form in schema["anyOf"]]
         return "" if "" in found else max(found, key=len)

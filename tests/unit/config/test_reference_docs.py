@@ -1,4 +1,4 @@
-"""The page of all keys against the models, and types of keys as text."""
+"""The page of all keys against the models, and types of keys as strings."""
 
 from typing import Annotated, Literal
 

@@ -1,4 +1,4 @@
-"""Overrides that Hydra cannot parse: messages as text, without any string of the parser."""
+"""Overrides that Hydra cannot parse: messages without any string of the parser."""
 
 import pytest
 from hydra.core.override_parser.overrides_parser import OverridesParser

@@ -1,4 +1,4 @@
-"""Share of ticks with x_d out of reach: by the distance from the last stage's base."""
+"""Fraction of ticks with x_d out of reach: by the distance from the last stage's base."""
 
 from dataclasses import replace
 

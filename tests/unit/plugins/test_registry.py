@@ -21,7 +21,7 @@ class Config(StrictModel):
 
 @pytest.fixture
 def parts(monkeypatch):
-    """A registry with one kind of its own and one of another package."""
+    """A registry with one built-in kind and one of another package."""
     for name in ("own", "foreign"):
         module = types.ModuleType(f"some_{name}")
         module.__name__ = "runner.some_own" if name == "own" else "some_foreign"

@@ -73,7 +73,7 @@ def test_intervals_hold_the_friction_about_as_often_as_they_say(model):
 
 
 def test_intervals_of_few_rows_are_wider_for_what_other_masses_take_up(model):
-    """Two and a half seconds leave about 30 rows of one joint, of which its masses, b, c and o take up half."""
+    """Two and a half seconds leave about 30 rows of one joint; its masses, b, c and o take up half of them."""
     motion = moved(np.arange(0.0, 2.5, 0.01))
     clean = torques(model, motion) + friction_of(motion[1])
     clean[:, 1:] = np.nan

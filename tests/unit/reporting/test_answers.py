@@ -1,4 +1,4 @@
-"""What may be said of a comparison: each word against pairs that are given, and its agreement with interval and p."""
+"""Verdicts on a comparison: each word against given pairs, and its agreement with interval and p."""
 
 from dataclasses import replace
 

@@ -67,7 +67,7 @@ def test_axes_that_are_not_named_are_pooled_and_a_draw_counts_once():
     assert one.comparison.differences == pytest.approx(by_draw.differences)
     assert one.comparison.a == pytest.approx(by_draw.a)
     assert (other.at, other.comparison.n) == ({"robot": "xarm7"}, 8)
-    # What the pooled axis does to both is not a difference: the shift is one, whatever the noise does.
+    # The pooled axis changes both levels alike, so the shift is one for any noise.
     assert other.comparison.difference == pytest.approx(1.0, abs=5e-3)
 
 
@@ -127,7 +127,7 @@ def test_unknown_names_are_refused(axis, within, metrics, message):
 
 
 def test_cells_of_one_draw_are_no_further_evidence():
-    """Three levels that share all that is drawn: eight pairs, not 24."""
+    """Three levels that share every draw: eight pairs, not 24."""
     sweep = grid({"noise": [1.0, 2.0, 3.0], "controller": ["a", "b"]}, lambda noise, law: 0.0)
     drawn = np.random.default_rng(5).normal(size=8)
     sweep.values["rms"][:] = np.where(sweep.axes[1].level[:, None] == 1, drawn, 0.0)

@@ -1,4 +1,4 @@
-"""What a sweep asks and answers first, from sweeps whose differences are known."""
+"""First question and answer of a sweep, from sweeps whose differences are known."""
 
 from dataclasses import replace
 

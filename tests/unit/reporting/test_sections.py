@@ -71,7 +71,7 @@ def test_the_share_by_hand():
 
 
 def shared_seeds(repetitions=8):
-    """A metric of which what the seeds share is most; levels of the first axis differ by a little."""
+    """A metric whose scatter is mostly common to seeds; levels of the first axis differ by a little."""
 
     def values(level, _):
         shared = np.random.default_rng(1).normal(size=repetitions)

@@ -71,9 +71,7 @@ def test_figures_have_points_that_can_be_told_apart(subject):
                 assert len(series.hints or ()) <= POINTS
     ranks = figures[-1].panels[0].series[0].x
     assert (ranks[0], ranks[-1]) == (1.0, 1.9 * SEEDS)  # every twentieth failed
-    assert (
-        f"of {2 * SEEDS - 2 * SEEDS // 20} cells" in of_kind(traded, Text)[0].text
-    )  # all count, not those drawn alone
+    assert f"of {2 * SEEDS - 2 * SEEDS // 20} cells" in of_kind(traded, Text)[0].text  # all count, not only those drawn
 
 
 def test_distributions_are_of_groups_not_of_single_seeds(subject):

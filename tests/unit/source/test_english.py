@@ -43,7 +43,7 @@ MOST = {
     "conf": 2,
     "bench": 16,
     "tools": 46,
-    "tests": 774,
+    "tests": 648,
     "runner/base": 38,
     "runner/cli": 7,
     "runner/config": 26,

@@ -22,11 +22,11 @@ READING = {
     "deserialize_cdr", "sys.argv", "subprocess.run", "subprocess.Popen",
     "os.popen", "os.system", "eval", "exec", "urlopen", "create_connection",
 }  # fmt: skip
-"""Names and attributes that read a file, parse a text, ask the environment, start a program or connect to one."""
+"""Names and attributes that read a file, parse a string, ask the environment, start a program or connect to one."""
 
 
 def reads(node):
-    """Return True if a node of a syntax tree reads something; `open` does where it is not told to write."""
+    """Return True if a node of a syntax tree reads something; `open` does unless its mode is to write."""
     if isinstance(node, ast.Call) and _last(node.func) == "open" and _dotted(node.func) != "os.open":
         given = [*node.args, *(each.value for each in node.keywords if each.arg == "mode")]
         modes = [each.value for each in given if isinstance(each, ast.Constant) and isinstance(each.value, str)]

@@ -45,7 +45,7 @@ def test_an_effect_smaller_than_what_seeds_share_is_found():
 
 
 def test_unequal_scatter_makes_small_p_values_more_frequent():
-    # What the test assumes: here the levels differ in their scatter by a factor of 50, and in nothing else.
+    # The assumption of the test: here the levels differ only in their scatter, by a factor of 50.
     found = rates(3, repetitions=10, scatter=np.repeat([0.01, 0.05, 0.5], 10), trials=500)
     assert 0.07 < found[0] < 0.15
 

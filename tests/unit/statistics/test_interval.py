@@ -46,7 +46,7 @@ def test_its_ends_are_the_order_statistics_of_large_samples():
 
 def test_percentiles_are_expanded_for_small_samples():
     # Of eight values 1.5 is the median of a resample or above it with probability 0.0058, which is the expanded tail;
-    # alpha / 2 of Student's t alone, 0.0090, would always be at 2.
+    # only alpha / 2 of Student's t, 0.0090, would always be at 2.
     assert {interval_of(range(1, 9), seed).low for seed in range(20)} == {1.5, 2.0}
 
 

@@ -62,7 +62,7 @@ def test_where_both_ends_have_counts_beyond_them_it_covers_94_to_98_per_cent(n, 
 
 
 def test_what_is_rare_it_covers_nearly_always():
-    """Where less than one failure is expected the lower end cannot lie above the truth unless two happen."""
+    """If less than one failure is expected, the lower end is above the truth only if two happen."""
     assert coverage(1000, 1e-4) > 0.98
     assert coverage(100, 1e-3) > 0.98
 

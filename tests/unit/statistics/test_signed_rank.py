@@ -50,7 +50,7 @@ def test_beyond_that_number_it_is_the_normal_law_of_scipy():
     ids=str,
 )
 def test_ties_zeros_and_infinities_keep_the_level(sizes):
-    """If neither sign is preferred, p is below a level in no more than that share of the choices of signs."""
+    """If neither sign is preferred, p is below a level in at most that fraction of the choices of signs."""
     found = np.array([SignedRanks(each * np.array(sizes, dtype=float)).p_value for each in signs(len(sizes))])
     for level in (*LEVELS, *found):
         assert np.mean(found <= level) <= level

@@ -1,4 +1,4 @@
-"""What is in an outputs folder, and what may be removed of it."""
+"""Contents of an outputs folder, and the parts that may be removed."""
 
 import os
 
@@ -28,7 +28,7 @@ def sweep_of(outputs, names, written):
 
 @pytest.fixture
 def outputs(tmp_path):
-    """Two old runs, one of which belongs to a new sweep, and an old sweep of a third."""
+    """Two old runs, the second in a new sweep, and an old sweep of a third."""
     one, two, three = ("1" * 24, "2" * 24, "3" * 24)
     for name in (one, two, three):
         run_of(tmp_path, name, OLD)

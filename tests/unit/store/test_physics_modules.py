@@ -5,7 +5,7 @@ import pytest
 from runner.base.paths import package_dir
 from runner.store import physics, syntax
 
-# What works on finished runs, tells or keeps something, or makes the resolved config, which the hash has itself.
+# Modules for finished runs, for output and storage, or for the resolved config, which is in the hash itself.
 OTHERS = {
     "__init__.py", "__main__.py", "analysis", "api", "audit", "base/arrays.py", "base/bounded_yaml.py", "base/cache.py",
     "base/data_file.py", "base/dotted_keys.py", "base/engine_output.py", "base/engines.py", "base/errors.py",

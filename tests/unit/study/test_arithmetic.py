@@ -1,4 +1,4 @@
-"""Expressions in double braces: what they are worth, and which are refused."""
+"""Expressions in double braces: their values, and those that are refused."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""What moved between two versions of a study."""
+"""Changes between two versions of a study."""
 
 import copy
 import json

@@ -1,4 +1,4 @@
-"""The verdicts on a study's claims, from runs that are made up here."""
+"""The verdicts on a study's claims, from runs invented here."""
 
 from dataclasses import replace
 
@@ -83,7 +83,7 @@ def test_a_run_that_failed_decides_nothing_and_says_why():
 
 
 def hanging(run, longer=None):
-    """Return what the verdict on a printed 1.4 s hangs on, of a run and of one that lasts longer."""
+    """Return the dependencies of the verdict on a printed 1.4 s, from a run and from a longer run."""
     claim = PublishedClaim.model_validate(NUMBER | ({} if longer is None else {"longer": "longer"}))
     runs = {"macro/full_equations": run, "longer/full_equations": longer}
     (block,) = judged_claims([claim], runs, {"full_equations": "full_equations"})

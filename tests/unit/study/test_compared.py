@@ -1,4 +1,4 @@
-"""A published figure under all presets: panels, printed values, envelopes; the runs are made up here."""
+"""A published figure under all presets: panels, printed values, envelopes; the runs are invented here."""
 
 from pathlib import Path
 

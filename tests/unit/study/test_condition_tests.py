@@ -1,4 +1,4 @@
-"""Conditions are tried with changed values; numbers that are typed in findings are told."""
+"""Conditions are tried with changed values; numbers that are typed in findings are reported."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Caveats that a study expects, against those of runs that are made up here."""
+"""Caveats that a study expects, against those of runs invented here."""
 
 from dataclasses import replace
 from pathlib import Path

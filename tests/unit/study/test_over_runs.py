@@ -1,4 +1,4 @@
-"""Tables, curves and numbers over the runs that a pattern names, from runs that are made up here."""
+"""Tables, curves and numbers over the runs that a pattern names, from runs invented here."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""A study whose report lacks some of its runs: what needs them says so, all else stands."""
+"""A study whose report lacks some of its runs: parts that need them say so, the rest is complete."""
 
 import pytest
 

@@ -14,7 +14,7 @@ TESTS = Path(__file__).resolve().parents[2]
 
 
 class Terminal:
-    """In place of pytest's: keeps what is written."""
+    """Substitute for pytest's reporter: it keeps the written lines."""
 
     def __init__(self, reports):
         self.stats = {"": reports, "passed": [SimpleNamespace(nodeid="a call", user_properties=[])]}

@@ -16,7 +16,7 @@ def config(robot=MACRO, law=LAW, **more):
 
 
 def find_differing(configs, axes):
-    """Return what differs between configs of cells, one after the other."""
+    """Return the differences between configs of cells, one after the other."""
     resolved = Resolved()
     for each in configs:
         resolved.add(each)
@@ -42,7 +42,7 @@ def test_what_is_swept_does_not_differ_beyond_itself(key):
     noises = [config(noise={"position": value}) for value in (1e-3, 1e-4)]
     names = [1e-4, 1e-3] if key == "noise.position" else ["{position: 1e-3}", "{position: 1e-4}"]
     found = find_differing(noises, [axis(key, names, 1, 0)])
-    # Of a swept group that both options have is told, as it may be what they are compared by.
+    # A key of a swept group that both options have is reported: they may be compared by it.
     assert [difference.key for difference in found] == ([] if key == "noise.position" else ["noise.position"])
 
 

@@ -24,7 +24,7 @@ class Plan:
 
 @pytest.fixture
 def estimated(monkeypatch):
-    """Estimate runs whose paces are given in turn, alone or together, by their kept share and their time limit."""
+    """Estimate runs with paces given in turn, single or together, by their kept share and their time limit."""
 
     def make(*paces, together=False, kept=0.0, limit=None, costs=(TICKS,) * RUNS, calibrations=()):
         def found(job, *_):
@@ -51,7 +51,7 @@ def estimated(monkeypatch):
 
 
 def of_ticks(found, none):
-    """Return what ticks add to the fixed cost of runs, in s."""
+    """Return the time of ticks without the fixed cost of runs, in s."""
     return found.seconds - none.seconds
 
 

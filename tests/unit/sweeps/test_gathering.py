@@ -14,7 +14,7 @@ DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic
 
 
 def by_cell(configs):
-    """Return what decides about each cell's results, except for its seed; runs of a shard share a config otherwise."""
+    """Return the settings that determine each cell's results, without its seed; runs of a shard share the others."""
     parts = [({**simulated_part(config), "seed": None}, cells.tolist()) for config, cells in configs]
     return {cell: part for part, cells in parts for cell in cells}
 

@@ -1,4 +1,4 @@
-"""How the jobs of a sweep are cut into chunks."""
+"""Division of the jobs of a sweep into chunks."""
 
 import numpy as np
 import pytest
@@ -72,5 +72,5 @@ def test_ticks_of_chunks_under_way_count_until_the_chunk_has_ended(tmp_path):
     assert queue.ticks_made == 110
     queue.end(first)
     queue.learn(Report([Outcome(name, "", False) for name in first.names], "", 1.0))
-    queue.tell(first.name, 90)  # told late
+    queue.tell(first.name, 90)  # reported late
     assert queue.ticks_made == 100 + 70

@@ -1,4 +1,4 @@
-"""Blocks of statements and their probes: a module with probes gives what it gives without, and tells what ran."""
+"""Blocks of statements and their probes: a module with probes gives the same results and reports what ran."""
 
 import ast
 import sys

@@ -1,4 +1,4 @@
-"""Mutants written by hand: each is of a line that is in its module, and of a test file that is there."""
+"""Mutants written by hand: each has a line that is in its module, and a test file that exists."""
 
 from pathlib import Path
 
