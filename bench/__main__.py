@@ -25,6 +25,6 @@ if not set(chosen) <= set(NAMES):
 quiet_environment()
 left_out = [] if has_pybullet() else [name for name in chosen if name in _AGAINST_PYBULLET]
 for name in left_out:
-    print(f"{name}: left out, as PyBullet is not installed")
+    print(f"{name}: left out because PyBullet is not installed")
 met = [import_module(f"bench.{name}").main() for name in chosen if name not in left_out]
 sys.exit(0 if all(met) else 1)

@@ -21,7 +21,7 @@ class Arm:
         name: What the table calls it.
         scene: Overrides of its runs.
         tick: Time between two ticks, in s.
-        laws: Overrides by the law's name; the first leads the tip in operational space, as L and the peers do.
+        laws: Overrides by the law's name; the first leads the tip in operational space, like L and the peers.
         substeps: Of PyBullet in a tick.
         most_bullet: Most that bullet may take, in F, one for each of `substeps`.
         most_rk4: Most that one run on rk4 may take, in L.

@@ -1,6 +1,6 @@
 """CPU time of what is around the ticks of many runs at once: encoder noise, metrics, caveats, records and a shard.
 
-`python -m bench around` takes 256 Macro runs of 400 ticks and one repetition, as a sweep has them, which all differ.
+`python -m bench around` takes 256 different Macro runs of 400 ticks and one repetition, like those of a sweep.
 """
 
 import tempfile

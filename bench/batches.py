@@ -1,4 +1,4 @@
-"""Many runs at once on rk4, as compiled code alone: neither the draws of their noise nor their metrics are timed."""
+"""Many runs at once on rk4, only the compiled code: neither the draws of their noise nor their metrics are timed."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ TICKS = 400
 
 
 def batches(arm: Arm, law: str) -> dict[int, Block]:
-    """Return batches of runs of a law by their size, each run with noise of its own; none where it is not compiled."""
+    """Return batches of runs of a law by their size, each run with different noise; none if it is not compiled."""
     config, closed = assembled(arm, law, "rk4", 1, TICKS)
     found = assemble_program(config)
     if found is None:

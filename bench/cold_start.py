@@ -19,7 +19,7 @@ from statistics import median
 import pybullet_data
 
 REPEATS = 7
-TARGET = 0.5  # s, for what only tells and computes nothing
+TARGET = 0.5  # s, for commands that only print and compute nothing
 HELP_TARGET = 0.1  # s
 DOCTOR_TARGET = 5.0  # s, for an arm of seven joints with meshes
 _RUNNER = str(Path(sys.executable).parent / "runner")

@@ -1,4 +1,4 @@
-"""Derivatives of a run by all its parameters, against the run: both as compiled code alone."""
+"""Derivatives of a run by all its parameters, against the run: both only as compiled code."""
 
 import time
 from collections.abc import Callable

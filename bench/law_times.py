@@ -1,8 +1,8 @@
 """Times of control laws in a tick, by themselves and in process: CPU time and wall-clock time, with what is rare.
 
-Nothing is judged by it. CPU time tells whether a law's arithmetic fits into its period; wall-clock time, in which other
-processes run, too, tells of the machine as it is loaded now. Both are of laws as a user's Python calls them, through
-Pinocchio, without the compiled code by which runs ask them.
+It has no targets. CPU time shows whether a law's arithmetic fits into its period. Wall-clock time includes other
+processes, so it shows the present load of the machine. Both are of laws as a user's Python calls them, through
+Pinocchio, without the compiled code of runs.
 """
 
 import os
@@ -32,7 +32,7 @@ _QUANTILES = (50.0, 99.0, 99.9, 100.0)
 
 
 def main() -> bool:
-    """Measure and print; there is no target."""
+    """Measure and print, without a target."""
     load = ", ".join(f"{value:.2f}" for value in os.getloadavg())
     print(f"time of a control law in a tick, us, of {TICKS} ticks; load average {load}; {platform.platform()}")
     shares = " ".join(f"{name:>7}" for name in ("50 %", "99 %", "99.9 %", "longest"))

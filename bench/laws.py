@@ -1,11 +1,12 @@
 """CPU time of a control tick for every torque law and 3, 6 and 7 joints, against what no loop can go below.
 
-- F: PyBullet's torque, step and read calls alone, on the same arm under the same torques.
+- F: only PyBullet's torque, step and read calls, on the same arm under the same torques.
 - L: the closed loop of the arm's first law in C++ with Pinocchio, one Runge-Kutta step in a tick; bench/least_loops.
 - MuJoCo in a Python loop with its own law; bench/peers.py.
 
-Ours are whole runs: draws of the noise, the path, every tick with its guards, and the trace. All of an arm is measured
-in turns. Beforehand L and the peers are checked to be the same closed loop: their tips follow the path as ours does.
+The runner's times are of whole runs: draws of the noise, the path, every tick with its guards, and the trace. All of
+an arm is measured in turns. Beforehand L and the peers are checked to be the same closed loop: their tips follow the
+path like the runner's.
 """
 
 from collections.abc import Callable
@@ -27,7 +28,7 @@ from runner.simulation.sensors import make_encoders
 TICKS = 2000
 ROUNDS = 20
 _MOST_BATCH_L = 0.06
-_SAME_TIP = 1e-5  # m, between L's tip and ours; redundant arms differ in their null space, which the tip hardly feels
+_SAME_TIP = 1e-5  # m, between L's tip and the runner's; redundant arms also differ in their null space
 _NEAR_PATH = 2e-3  # m, from the path; a peer's tip, whose plant or law is another
 
 

@@ -31,7 +31,7 @@ _TOGETHER = (
     *("trajectory.duration=3.5", "duration=4", "controller.natural_frequency=8,10", "sweep.trace=never"),
 )
 _WORKERS = 2
-_BY_WORKERS = "sweep.time_limit=600"  # without it the command makes two runs itself
+_BY_WORKERS = "sweep.time_limit=600"  # without it the command simulates two runs itself
 
 
 @dataclass(frozen=True)

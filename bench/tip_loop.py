@@ -20,7 +20,7 @@ class TipLoop:
 
     The law asks for the joint acceleration a_0 + J^+ (F* - dJ/dt dq - J a_0), and a_0 = -k_v dq - k_p S (q - rest): the
     runner's, but with the plain pseudo-inverse where that weighs with the mass matrix, nothing done near a singular
-    posture, and the joints that ride held by an acceleration instead of a spring. The tip moves alike.
+    configuration, and the joints of mounted stages held by an acceleration instead of a spring. The tip moves alike.
 
     Attributes:
         urdf: The arm's URDF text.

@@ -1,4 +1,4 @@
-"""Blocks of work that are timed in turns, so that whatever else the machine does falls on all of them.
+"""Blocks of code that are timed in turns, so that whatever else the machine does falls on all of them.
 
 Targets are ratios within one round. Work next to it slows Python more than C, by caches, so the quieter half of the
 rounds is judged.

@@ -23,7 +23,7 @@ Process = subprocess.Popen[bytes]
 class Tally:
     """Killed command, and the effect.
 
-    `lost` are runs that the ended sweep lacks, `doubled` such that were made again though they were stored,
+    `lost` are runs that the ended sweep lacks, `doubled` are stored runs that were simulated twice,
     `leftovers` are temporary and half-written files.
     """
 
@@ -41,7 +41,7 @@ def torture(folder: Path, arguments: list[str], workers: int, commands: int, see
 
 
 def torture_command(folder: Path, command: list[str], workers: int, commands: int, seed: int, pause: float) -> Tally:
-    """Do the same to any command that makes runs, of a sweep, a study or a tuning, in `outputs` of a folder."""
+    """Do the same to any command that simulates, of a sweep, a study or a tuning, in `outputs` of a folder."""
     outputs = folder / "outputs"
     draw = random.Random(seed)  # noqa: S311
     victims = ["worker"] * workers + ["command"] * commands

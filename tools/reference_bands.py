@@ -31,7 +31,7 @@ _TRACKING = (*_POSITIONING, *_WHOLE_MOVE, "max_axis_error", "rms_tracking_error"
 _LINE = ("max_axis_error", "rms_tracking_error", "peak_joint_speed", "peak_torque")
 _FOLLOWED = ("max_axis_error", "rms_tracking_error", "peak_torque", "torque_chatter")
 METRICS = {
-    # What the Macro's goal move does on the whole depends on the branch that it takes: no band would mean much.
+    # The Macro's goal move depends on the branch that it takes: a band of its whole-move metrics would mean little.
     "thesis/figure_3_5": _POSITIONING,
     "thesis/figure_3_9": _TRACKING,
     "thesis/figure_3_10": _TRACKING,
@@ -54,7 +54,7 @@ METRICS = {
     "meca500/hand": ("peak_force", "peak_joint_speed"),
     "meca500/circle": ("max_axis_error", "rms_tracking_error", "peak_joint_speed", "peak_torque"),
 }
-# Wider than the seeds tell, in the metric's unit: plant, velocity estimate and rounding change the branch of the
+# Wider than the seeds show, in the metric's unit: plant, velocity estimate and rounding change the branch of the
 # saturated transient, and move its median by 0.3 s of the run's 4 s. The Mini is the Macro scaled, times by a tenth.
 EXTRA = {
     ("thesis/figure_3_5", "settling_time"): 0.3,

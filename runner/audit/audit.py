@@ -20,7 +20,7 @@ def audit(where: Where, samples: int = SAMPLES) -> list[CheckedEquation]:
     """Return the verdict on every equation of a source, in the order of the text.
 
     Args:
-        where: Name of a study of ours, or a folder, as in audit(Path("my_paper")); see `sources.py`.
+        where: Name of a built-in study, or a folder, as in audit(Path("my_paper")); see `sources.py`.
         samples: How many configurations each is tried at.
 
     Raises:
@@ -31,7 +31,7 @@ def audit(where: Where, samples: int = SAMPLES) -> list[CheckedEquation]:
 
 
 def audit_all(samples: int = SAMPLES) -> dict[str, list[CheckedEquation]]:
-    """Return the same for every study of ours, by its name."""
+    """Return the verdicts for every built-in study, by its name."""
     found = {source: parts(source) for source in sources()}
     progress.begin("auditing", sum(len(part.entries) for each in found.values() for part in each), "equations")
     checked: dict[str, list[CheckedEquation]] = {source: [] for source in found}
@@ -56,7 +56,7 @@ def _checked(found: Iterable[Part], samples: int) -> Iterator[CheckedEquation]:
 
 
 def counts(checked: Iterable[CheckedEquation]) -> dict[Verdict, int]:
-    """Return how many equations have each verdict."""
+    """Return the number of equations with each verdict."""
     found = Counter(each.verdict for each in checked)
     return {verdict: found[verdict] for verdict in VERDICTS}
 
@@ -103,7 +103,7 @@ class Place(StrictModel):
     Attributes:
         place: Its name.
         equations: Number or name of each equation printed there, in order.
-        lost: Those that must have stood there and are not in the text.
+        lost: Those that are missing in the text although it must have had them.
     """
 
     place: str
@@ -121,7 +121,7 @@ class Inventory(StrictModel):
         places:
           - place: Inverse kinematics, page 8
             equations: [q1, p3, p4, q2, p1, p2, M, q4]
-            lost: [..]                 # equations that must have stood there and that the text does not show at all
+            lost: [..]                 # equations that the text must have had and does not show
 
     Attributes:
         title: How it is cited.
@@ -142,7 +142,7 @@ def inventory(where: Where) -> Inventory:
 
 
 def differences(where: Where) -> list[str]:
-    """Return what stands in the inventory and not in the audit, and the other way round, in words; empty when equal."""
+    """Return the equations that only the inventory or only the audit has, a line each; empty if both are equal."""
     listed = Counter((place.place, number) for place in inventory(where).places for number in place.equations)
     audited = Counter((entry.place, entry.number) for _, entry in entries(where))
     missing = [f"{place}: {number} is not audited" for place, number in (listed - audited).elements()]

@@ -30,7 +30,7 @@ from runner.schema.model import StrictModel
 
 @dataclass(frozen=True)
 class Consequence:
-    """What a robot does that believes a formula.
+    """Simulated motion of a robot that uses a formula.
 
     Attributes:
         x: Abscissae, shape (T,).
@@ -44,7 +44,7 @@ class Consequence:
 
 
 class Words(StrictModel):
-    """What is told of a run.
+    """Title, text and labels of a run.
 
     Attributes:
         title: What is run.

@@ -21,13 +21,13 @@ Entries are in YAML files, one for each part of a source (`equations/*.yaml` in 
           elements: {A_13: ...}
         derivation: model.jacobian # what it claims to equal, by two independent derivations; see `model_derivations.py`
         tip: q3                    # frame of this one, where that is not the file's
-        finding: ...               # what is wrong, in words
+        finding: ...               # what is wrong, a sentence
 
 If a model is not enough, `derivation: xarm7.transform` names the Derivations in `equations/derivations/xarm7.py` of the
 folder. `symbols: xarm7.symbols` names a function of that module that draws the sample; `robot` is then omitted.
 
 `elements` gives the right side of each equation by its left side, in the syntax of
-`runner/base/expressions/parser.py`; the report shows the same texts. Names can be vectors and matrices of the sample,
+`runner/base/expressions/parser.py`; the report shows the same strings. Names can be vectors and matrices of the sample,
 as in `Lambda: transpose(inverse(J)) @ M @ inverse(J)`. They can also be left sides of other equations of the file,
 which then stand for their right form. A left side can be an expression, as in `tau - G: M @ ddq + V`; its names have
 their true values. `letters` sets names as the source does, and `indices` gives the numbers of a letter in brackets:
@@ -36,7 +36,7 @@ their true values. `letters` sets names as the source does, and `indices` gives 
     indices: {i: [1, 2, 3]}
     letters: {"R[i]": "attach(R, tl: 0, br: i)", dq: dot(q)}    # in Typst mathematics
 
-If a source has a text that a machine can read, `read: thesis_appendix.read_1` under `printed` names the function that
+If the text of a source is machine-readable, `read: thesis_appendix.read_1` under `printed` names the function that
 returns `elements` from it. An emendation can have `replace: {h_12: {1/40000*c1: 1/4000*c1}}` instead of elements.
 `math` contains a definition in Typst. If no expression has the value of an equation, `math` shows it and
 `code: xarm7.left_inverse` names the function that evaluates it. The verdict is never stored: `verdict.py` computes it.
@@ -114,7 +114,7 @@ class Form(StrictModel):
 
     @property
     def readable(self) -> bool:
-        """Whether all its expressions can be parsed."""
+        """True if all its expressions can be parsed."""
         try:
             return all(map(parse, self.elements.values()))
         except ExpressionError:
@@ -136,7 +136,7 @@ class Emendation(Form):
 
     Attributes:
         why: What was emended, and how we know.
-        replace: Parts of the printed elements, by element, each with what must stand there; the rest is as printed.
+        replace: Parts of the printed elements, by element, each with its replacement; the rest is as printed.
     """
 
     why: str
@@ -167,14 +167,14 @@ class Entry(StrictModel):
         number: Its number or name in the source.
         place: Section or page.
         title: What it is, in a few words.
-        printed: As it stands.
-        emendation: As it must have stood, where the text is damaged.
-        corrected: The right form, where it is wrong as printed.
+        printed: The form in the source.
+        emendation: The emended form, if the text is damaged.
+        corrected: The right form, if it is wrong as printed.
         derivation: Reference derivations of what it claims to equal; "" where it only names things, or is unreadable.
         tip: Frame that a derivation from the model is about, where it is another than the file's.
         unit: Unit of its error. Errors in "rad" are angles: they are taken the short way round.
         tolerance: Largest error, in its unit, that rounding may cause.
-        finding: What is wrong and what it does, in words; Text of a report. `{largest}` and `{typical}` are the errors
+        finding: What is wrong, and its effect; Text of a report. `{largest}` and `{typical}` are the errors
             of the form as printed, `{size}` is the largest true value.
         consequence: Function of equations/consequences that simulates what the wrong form causes, or "".
         letters: Names as the source writes them in this equation.
@@ -221,13 +221,13 @@ class Entry(StrictModel):
 
 
 class Content(StrictModel):
-    """What a data file says.
+    """Content of a data file.
 
     Attributes:
         robot: Name of the robot, or its URDF; "" where no derivation is a model's.
         tip: Its frame that is meant; "" is the config's tip.
         joints: Names of its joint positions; none are q1 to qn.
-        symbols: Function of equations/derivations that draws the sample; or what is named beside the robot's motion.
+        symbols: Function of equations/derivations that draws the sample; or further names besides the robot's motion.
         letters: Names as the source writes them, in Typst mathematics.
         entries: Its equations, in the order of the text.
     """

@@ -215,7 +215,7 @@ def _finite(values: FloatArray) -> NDArray[np.bool_]:
 
 
 def size_of(values: FloatArray) -> str:
-    """Return the size of values in words, such as "a vector of 3"."""
+    """Return a description of the size of values, such as "a vector of 3"."""
     kinds = "a number", "a vector of {}", "a {} by {} matrix"
     return kinds[values.ndim - 1].format(*values.shape[1:])
 

@@ -69,7 +69,7 @@ class AuditedArm:
 
     Attributes:
         model: Its model; the tip is the frame that is meant.
-        urdf: The URDF's text, of which the model is made.
+        urdf: The URDF that describes the model, as a string.
         joints: Names of its joint positions in a sample; d and dd before them are velocities and accelerations.
     """
 
@@ -210,13 +210,13 @@ def audited_arm(robot: str, tip: str, joints: tuple[str, ...], folder: Path) -> 
     """Return the robot that an equations file names.
 
     Args:
-        robot: Name of a robot's config, ours or one in the folder's `robot/`; or a URDF, a file of the folder or ours.
+        robot: Name of a robot's config, built-in or in the folder's `robot/`; or a URDF, built-in or in the folder.
         tip: Frame whose position and Jacobian are meant; "" is the config's tip, or the one end of a URDF.
         joints: Names of the joint positions in a sample; none are q1 to qn.
         folder: Where configs and URDFs are looked for first.
 
     Raises:
-        RunnerError: If there is no such robot or frame, or the names are too many or too few; tells what is allowed.
+        RunnerError: If there is no such robot or frame, or the names are too many or too few; with the allowed ones.
     """
     file = robot.endswith(".urdf") or Path(robot).is_absolute()
     urdf, own = _from_urdf(robot, tip, folder) if file else _from_config(robot, folder)

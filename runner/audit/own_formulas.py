@@ -18,7 +18,7 @@ from runner.schema.model import StrictModel
 
 _EQUAL = 1e-9
 QUANTITIES = ("position", "jacobian", "mass-matrix", "gravity")
-"""What can be compared; see `model_derivations.py` for the elements."""
+"""Quantities that can be compared; see `model_derivations.py` for the elements."""
 
 
 class _Formulas(StrictModel):
@@ -52,12 +52,12 @@ class Difference:
 
 
 def compare(model: RobotModel, quantity: str, path: Path, samples: int) -> list[Difference]:
-    """Return how far each formula of a file is from the robot.
+    """Return the error of each formula of a file against the robot.
 
     Args:
         model: The robot.
         quantity: One of `QUANTITIES`.
-        path: The file: YAML with `elements`, and `symbols` that they use beside q1, s1, c1 and so on.
+        path: The file: YAML with `elements`, and `symbols` that they use besides q1, s1, c1 and so on.
         samples: How many configurations, drawn with seed 0, each joint from a full turn.
 
     Raises:

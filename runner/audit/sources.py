@@ -35,16 +35,16 @@ class Source:
 
     @property
     def equations(self) -> Path:
-        """Where its entries are."""
+        """Folder of its entries."""
         return self.folder / _FOLDER
 
 
 Where = str | Path | Source
-"""A study of ours by name; a folder by its path, whose Python does not run; or a Source, which says whether it may."""
+"""A built-in study by name; a folder by its path, whose Python does not run; or a Source, which may allow it."""
 
 
 def sources() -> tuple[str, ...]:
-    """Return the names of our studies whose equations are audited."""
+    """Return the names of the built-in studies whose equations are audited."""
     return tuple(studies_with(f"{_FOLDER}/inventory.yaml"))
 
 

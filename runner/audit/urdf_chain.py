@@ -49,7 +49,7 @@ class UrdfChain:
         found = [_joint(element, joints) for element in robot.findall("joint")]
         borne = {joint.child for joint in found}
         (self._root,) = {name for link in robot.findall("link") if (name := link.get("name", "")) not in borne}
-        self._joints: list[_Joint] = []  # each after the one that bears it
+        self._joints: list[_Joint] = []  # each after its parent
         reached = [self._root]
         for link in reached:
             hanging = [joint for joint in found if joint.parent == link]

@@ -35,7 +35,7 @@ class AuditError(RunnerError):
 
 @dataclass(frozen=True)
 class Measured:
-    """How far a form is from the true values.
+    """Errors of a form against the true values.
 
     Attributes:
         largest: Largest error over the samples and elements.
@@ -60,7 +60,7 @@ class CheckedEquation:
         verdict: What the samples say.
         measured: Error of the form as printed (after emendation where there is one); None where it has none.
         second: The same against the second derivation.
-        methods: The methods of its two derivations; empty texts where it claims nothing.
+        methods: The methods of its two derivations; empty strings if it claims nothing.
         letters: Names as the source writes them, in Typst mathematics.
     """
 
@@ -106,7 +106,7 @@ class Check:
         """Return the verdict on an entry.
 
         Raises:
-            AuditError: If the entry contradicts itself, or names what does not exist; tells file and entry.
+            AuditError: If the entry contradicts itself, or names what does not exist; with file and entry.
         """
         try:
             return self._check(entry.as_read(self._part.source))
@@ -124,7 +124,7 @@ class Check:
             return self._checked(entry, "definition", None)
         printed = None if unread else self._measure(entry, entry.printed)
         if entry.emendation and printed and printed.worst <= entry.tolerance:
-            raise AuditError("is emended, but holds as it stands")
+            raise AuditError("is emended, but holds as printed")
         entry = entry.model_copy(update={"finding": _filled(entry, printed)})
         measured = (
             self._measure(entry, entry.emendation or entry.printed) if entry.emendation or printed is None else printed
@@ -193,7 +193,7 @@ class Check:
         return evaluate(parse(name), Values({**self.symbols, **true_values}, self._right), numbers)
 
     def derivations(self, entry: Entry) -> Derivations:
-        """Return what an entry claims to equal."""
+        """Return the reference derivations of an entry."""
         if entry.derivation.startswith("model."):
             return self._arm.at(entry.tip).derivations(entry.derivation)
         found: Derivations = derivation_of(self._part.source, entry.derivation)
@@ -232,7 +232,7 @@ def _draw(source: Source, name: str, samples: int) -> Symbols:
 
 
 def error(found: FloatArray, true: FloatArray, unit: str) -> FloatArray:
-    """Return how far an element is from its true value at each sample, shape (T,); infinite where it is no number.
+    """Return the error of an element at each sample, shape (T,); infinite if it is not a finite number.
 
     Args:
         found: The element, shape (T,) or (T, ...): the largest difference of a matrix counts, and 0 is a matrix of 0.

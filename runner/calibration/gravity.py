@@ -73,8 +73,8 @@ def identify_gravity(
     third column; swaps G_y and G_z in its first equations; writes F_x0 for M_x0 there; and takes theta by arc cosine
     or sine, which loses its sign or its half turn.
 
-    The covariance carries the readings' noise through both steps, where the forces' stands in the moment step's matrix
-    too (n_M - r x n_F), and the orientations' errors, to first order.
+    The covariance carries the readings' noise and the orientations' errors through both steps, to first order. The
+    forces' noise is also in the moment step's matrix (n_M - r x n_F).
 
     Args:
         readings: Forces in N and moments in N m in the sensor's frame, each at rest, shape (N, 6).
@@ -147,7 +147,7 @@ class WrenchCompensation:
     Args:
         calibration: Identified tool and sensor.
         inertia: The tool's inertia about its centre of mass in the sensor's frame, shape (3, 3), in kg m^2; weighing
-            does not show it, and nothing but angular acceleration and gyroscopic moments needs it.
+            does not show it, and only angular acceleration and gyroscopic moments need it.
         gravity: Magnitude of gravity along -z of the base, in m/s^2.
     """
 

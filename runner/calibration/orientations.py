@@ -41,8 +41,7 @@ def moment_matrix(forces: FloatArray) -> FloatArray:
 def condition_numbers(orientations: FloatArray) -> tuple[float, float]:
     """Return the condition numbers of the force and the moment matrix for a tool of 1 N on a sensor without bias.
 
-    They depend on the orientations alone; they are 1.73 and 1.22 where the vertical is spread evenly in the
-    flange's frame.
+    They depend only on the orientations. They are 1.73 and 1.22 if the vertical is spread evenly in the flange's frame.
     """
     matrices = force_matrix(orientations), moment_matrix(-orientations[:, 2])
     force, moment = (float(np.linalg.cond(matrix)) for matrix in matrices)
@@ -50,7 +49,7 @@ def condition_numbers(orientations: FloatArray) -> tuple[float, float]:
 
 
 def check_orientations(orientations: FloatArray) -> tuple[float, float]:
-    """Return the condition numbers of orientations that can be told apart.
+    """Return the condition numbers of orientations that differ enough.
 
     Raises:
         ConfigError: if they are too few or too much alike; names the condition numbers.
@@ -69,10 +68,10 @@ def check_orientations(orientations: FloatArray) -> tuple[float, float]:
 
 
 def choose_orientations(candidates: FloatArray, count: int) -> list[int]:
-    """Return which orientations weigh a tool best, one after the other, by determinant (D-optimal, greedy).
+    """Return the indices of the orientations that weigh a tool best, by determinant (D-optimal, greedy).
 
-    Both steps see nothing of an orientation but the vertical in the flange's frame, rho, beside a constant. Each
-    choice adds most to the determinant of the sum of (1, rho)(1, rho)'.
+    Both steps depend on an orientation only by the vertical in the flange's frame, rho, and a constant. Each choice
+    adds most to the determinant of the sum of (1, rho)(1, rho)'.
 
     Args:
         candidates: Orientations that the arm can take, flange in the base frame, shape (N, 3, 3).

@@ -39,7 +39,7 @@ def identify_tool_centre_point(poses: FloatArray, pose_covariances: FloatArray) 
 
     .. math:: (R_1 - R_k) p = P_k - P_1, \qquad k = 2 \dots N
 
-    Pose 1 stands in every row, so that the rows' errors are not independent. With A the stack, B the differences of
+    Pose 1 is in every row, so that the rows' errors are not independent. With A the stack, B the differences of
     the tips and S the tips' covariances, block by block, the covariance is
 
     .. math:: A^+ B S B^T A^{+T}, \qquad S_k = J_k \Sigma_k J_k^T, \quad J_k = [1, -[R_k p]_\times]

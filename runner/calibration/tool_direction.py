@@ -62,7 +62,7 @@ def identify_tool_direction(long: ToolCentrePoint, short: ToolCentrePoint) -> To
         short: Tool centre point of the short tool, calibrated apart.
 
     Raises:
-        ConfigError: if the two tips cannot be told apart.
+        ConfigError: if the two tips are too close to each other.
     """
     offset, covariance = long.position - short.position, long.covariance + short.covariance
     length, deviation = float(np.linalg.norm(offset)), float(np.sqrt(np.trace(covariance)))

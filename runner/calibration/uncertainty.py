@@ -55,7 +55,7 @@ class Consistency:
 
     @property
     def holds(self) -> bool:
-        """Whether the mean lies in the band: the covariances are neither too small nor too large."""
+        """True if the mean lies in the band: the covariances are neither too small nor too large."""
         return self.lower <= self.mean <= self.upper
 
 
@@ -63,7 +63,7 @@ def consistency(errors: FloatArray, covariances: FloatArray, level: float) -> Co
     """Compare errors with the covariances that their calibrations gave.
 
     Over N repetitions of n parameters, N times the mean is chi-square with N n degrees of freedom. Single parameters
-    "within three standard deviations" would fail by chance alone once there are a few hundred of them.
+    "within three standard deviations" would fail by chance if there are a few hundred of them.
 
     Args:
         errors: Estimate minus truth of each repetition, shape (N, n).

@@ -35,10 +35,10 @@ robot:
 def write_folder(examination: Examination, folder: Path) -> list[Path]:
     """Write `robot/NAME.yaml` and `robots/NAME.urdf`, or an MJCF as it is, with its files, if nothing is fixed.
 
-    Beside them stands `schema.json`, by which an editor completes the keys of the YAML file.
+    It also writes `schema.json`, with which an editor completes the keys of the YAML file.
 
     Raises:
-        RunnerError: if something bars the arm, one of the files is there already, or they cannot be written.
+        RunnerError: if the arm is refused, one of the files exists already, or they cannot be written.
     """
     if examination.arm is None:
         raise RunnerError("--output: nothing was written: first correct what is refused above")
@@ -66,7 +66,7 @@ def write_folder(examination: Examination, folder: Path) -> list[Path]:
     files |= {folder / "robots" / file: content for file, content in arm.items()}
     there = [str(path) for path in files if path.exists()]
     if there:
-        raise RunnerError(f"--output: {', '.join(there)} is there already; choose another folder, or remove it")
+        raise RunnerError(f"--output: {', '.join(there)} exists already; choose another folder, or remove it")
     try:
         for path, content in files.items():
             write_atomically(path, content)

@@ -30,7 +30,7 @@ def _check_link(tree: UrdfTree, name: str, link: ET.Element) -> list[Finding]:
     if not 0.0 <= mass < math.inf:
         return [Finding("refused", place, f"mass {mass:g} kg", "allowed: 0 or more")]
     if not all(map(math.isfinite, moments)):
-        return [Finding("refused", place, "an inertia that is no number", "write all six moments, in kg m^2")]
+        return [Finding("refused", place, "an inertia that is not a finite number", "write all six moments, in kg m^2")]
     absurd = [Finding("refused", place, text) for text in absurd_inertial(link)]
     if absurd:
         return absurd
@@ -102,7 +102,7 @@ def _wrong(name: str, folder: Path, packages: Sequence[Path]) -> str:
 
 
 def _package_folders(folder: Path, package: str, packages: Sequence[Path]) -> Iterator[Path]:
-    """Yield where a ROS package may lie: in folders named, around the URDF, beside a folder around it, or beside it."""
+    """Yield possible folders of a ROS package: in the given folders, and in or around the URDF's."""
     yield from (place / package for place in packages)
     for around in (folder, *folder.parents):
         if around.name == package:

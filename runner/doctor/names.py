@@ -27,7 +27,7 @@ def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, Findi
     """Return the name of an arm, of lower-case letters, digits and underscores, and what there is to say of it.
 
     It is the one wanted, else that of the file; where that could be any arm's, the one in the file, else that of the
-    nearest folder around it. It has `my_` in front where a robot of ours has the name.
+    nearest folder around it. It begins with `my_` if a built-in robot has the name.
 
     Args:
         path: The arm's file.
@@ -35,7 +35,7 @@ def choose_name(path: Path, header: str, wanted: str | None) -> tuple[str, Findi
         wanted: The name wanted; None for none.
 
     Raises:
-        RunnerError: if the name wanted is that of one of ours, or holds other letters.
+        RunnerError: if the name wanted is that of a built-in robot, or holds other letters.
     """
     ours = group_options("robot")
     if wanted is not None:

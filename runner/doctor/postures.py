@@ -32,7 +32,7 @@ def check_gravity(model: RobotModel, postures: FloatArray) -> list[Finding]:
         most = int(np.argmax(share if share.any() else largest))
         unit = "N" if model.prismatic[most] else "N m"
         limit = f", {100.0 * share[most]:.2g} % of its effort limit" if share[most] else ", and has no effort limit"
-        text = f"joint '{model.joint_names[most]}' bears most: up to {largest[most]:.3g} {unit}{limit}"
+        text = f"joint '{model.joint_names[most]}' supports most: up to {largest[most]:.3g} {unit}{limit}"
         findings.append(Finding("note", "gravity", text))
     return findings
 
@@ -61,11 +61,11 @@ def check_tasks(model: RobotModel) -> list[Finding]:
         text = f"no joint moves '{model.tip_name}' from its place: the axes pass through it"
         return [Finding("refused", "tip", text, "choose another by --tip, or add a link at the tool centre point")]
     if position > model.nq:
-        text = f"{model.nq} joints move the tip in {position} directions, not independently: no controller of ours fits"
+        text = f"{model.nq} joints move the tip in {position} dependent directions: no built-in controller fits"
         return [Finding("refused", "tasks", text, "choose another by --tip")]
     where = {3: "in 3 directions", 2: "in a plane", 1: "along a line"}[position]
     turned = f"a pose has {pose} dimensions" + ("" if pose <= model.nq else ", more than there are joints")
-    spare = f" with {model.nq - position} to spare" if model.nq > position else ""
+    spare = f", {model.nq - position} of them redundant," if model.nq > position else ""
     return [Finding("note", "tasks", f"{model.nq} joints{spare} move the tip {where}; {turned}")]
 
 
@@ -105,7 +105,7 @@ def describe_singular(model: RobotModel, postures: FloatArray) -> list[Finding]:
 
 
 def describe_workspace(model: RobotModel, generator: np.random.Generator) -> list[Finding]:
-    """Return between which distances from its first joint the tip can be."""
+    """Return the range of distances of the tip from the first joint, and of its heights."""
     found = analyse(model, 200, generator)
     near, far, low, high = np.round([found.inner, found.outer, *np.quantile(found.tips[:, 2], (0.0, 1.0))], 3)
     text = (

@@ -22,7 +22,7 @@ class StartingPoint:
     """Values that a robot's file needs in addition to its URDF.
 
     Attributes:
-        home: Joint positions, shape (nq,), in rad (m where joints slide).
+        home: Joint positions, shape (nq,), in rad (m for prismatic joints).
         goal: Tip position, shape (3,), in m.
         natural_frequency: omega_n of its controller, in rad/s.
     """
@@ -35,7 +35,7 @@ class StartingPoint:
 def propose(model: RobotModel, postures: FloatArray, home: FloatArray | None) -> StartingPoint:
     """Return values for an arm.
 
-    Home is the one given, shape (nq,), or as far from singular postures as some, shape (N, nq), are, above the ground.
+    Home is the one given, shape (nq,), or the posture above the ground that is farthest from singular configurations.
 
     The goal lies a small step away, where the joints can go; and the natural frequency is such that a sudden step to
     it asks for no more than half of the effort that gravity leaves, between 2 and 20 rad/s.

@@ -24,8 +24,8 @@ _FEWEST = 3  # joints of an arm, below its hand
 def choose_tip(tree: UrdfTree, wanted: str | None) -> str:
     """Return the link that is the tip: the one wanted, or the best one where the arm ends.
 
-    That is before it branches into fingers, and before a single jaw. Of the links that the same joints move there it is
-    the one whose name says so, else the farthest.
+    The arm ends before it branches into fingers, and before a single jaw. If the same joints move several links there,
+    the tip is the one whose name says so, else the farthest.
 
     Raises:
         RunnerError: if there is no such link, nothing moves it, or the tree has several arms and no tip was named.
@@ -45,7 +45,7 @@ def choose_tip(tree: UrdfTree, wanted: str | None) -> str:
     ways = "; ".join(f"{tip} behind {count} joint{'s' * (count != 1)}" for tip, count in counts.items())
     raise RunnerError(
         f"{tree.robot.get('name')} branches, and the runner takes serial arms: name the tip by --tip FRAME, and the "
-        f"joints beside the way to it are held fixed; ends: {ways}"
+        f"joints that are not on the way to it are held fixed; ends: {ways}"
     )
 
 
@@ -112,6 +112,6 @@ def _ends(tree: UrdfTree) -> list[str]:
 
 
 def _is_jaw(tree: UrdfTree, joint: str) -> bool:
-    """Tell whether a joint that moves is called a jaw, or the link that it moves is."""
+    """Return True if a joint moves and it, or its link, has the name of a jaw."""
     named = _JAW.search(joint) and not _WRIST.search(joint)
     return moves(tree.joints[joint]) and bool(named or _FINGERS.search(end_of(tree.joints[joint], "child")))

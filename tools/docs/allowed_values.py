@@ -1,4 +1,4 @@
-"""Allowed values of a config key, as text, from its type."""
+"""Descriptions of the allowed values of a config key, from its type."""
 
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin

@@ -1,7 +1,7 @@
 """`python -m tools.fuzz [configs|stores] [--cases N] [--seed S] [--lines N]`: bad input and damage of every kind.
 
 Nothing may end in a traceback or a crash, take 5 s of CPU time or 500 MB over a sound case, or answer with more than
-10 kB or with control characters. A case follows from the seed and its number: `--only N` tries it alone and shows it.
+10 kB or with control characters. The seed and its number determine a case: `--only N` tries and shows only this one.
 """
 
 import argparse
@@ -116,9 +116,9 @@ def main(arguments: list[str] | None = None) -> bool:
     parser = argparse.ArgumentParser(prog="python -m tools.fuzz", description=__doc__)
     parser.add_argument("targets", nargs="*", choices=[*TARGETS, []], help="default: all")
     parser.add_argument("--cases", type=int, default=1000)
-    parser.add_argument("--lines", type=int, default=20, help="command lines, each in a process of its own")
+    parser.add_argument("--lines", type=int, default=20, help="command lines, each in a separate process")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", type=int, metavar="N", help="try case N alone, and show it")
+    parser.add_argument("--only", type=int, metavar="N", help="try and show only case N")
     options = parser.parse_args(arguments or [])
     met = [TARGETS[name](options) for name in options.targets or TARGETS]
     return all(met)

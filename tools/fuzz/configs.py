@@ -1,4 +1,4 @@
-"""Configs from a grammar, composed, checked and run for some ticks: each is taken or refused as text, and soon.
+"""Configs from a grammar, composed, checked and run for some ticks: each is soon taken, or refused with a message.
 
 Messages are judged by `attempt`, what a case costs by `judge_costs`: that depends on the machine.
 """
@@ -47,7 +47,7 @@ class Case:
     """One config.
 
     Attributes:
-        number: Its number, which with the seed is all that it follows from.
+        number: Its number, which determines it together with the seed.
         kind: A resolved config, overrides, or an experiment's file.
         content: The config, the overrides, or the file's text.
         base: Overrides that come with a file.

@@ -1,7 +1,7 @@
 """`python -m tools.fuzz.expressions [N] [--seed S] [--only N]`: random expressions of a file, half of them hostile.
 
-Each has a value or is refused as text; none runs code, opens a file or takes 0.1 s of CPU time, nor, in every
-fiftieth, 50 MB: memory is counted in only these, as that takes four times as long.
+Each has a value or is refused with a message; none runs code, opens a file or takes 0.1 s of CPU time, nor 50 MB.
+Memory is only measured in every fiftieth because that takes four times as long.
 """
 
 import argparse
@@ -26,7 +26,7 @@ def main(arguments: list[str] | None = None) -> bool:
     parser = argparse.ArgumentParser(prog="python -m tools.fuzz.expressions", description=__doc__)
     parser.add_argument("count", nargs="?", type=int, default=1_000_000, metavar="N")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", type=int, metavar="N", help="try expression N alone, and show it")
+    parser.add_argument("--only", type=int, metavar="N", help="try and show only expression N")
     options = parser.parse_args(arguments or [])
     numbers = range(options.count) if options.only is None else [options.only]
     bad: dict[int, list[str]] = {}

@@ -33,7 +33,7 @@ class Reading:
 
     Attributes:
         values: What each thing stored holds, by its place; missing where it is refused.
-        told: What was said of those that are refused, by place.
+        told: Message on each refused thing, by place.
     """
 
     values: dict[str, object]
@@ -135,7 +135,7 @@ def damage(path: Path, others: Sequence[Path], draw: random.Random) -> bytes:
 
 
 def _strangers(path: Path, others: Sequence[Path]) -> list[Path]:
-    """Return the files that one may not be taken for; a whole list of a sweep's jobs is one wherever it stands."""
+    """Return the files that one may not be taken for; a whole list of a sweep's jobs is one in any folder."""
     return [other for other in others if path.name != "sweep.json" or other.name != path.name]
 
 
@@ -153,7 +153,7 @@ def make_store(outputs: Path) -> None:
 
 
 def flip_bits(outputs: Path, cases: int, seed: int) -> Iterator[str]:
-    """Flip single bits, each kind of file as often; yield what is read as something else, or not told by its name."""
+    """Flip single bits, each kind of file as often; yield what is misread, or is reported without its name."""
     draw, whole = random.Random(seed), read_all(outputs)  # noqa: S311
     kinds: dict[str, list[Path]] = {}
     for path in files_of(outputs):
@@ -166,11 +166,11 @@ def flip_bits(outputs: Path, cases: int, seed: int) -> Iterator[str]:
         if not found.told or any(whole.values[place] != value for place, value in found.values.items()):
             yield f"{path}: a flipped bit is not noticed"
         if not all(path.name in told for told in found.told.values()):
-            yield f"{path}: a flipped bit is told of another file: {found.told}"
+            yield f"{path}: a flipped bit is reported for another file: {found.told}"
 
 
 def damage_files(outputs: Path, cases: int, seed: int, commands: bool = False) -> Iterator[str]:
-    """Damage files in other ways; yield what is read as something else, is not told, or what command crashes."""
+    """Damage files in other ways; yield what is misread or not reported, and the commands that crash."""
     draw = random.Random(seed)  # noqa: S311
     whole, files = read_all(outputs), files_of(outputs)
     for _ in range(cases):
@@ -183,7 +183,7 @@ def damage_files(outputs: Path, cases: int, seed: int, commands: bool = False) -
         if any(whole.values[place] != value for place, value in found.values.items()):
             yield f"{path}: damage is read as something else"
         if bool(found.told) != changed or not all(str(path.parent) in told for told in found.told.values()):
-            yield f"{path}: damage is not told: {found.told}"
+            yield f"{path}: damage is not reported: {found.told}"
         yield from (f"{path}: {crash}" for crash in crashes)
 
 

@@ -112,7 +112,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--only", type=Path, help="file of results: try its mutants again")
     parser.add_argument("--record", action="store_true", help="record the coverage map, and nothing else")
     parser.add_argument("--tree", type=Path, default=_ROOT, help="checkout with its own .venv")
-    parser.add_argument("--results", type=Path, help="file of JSON lines, which a later call goes on with")
+    parser.add_argument("--results", type=Path, help="file of JSON lines, which a later call continues")
     parser.add_argument("--workers", type=int, default=2, help="processes that run tests")
     parser.add_argument("--limit", type=float, default=60.0, help="CPU time of tests for a mutant [s]")
     parser.add_argument("tests", nargs="*", help="with --record: arguments of pytest behind --; without them all tests")

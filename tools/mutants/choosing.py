@@ -80,8 +80,8 @@ class CoverageMap:
     def covering(self, mutant: Mutant, tree: Path) -> list[int]:
         """Return the indices of the tests that run a mutant.
 
-        What runs at import counts for the functions of the module that use the name which is assigned there; where no
-        test runs these, for all functions of the module, and at last for those of the modules that import it.
+        A statement that runs at import counts for the functions of the module that use the name assigned there. If no
+        test runs these, it counts for all functions of the module, else for those of the modules that import it.
         """
         owners = self._by_owner.get(mutant.path, {})
         if mutant.block is not None and mutant.owner in owners:

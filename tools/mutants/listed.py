@@ -30,7 +30,7 @@ class Listed:
             ValueError: if the replaced text does not occur exactly once.
         """
         if source.count(self.right) != 1:
-            raise ValueError(f"{self.module}: {self.right!r} stands there {source.count(self.right)} times, not once")
+            raise ValueError(f"{self.module}: {self.right!r} occurs {source.count(self.right)} times, not once")
         start = len(source.partition(self.right)[0].encode())
         end = start + len(self.right.encode())
         return Mutant(self.module, start, end, self.wrong, self.right, 0, why=self.why, test=self.test)
@@ -70,7 +70,7 @@ MUTANTS = [
             "evaluate(at_stage, stage_context)",
             "evaluate(traces, stage_context)",
         ),
-        ("a carrier's path not shifted", "Shifted(context.trajectory, traces.offsets[index])", "context.trajectory"),
+        ("the path of a stage not shifted", "Shifted(context.trajectory, traces.offsets[index])", "context.trajectory"),
     ),
     *_of(
         "metrics/summary.py",
@@ -136,7 +136,7 @@ MUTANTS = [
         "statistics/test_effects.py",
         ("p without its + 1", "(1 + as_large) / (1 + self._permutations)", "as_large / self._permutations"),
         (
-            "p with its + 1 above alone",
+            "p with its + 1 only above",
             "(1 + as_large) / (1 + self._permutations)",
             "(1 + as_large) / self._permutations",
         ),
@@ -155,7 +155,7 @@ MUTANTS = [
             "way = reference[0] - parameters.later",
             "way = reference[0] + parameters.later",
         ),
-        ("the carrier adds it", "bases[0][0] - parameters.later", "bases[0][0] + parameters.later"),
+        ("the lower stage adds it", "bases[0][0] - parameters.later", "bases[0][0] + parameters.later"),
         ("the last rider's offset for that of all", "target[0] -= R", "target[0] = reference[0] - R"),
         ("the base's turn the other way round", "cross(moves[3:], way)", "cross(way, moves[3:])"),
         (

@@ -35,11 +35,11 @@ for _one, _other in (("min", "max"), ("minimum", "maximum"), ("argmin", "argmax"
 _FOR_PEOPLE = {"print", "warn"}
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _LEFT_OUT = (ast.Import, ast.ImportFrom, ast.Raise, ast.Assert, ast.JoinedStr)
-Edit = tuple[int, int, str]  # range of bytes, and the text in its place
+Edit = tuple[int, int, str]  # range of bytes, and the text that replaces it
 
 
 def places(path: str, source: str) -> list[Mutant]:
-    """Return all mutants of a module, a few of which change nothing or do not parse (`Mutant.changes`)."""
+    """Return all mutants of a module; a few change nothing or do not parse (`Mutant.changes`)."""
     return list(_Places(path, source).all())
 
 

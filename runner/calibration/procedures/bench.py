@@ -13,7 +13,7 @@ from runner.sensing.force_torque import ForceTorqueConfig
 
 @dataclass(frozen=True)
 class Bench:
-    """What a calibration is carried out on.
+    """Arm, tool and sensor of a simulated calibration.
 
     Attributes:
         flange: The arm, with its flange as tip.

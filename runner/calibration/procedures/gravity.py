@@ -155,7 +155,7 @@ def even_postures(model: RobotModel, count: int) -> FloatArray:
     """Return postures spread evenly over the joint limits (Halton), shape (count, nq), in rad; always the same ones.
 
     Halton, "On the efficiency of certain quasi-random sequences of points in evaluating multi-dimensional integrals",
-    Numerische Mathematik 2, 1960. A joint that turns without limit is taken once around.
+    Numerische Mathematik 2, 1960. An unlimited revolute joint is taken once around.
     """
     lower, upper = np.clip(model.position_limits, -np.pi, np.pi)
     primes = (n for n in itertools.count(2) if all(n % factor for factor in range(2, n)))

@@ -11,12 +11,12 @@ from runner.base.arrays import FloatArray
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one repetition found.
+    """Result of one repetition.
 
     Attributes:
         estimates: In the order of the procedure's `estimates`, shape (m,).
         errors: Estimate less truth, in the order of its `errors`, shape (n,).
-        covariance: Of the errors as the calibration gives it, shape (n, n).
+        covariance: Covariance of the errors by the calibration, shape (n, n).
         measures: Values of its `measures` by name.
         messages: Messages for the user.
     """

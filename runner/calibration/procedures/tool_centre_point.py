@@ -22,7 +22,7 @@ class TouchedPointConfig(TouchingConfig):
 
 
 class TouchedPoint:
-    """The procedure; its measures are how well the poses tell the tip, and how far they miss one point.
+    """The procedure; its measures are the condition of the poses, and their distance from one point.
 
     Args:
         config: The poses.

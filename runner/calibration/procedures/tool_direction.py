@@ -20,7 +20,7 @@ class TwoToolsConfig(TouchingConfig):
     Attributes:
         kind: Its name in the registry.
         direction: The true direction in the flange's frame, of any length but zero.
-        shorter: How far the short tool's tip stands back along it from the long one's, in m.
+        shorter: Distance of the short tool's tip behind the long one's along it, in m.
     """
 
     kind: Literal["tool_direction"]

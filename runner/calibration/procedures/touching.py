@@ -21,8 +21,8 @@ class TouchingConfig(StrictModel):
     Attributes:
         poses: Their number.
         spread: Angle by which the flange is tilted in each, in rad.
-        posture: Joint positions about which it is tilted, in rad; m where a joint slides. The tip stays where it
-            is there. None is home.
+        posture: Joint positions about which it is tilted, in rad (m for prismatic joints). The tip keeps its
+            position there. None is home.
         repeatability: To which the arm repeats its flange's position at home, in m.
     """
 

@@ -80,7 +80,7 @@ def test_nothing_is_overwritten(cli):
         cli("doctor", KUKA, "--output", "mine")
         ending = cli("doctor", KUKA, "--output", "mine")
     assert ending.code == 2
-    assert "is there already; choose another folder, or remove it" in ending.err
+    assert "exists already; choose another folder, or remove it" in ending.err
 
 
 @pytest.mark.bullet

@@ -90,7 +90,7 @@ def test_a_form_that_is_still_wrong_after_emendation_is_wrong(check, right):
         ("l1", {}, "has no correction"),
         ("l1", {"corrected": elements("l2")}, "the correction is wrong"),
         ("RIGHT", {"corrected": elements("l2")}, "is corrected, but its verdict is 'correct'"),
-        ("RIGHT", {"emendation": {"why": "none", **elements("l2")}}, "is emended, but holds as it stands"),
+        ("RIGHT", {"emendation": {"why": "none", **elements("l2")}}, "is emended, but holds as printed"),
         ("l9", {}, "no name 'l9'"),
         ("l1/0", {}, "division by zero"),
     ],

@@ -17,5 +17,5 @@ def test_it_makes_another_module_of_its_own(listed):
 
 
 def test_what_stands_nowhere_is_said():
-    with pytest.raises(ValueError, match=r"stands there 0 times, not once"):
+    with pytest.raises(ValueError, match=r"occurs 0 times, not once"):
         MUTANTS[0].at("")

@@ -1,6 +1,6 @@
 """Plug-in of pytest: writes which blocks each test runs, and the CPU time it takes.
 
-What a fixture of a wider scope runs when it is made counts for each test that uses it.
+The blocks that a fixture of a wider scope runs count for each test that uses it.
 """
 
 import functools

@@ -28,7 +28,7 @@ class Block(NamedTuple):
 
 
 def mark(tree: ast.Module) -> list[Block]:
-    """Return the blocks of a module; each node gets the index of its own as `block` (None at import), and `owner`."""
+    """Return the blocks of a module; each node gets the index of its block as `block` (None at import), and `owner`."""
     marking = _Marking()
     marking.visit(tree, None, "")
     return marking.blocks
