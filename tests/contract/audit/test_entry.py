@@ -32,7 +32,10 @@ def test_a_form_is_evaluated_in_one_way(form, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("symbols: b.c\nentries: [{number: 3.4, verdict: correct}]", r"bad.yaml: .*entries.0 \(3.4\).verdict: Extra"),
+        (
+            "symbols: b.c\nentries: [{number: 3.4, verdict: correct}]",
+            r"bad.yaml: .*entries.0 \(3.4\).verdict: unknown key; keys: id, ",
+        ),
         ("entries: []", "bad.yaml: names no 'robot', so 'symbols' must name the function that draws the sample"),
         ("robot: macro\nentries: [{printed: {elements: {a: [1]}}}]", r"printed.elements.a: is \[1\]; allowed: an expr"),
         ("robot: [", "cannot read .*bad.yaml"),
