@@ -86,8 +86,8 @@ _STAGED = {
     ("figure_5_12", "as_reported", "steady_state_error"): _BASE_ENCODERS,
     ("figure_5_13", "full_equations", "max_axis_error"): "what is left where the Mini is stretched, late in the motion",
     ("figure_5_13", "full_equations", "rms_tracking_error"): _BASE_ENCODERS,
-    ("figure_5_13", "as_reported", "max_axis_error"): "the Macro's lag, as the Mini is stretched",
-    ("figure_5_13", "as_reported", "rms_tracking_error"): "the Macro's lag, as the Mini is stretched",
+    ("figure_5_13", "as_reported", "max_axis_error"): "the Macro's lag, because the Mini is stretched",
+    ("figure_5_13", "as_reported", "rms_tracking_error"): "the Macro's lag, because the Mini is stretched",
     ("macro_alone", "full_equations", "macro_max_axis_error"): _BASE_AXIS,
     ("macro_alone", "as_reported", "macro_max_axis_error"): _BASE_AXIS,
     (
@@ -99,7 +99,7 @@ _STAGED = {
 }
 # Reasons of tracking errors on the xArm7's line: by three joints, which feed nothing back, and by seven.
 _LINE_ERRORS = {
-    ("three", "full_equations"): "what the motion's third derivative does within a period, as the first two are known",
+    ("three", "full_equations"): "the motion's third derivative within a period; the first two are known",
     ("three", "as_reported"): "the way that the tip goes within a period: so late are joints without feedforward",
     ("seven", "full_equations"): "what the integration over a period leaves",
     ("seven", "as_reported"): "the lag behind the error feedback, the tip's speed over its gain",
@@ -109,7 +109,7 @@ _LINE_ERRORS = {
 def explain_line(experiment: str, preset: str, metric: str) -> str:
     """Return why a metric of the xArm7's line is where it is."""
     reasons = {
-        "peak_joint_speed": "the line, its period and the inverse kinematics alone",
+        "peak_joint_speed": "only the line, its period and the inverse kinematics",
         "peak_torque": "the arm's weight on joint 2, by inverse dynamics",
         "cross_track_error": _LINE_ERRORS["seven", "full_equations"],
     }
@@ -123,8 +123,8 @@ _TOUCH = {
     ("wall", "peak_force"): "the law's mass and damping arrive at the wall with the speed of the approach",
     ("wall", "steady_force"): "the springs of law and wall in series",
     ("hand", "peak_force"): "damping at the hand's peak speed, and the law's mass",
-    ("circle", "max_axis_error"): "what the law gives way to the push, and its servos",
-    ("circle", "rms_tracking_error"): "what the law gives way to the push, and its servos",
+    ("circle", "max_axis_error"): "the deflection of the law and its servos under the push",
+    ("circle", "rms_tracking_error"): "the deflection of the law and its servos under the push",
     ("circle", "peak_torque"): "the arm's weight and inertia on servos",
 }
 
@@ -160,8 +160,8 @@ def explain(experiment: str, preset: str, metric: str, zero: bool) -> str:
     reasons = {
         "settling_time": "back in the settling band " + ("after the base axis" if full else "as the lag fades"),
         "steady_state_error": _NOISE if full else _SAG,
-        "peak_torque": "the limit, met beside the base axis" if limited else "joint 1 beside the base axis, and noise",
-        "saturation_fraction": "joint 1 at its limit beside the base axis",
+        "peak_torque": "the limit, met near the base axis" if limited else "joint 1 near the base axis, and noise",
+        "saturation_fraction": "joint 1 at its limit near the base axis",
         "overshoot": "the part of the error at rest that lies along the path",
         "cross_track_error": _BASE_AXIS if limited else _NOISE if full else _SAG,
         "energy": _SUM,
@@ -172,7 +172,9 @@ def explain(experiment: str, preset: str, metric: str, zero: bool) -> str:
     if experiment == "thesis/figure_4_4":
         reasons["peak_torque"] = "gravity on joint 2, 0.196 N m at home, and the answer to noise, lag and sag"
     if (experiment, "settling_time") in EXTRA:
-        width = f"known to {EXTRA[experiment, 'settling_time']:g} s of the run's 4 s, as the branch it takes may change"
+        width = (
+            f"known to {EXTRA[experiment, 'settling_time']:g} s of the run's 4 s, because it may take another branch"
+        )
         reasons |= {
             "settling_time": f"a saturated transient, {width}",
             "saturation_fraction": f"a saturated transient, {width}",

@@ -9,7 +9,7 @@ from runner.studies.benchmark.cells import UNTUNED
 from runner.studies.benchmark.figures import any_origin, error_words
 from runner.studies.benchmark.made import ARMS, CONDITIONS, QUESTIONS, all_cells, arms_of, laws_of, turned
 
-_WIDE = 6  # conditions that stand in one table
+_WIDE = 6  # conditions in one table
 
 
 def section(runs: Mapping[str, Run]) -> Section:
@@ -17,11 +17,11 @@ def section(runs: Mapping[str, Run]) -> Section:
     text = (
         "A law is ahead of another if its error is smaller by more than 2 % on the same seeds, with whichever tuning "
         "of the two, by tests corrected for all comparisons on the arm and question (Holm); intervals have the level "
-        "of their test. Where nothing is drawn there is no interval, and it is ahead if it is so along every path. "
+        "of their test. If nothing is drawn, no interval exists: a law is then ahead if it is so along every path. "
         "Laws of one group are tied: the first group holds those that no law is shown to be ahead of, and a law of "
         "another one is behind a law of the group before it. Errors are root mean squares of the tip's distance from "
         "where it should be, of the median seed, and the geometric mean over paths and tunings. A repetition that "
-        "failed counts as an error beyond every number; the share of these stands with it."
+        "failed counts as an error beyond every number; the table lists their fraction with it."
     )
     return Section("Arm by arm", (Text(text),), [_arm(runs, arm) for arm in arms_of(runs)])
 

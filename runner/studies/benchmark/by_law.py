@@ -14,14 +14,14 @@ from runner.studies.benchmark.made import ARMS, CONDITIONS, LAWS, QUESTIONS, all
 from runner.study.prose.patterns import found
 from runner.sweeps.differing import entries
 
-_UNKNOWN = "not told here"
+_UNKNOWN = "not known here"
 _LAW_KEYS = ("controller.", "disturbance_observer.")
 
 
 def section(runs: Mapping[str, Run]) -> Section:
     """Return the chapter."""
     text = (
-        "All laws read positions and velocities of the joints; none of ours reads torque sensors. Untuned gains follow "
+        "All laws read positions and velocities of the joints; none of them reads torque sensors. Untuned gains follow "
         "from one bandwidth for each arm; tuned ones are the best of the same number of trials for every law, for each "
         "question, by different seeds."
     )
@@ -30,13 +30,13 @@ def section(runs: Mapping[str, Run]) -> Section:
 
 
 def _knowledge(runs: Mapping[str, Run], laws: Sequence[str]) -> Table:
-    """Return what each law is told; iterative learning stands in a chapter of its own."""
+    """Return a table of the inputs of each law; iterative learning has a separate chapter."""
     rows = []
     for law in (*laws, "iterative_learning"):
         _, model, friction, repeats = LAWS.get(law, (_UNKNOWN,) * 4)
         rows.append([in_words(law), model, friction, "no" if law in LAWS else _UNKNOWN, repeats])
     header = ["law", "model", "friction", "torque sensor", "that a motion repeats"]
-    return Table("What each law is told beside the joints' positions and velocities.", header, rows)
+    return Table("Inputs of each law, besides the joints' positions and velocities.", header, rows)
 
 
 def _law(runs: Mapping[str, Run], law: str) -> Section:
@@ -65,7 +65,7 @@ def _places(runs: Mapping[str, Run], law: str) -> Table:
                 texts.append("" if question != "first" else "beyond" if gained is None else number(gained, zeros=True))
                 rows.append([ARMS[arm], words, CONDITIONS[name], error_words(entry), group, *texts])
     header = ["arm", "question", "condition", "error", "group", "over the smallest", "untuned over tuned"]
-    return Table(f"{in_words(law)}: where it stands.", header, rows, (3, 4, 5, 6), any_origin(runs), folded=True)
+    return Table(f"{in_words(law)}: errors and groups.", header, rows, (3, 4, 5, 6), any_origin(runs), folded=True)
 
 
 def _gains(runs: Mapping[str, Run], law: str) -> Table:
@@ -83,7 +83,7 @@ def _gains(runs: Mapping[str, Run], law: str) -> Table:
 
 
 def keys_of(runs: Mapping[str, Run], arm: str, law: str, question: str, gains: str) -> dict[str, str]:
-    """Return the keys of a law and its observer with their values, as texts, of a tuning."""
+    """Return the keys of a law and its observer with their values, as strings, of a tuning."""
     config = found(runs, f"{question}/{arm}/{law}/{{task}}/exact/{gains}")[0].run.config
     own = {group: config[group] for group in ("controller", "disturbance_observer") if group in config}
     return {key: value for key, value in entries(own) if key.startswith(_LAW_KEYS)}
@@ -97,13 +97,13 @@ def _short(value: str) -> str:
 
 
 def _cost(runs: Mapping[str, Run], law: str) -> str:
-    """Return what a tick of it took on the engine's Macro; nothing where no clock was read."""
+    """Return a sentence on the time of one tick on the engine's Macro; empty if no clock was read."""
     timed = [one.run.record["timing"].get("tick_time_median")
              for one in found(runs, f"engine/{{arm}}/{law}/{{task}}/exact/{{gains}}")]  # fmt: skip
     taken = [each for each in timed if each]
     if not taken:
         return ""
     return (
-        f"A control tick of it took {number(1e6 * float(np.median(taken)), 2)} µs on the Macro, law and plant, when "
-        "its runs were made: a clock's reading, which another machine does not repeat."
+        f"A control tick of it took {number(1e6 * float(np.median(taken)), 2)} µs on the Macro, law and plant, in "
+        "its runs: a clock's reading, which another machine does not repeat."
     )

@@ -16,7 +16,7 @@ from runner.study.fit import difference, setting
 from runner.study.job import Results
 from runner.study.prose.patterns import found
 
-_LEAST = 1.0 / (1.0 - SHARE)  # ratio of errors; less is no lead
+_LEAST = 1.0 / (1.0 - SHARE)  # ratio of errors, above which a law leads
 
 
 @dataclass(frozen=True)
@@ -51,13 +51,13 @@ class Entry:
 
     @property
     def failed(self) -> float:
-        """Share of the repetitions, of all tunings, that failed along one path or more."""
+        """Fraction of repetitions, of all tunings, that failed along one path or more."""
         return float(np.mean(~np.isfinite(self.by_seed)))
 
 
 @dataclass(frozen=True)
 class Lead:
-    """How far a law is ahead of another one.
+    """Lead of a law over another one.
 
     Attributes:
         law: The law with the smaller error.
@@ -66,7 +66,7 @@ class Lead:
         interval: From the lowest to the highest end of the intervals of the other's error over its own, on the same
             seeds, over all pairs of a tuning of the one and a tuning of the other, at the level at which its test was
             decided; None where nothing is drawn.
-        p_value: The largest over these pairs, corrected for all comparisons on the arm; None likewise.
+        p_value: The largest over these pairs, corrected for all comparisons on the arm; None if nothing is drawn.
         shown: Whether it may be called ahead with whichever tunings: by the corrected test and more than the share that
             an answer needs, or along every path where nothing is drawn.
     """
@@ -80,10 +80,10 @@ class Lead:
 
 
 def leads(ranked: Mapping[str, Sequence[Entry]]) -> dict[str, dict[tuple[str, str], Lead]]:
-    """Return the lead of each law on each that stands behind it, by both names, by condition.
+    """Return the lead of each law over each with a larger error, by both names, by condition.
 
     Args:
-        ranked: The laws of each condition, the one with the smallest error first; all that is corrected together.
+        ranked: The laws of each condition, the one with the smallest error first; all are corrected together.
     """
     pairs = {(name, a.law, b.law): (a, b) for name, laws in ranked.items() for a, b in itertools.combinations(laws, 2)}
     compared = {key: _compared(a, b) for key, (a, b) in pairs.items()}
@@ -143,7 +143,7 @@ class Cell:
 
     Attributes:
         entries: The laws, the one with the smallest error first.
-        leads: Each of them against each that stands behind it, by both names.
+        leads: Lead of each over each with a larger error, by both names.
     """
 
     entries: Sequence[Entry]
@@ -164,7 +164,7 @@ class Cell:
         return [[law for law, own in number.items() if own == each] for each in range(1 + max(number.values()))]
 
     def entry(self, law: str) -> Entry:
-        """Return what a law did."""
+        """Return the result of a law."""
         return next(each for each in self.entries if each.law == law)
 
 
@@ -184,13 +184,13 @@ def cells(
     tasks: Sequence[str] = (),
     after: int = ROUND,
 ) -> dict[str, Cell]:
-    """Return what the laws did on an arm, by condition.
+    """Return the results of the laws on an arm, by condition.
 
     Args:
         runs: The runs of the study.
         arm: Level of the axis arm.
         grid: How the runs' names begin: "first"; "engine", the same on another plant; "learned"; or "changed", where
-            the change stands in place of a condition and there is one tuning.
+            the change replaces the condition and there is one tuning.
         seeds: Which repetitions count of runs that have several.
         gains: Levels of the axis of gains that count; all tunings where none is named.
         tasks: Levels of the axis of tasks that count; all where none is named.

@@ -42,7 +42,7 @@ def mean_correlation(runs: Mapping[str, Run]) -> Measured:
 
 
 def against(runs: Mapping[str, Run]) -> Measured:
-    """Return how many leads that are shown on one plant are shown the other way round on the other."""
+    """Return the number of leads shown on one plant that the other plant shows reversed."""
     turned = 0
     for here, there in _both(runs).values():
         shown = {key for key, lead in there.leads.items() if lead.shown}
@@ -51,7 +51,7 @@ def against(runs: Mapping[str, Run]) -> Measured:
 
 
 def leads(runs: Mapping[str, Run]) -> Measured:
-    """Return how many leads are shown on Runge-Kutta."""
+    """Return the number of leads shown on Runge-Kutta."""
     return Measured("leads", float(sum(lead.shown for here, _ in _both(runs).values() for lead in here.leads.values())))
 
 

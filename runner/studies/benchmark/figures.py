@@ -18,7 +18,7 @@ from runner.study.prose.patterns import found
 
 _IN_A_TABLE = 4  # arms
 _NAMED = 5  # tied laws that are named
-_FAR = 1.1  # ratio of errors that three digits tell from one
+_FAR = 1.1  # ratio of errors that three digits distinguish from one
 
 
 def best_laws(runs: Mapping[str, Run], question: str, caption: str) -> list[Table]:
@@ -54,7 +54,7 @@ def behind_the_best(runs: Mapping[str, Run], question: str, caption: str) -> Map
 
 
 def troubles(runs: Mapping[str, Run], question: str, gains: str, caption: str) -> Maps | Text:
-    """Return the share of repetitions of each law that failed as maps, an arm each; a sentence where none did.
+    """Return the failed repetitions of each law, in per cent, as one map for each arm; a sentence if none failed.
 
     Args:
         runs: The runs of the study.
@@ -95,7 +95,7 @@ def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: s
 
 
 def settings(runs: Mapping[str, Run], caption: str) -> Table:
-    """Return what is the same for all laws of an arm, and what the conditions do to it."""
+    """Return a table of the settings that all laws of an arm share, and their changes by the conditions."""
     header = ["arm", "bandwidth", "period", "masses wrong by up to", "friction", "viscous friction", "encoder noise"]
     rows = []
     for arm in arms_of(runs):
@@ -116,7 +116,7 @@ def settings(runs: Mapping[str, Run], caption: str) -> Table:
 
 
 def spread(runs: Mapping[str, Run], question: str, caption: str) -> Table:
-    """Return how far the errors of the tunings of each law are apart on each arm, with all wrong at once."""
+    """Return a table of the spread of errors over tunings, by law and arm, with all wrong at once."""
     arms = arms_of(runs)
     rows = []
     for law in laws_of(runs, arms[0]):
@@ -126,7 +126,7 @@ def spread(runs: Mapping[str, Run], question: str, caption: str) -> Table:
 
 
 def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> list[Measured]:
-    """Return the share of repetitions that failed of each law under a condition, in per cent.
+    """Return the failed repetitions of each law under a condition, in per cent.
 
     Args:
         runs: The runs of the study.
@@ -147,7 +147,7 @@ def ratio(one: Entry, other: Entry) -> float | None:
 
 
 def error_words(entry: Entry) -> str:
-    """Return the error of a law, and the share of its repetitions that failed."""
+    """Return the error of a law, and the fraction of its repetitions that failed."""
     if entry.failed == 0.0:
         return quantity(entry.score, "m")
     failed = f"{number(100.0 * entry.failed, 2)} % failed"
@@ -155,7 +155,7 @@ def error_words(entry: Entry) -> str:
 
 
 def lead_words(lead: Lead) -> str:
-    """Return how far a law is ahead, with the interval where seeds are drawn."""
+    """Return the lead of a law as text, with its interval if seeds are drawn."""
     digits = 3 if lead.factor > _FAR else 4
     factor, *ends = (number(value, digits, zeros=True) for value in (lead.factor, *(lead.interval or ())))
     return f"{factor} times ({' to '.join(ends)})" if ends else f"{factor} times"
@@ -166,7 +166,7 @@ def _chosen(gains: str) -> Sequence[str]:
 
 
 def any_origin(runs: Mapping[str, Run]) -> Origin:
-    """Return where a table over several arms is from: the command of one of the runs."""
+    """Return the origin of a table over several arms: the command of one of the runs."""
     return origin(found(runs, f"first/{{arm={arms_of(runs)[0]}}}/{{law}}/{{task}}/{{condition}}/{{gains}}")[0].run)
 
 
@@ -180,7 +180,7 @@ def said(runs: Mapping[str, Run], arm: str, question: str, condition: str) -> st
 
 
 def answer(cell: Cell) -> str:
-    """Return the laws that none is shown to be ahead of, and how far one that stands alone is ahead."""
+    """Return the laws of the first group as text; if it holds one law, also its lead."""
     if not np.isfinite(cell.best.score):
         return "all failed"
     first = cell.groups[0]
@@ -220,12 +220,12 @@ def said_again(runs: Mapping[str, Run]) -> Measured:
 
 
 def said_otherwise(runs: Mapping[str, Run]) -> Measured:
-    """Return how many leads of one half the other half shows the other way round."""
+    """Return the number of leads of one half that the other half shows reversed."""
     return Measured("leads that the other half turns round", float(halves(runs)[2]))
 
 
 def halves(runs: Mapping[str, Run]) -> tuple[int, int, int]:
-    """Return how many drawn leads the halves show, and of these the other one, too, or turned round.
+    """Return the numbers of drawn leads: in both halves together, confirmed and reversed by the other half.
 
     They are those of the first question, which has seeds enough for two halves.
     """

@@ -28,7 +28,7 @@ def passed_by(runs: Mapping[str, Run], condition: str, law: str) -> Measured:
 
 
 def rounds(runs: Mapping[str, Run], caption: str) -> Table:
-    """Return where the order of the first three laws changes between the rounds, and where it stays."""
+    """Return a table of changes in the order of the first three laws between rounds, conditions by arms."""
     arms = arms_of(runs)
     rows = [
         [CONDITIONS[condition], *(turned(runs, arm, condition) or "stays" for arm in arms)]
@@ -38,7 +38,7 @@ def rounds(runs: Mapping[str, Run], caption: str) -> Table:
 
 
 def what_changes(runs: Mapping[str, Run], caption: str) -> Table:
-    """Return who is ahead with all wrong at once, as judged and where one thing is otherwise, with the first tuning."""
+    """Return a table of the leading law with all wrong at once, for the judged case and each single change."""
     arms = arms_of(runs)
     columns = [_column(runs, arm) for arm in arms]
     rows = [

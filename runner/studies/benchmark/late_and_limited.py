@@ -80,7 +80,7 @@ def limits_over_need(runs: Mapping[str, Run]) -> list[Measured]:
 
 
 def saturated(runs: Mapping[str, Run], caption: str) -> Maps:
-    """Return the share of ticks with a joint at its torque limit as maps, an arm each."""
+    """Return the ticks with a joint at its torque limit, in per cent, as one map for each arm."""
     panels = []
     for arm in arms_of(runs):
         laws = laws_of(runs, arm)[::-1]

@@ -31,7 +31,7 @@ def all_cells(
     seeds: slice = ALL_SEEDS,
     after: int = ROUND,
 ) -> dict[str, Cell]:
-    """Return what the laws did on an arm, by condition, in one order; `question` is one of QUESTIONS. See cells."""
+    """Return each law's results on an arm, by condition, in one order; see cells. `question` is one of QUESTIONS."""
     key = (arm, question, tuple(gains), seeds.start, seeds.step, after)
     kept: dict[object, dict[str, Cell]] = runs.derived if isinstance(runs, Results) else {}
     if key not in kept:
@@ -43,7 +43,7 @@ def all_cells(
 def one_cell(
     runs: Mapping[str, Run], arm: str, condition: str, question: str = "first", gains: Sequence[str] = ()
 ) -> Cell:
-    """Return what the laws did on an arm under a condition; see all_cells.
+    """Return the results of the laws on an arm under a condition; see all_cells.
 
     Raises:
         LeftOutError: if there are no such runs.
@@ -55,7 +55,7 @@ def one_cell(
 
 
 def turned(runs: Mapping[str, Run], arm: str, condition: str) -> str:
-    """Return which of the first three laws is passed in a later round, and by which law; empty where none is.
+    """Return a sentence on the first later round in which one of the first three laws is passed; empty if none is.
 
     One law passes another where it is behind by more than 2 % in the round that is judged, and ahead by more later.
     """

@@ -27,7 +27,7 @@ def sure_leads(
 ) -> list[Measured]:
     """Return the lower end of the interval of another law's error over that of a law, on some arms, or on all.
 
-    Where the other one is not behind it has none.
+    A law that is not behind has none.
     """
     told = []
     for arm in arms or arms_of(runs):

@@ -12,7 +12,7 @@ _ALONG = 1  # the hammer's joint that hits, counted from 0
 
 
 def impact(run: Run) -> dict[str, float]:
-    """Return what a head does in its first touch of a wall, beside the closed form.
+    """Return numbers of a head's first touch of a wall, compared with the closed form.
 
     The ratio of the speeds of leaving and of touch, what is lost of it, and by which share the largest force is above
     the closed form; by which share, without sign, the wall's impulse is off what the head's change of speed and the
@@ -45,7 +45,8 @@ def mass(run: Run) -> float:
 def closed_form_peak(run: Run) -> float:
     """Return the largest force of an undamped wall on a head under a constant force F, in N.
 
-    It comes with m v^2 / 2 = F d, and the spring takes that and the work of F on its way: f = F + sqrt(F^2 + k m v^2).
+    It comes with m v^2 / 2 = F d, and the spring takes that and the energy that F adds on its way:
+    f = F + sqrt(F^2 + k m v^2).
     """
     wall, drive = run.config["environment"], float(run.config["controller"]["torques"][_ALONG])
     return drive + math.sqrt(drive**2 + 2.0 * float(wall["stiffness"]) * drive * float(wall["distance"]))
@@ -72,7 +73,7 @@ def spring_force(run: Run) -> float:
 
 
 def unrest(run: Run) -> float:
-    """Return how far the force goes up and down in the last tenth of a run, in N."""
+    """Return the peak-to-peak force in the last tenth of a run, in N."""
     force = _wall_force(run)
     return float(np.ptp(force[-len(force) // 10 :]))
 

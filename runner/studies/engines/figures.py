@@ -27,12 +27,12 @@ def tip_distance(run: Run, reference: Run) -> float:
 
 
 def share_of(run: Run, other: Run, reference: Run) -> float:
-    """Return how far a run is from another one, as a share of how far it is from a reference."""
+    """Return the distance of a run from another one over its distance from a reference."""
     return tip_distance(run, other) / tip_distance(run, reference)
 
 
 def acceleration_off(run: Run) -> float:
-    """Return how far a MuJoCo run's accelerations are from Pinocchio's at random states at most, as a share."""
+    """Return the largest relative difference of a MuJoCo run's accelerations from Pinocchio's at random states."""
     return difference(run.model, mujoco_of(run)).acceleration
 
 
@@ -52,7 +52,7 @@ def orders(runs: Mapping[str, Run], coarse: str, fine: str, *plants: str) -> lis
 
 
 def apart_as_share(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
-    """Return how far a plant is from another one at 1 ms on each arm, as a share of its error."""
+    """Return the distance of a plant from another one at 1 ms on each arm, relative to its error."""
     return [
         of_run(runs, f"{plant} from {other}, {arm}", share_of, "1", *names, reference)
         for arm, reference in _arms(runs)
@@ -66,7 +66,7 @@ def _arms(runs: Mapping[str, Run]) -> list[tuple[str, str]]:
 
 
 def tracking_error_apart(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
-    """Return the difference of the largest axis errors on two plants on each arm, as a share."""
+    """Return the relative difference of the largest axis errors on two plants, on each arm."""
     return [
         Measured(f"{plant} from {other}, {arm}", _apart(one.run, runs[f"closed/{arm}/{other}"]))
         for one in found(runs, f"closed/{{arm}}/{plant}")
@@ -84,7 +84,7 @@ def distances(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]
 
 
 def common_digits(run: Run, other: Run) -> str:
-    """Return how many digits of the largest axis error two runs have in common, as a cell of a table."""
+    """Return the number of equal digits in the largest axis errors of two runs, as a cell of a table."""
     off = _apart(run, other)
     return "all" if off == 0.0 else "–" if math.isnan(off) else str(max(math.floor(-math.log10(off)), 0))
 

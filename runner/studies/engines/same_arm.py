@@ -37,7 +37,7 @@ class Compared:
         condition: Largest condition number of its mass matrix.
         bullet: PyBullet from Pinocchio.
         mujoco: MuJoCo from Pinocchio.
-        compiled: Change of speed in a Runge-Kutta step, compiled code from Pinocchio, as a share.
+        compiled: Change of speed in a Runge-Kutta step, relative difference of compiled code from Pinocchio.
     """
 
     name: str
@@ -87,7 +87,7 @@ def worst(compared: list[Compared]) -> dict[str, Measured]:
 
 
 def textbook(runs: Mapping[str, Run]) -> Measured:
-    """Return how far the engines' mass matrices of the two links are from the textbook's formula, as a share."""
+    """Return the largest relative difference of the engines' mass matrices of the two links from the textbook's."""
     run = runs[f"open/{_TEXTBOOK}/MuJoCo Euler/0.001"]
     model, bullet, mujoco = run.model, bullet_of(run), mujoco_of(run)
     try:

@@ -20,7 +20,7 @@ _SPEED, _ACCELERATION = 1.0, 10.0  # of random states, per joint: rad/s or m/s, 
 
 @dataclass(frozen=True)
 class Difference:
-    """How far an engine is from Pinocchio, as shares, the largest over the states.
+    """Relative differences of an engine from Pinocchio, the largest over the states.
 
     Attributes:
         mass: Of the mass matrix; Frobenius norm.
@@ -57,7 +57,7 @@ def random_states(model: RobotModel) -> list[State]:
 
 
 def difference(model: RobotModel, engine: Bullet | Mujoco) -> Difference:
-    """Return how far an arm in an engine is from the same in Pinocchio."""
+    """Return the differences of an arm in an engine from the same arm in Pinocchio."""
     arm, data = model.pin_model, model.pin_model.createData()
     worst = np.zeros(3)
     for q, dq, tau in random_states(model):
@@ -72,5 +72,5 @@ def difference(model: RobotModel, engine: Bullet | Mujoco) -> Difference:
 
 
 def share(value: FloatArray, exact: FloatArray) -> float:
-    """Return how far an array is from another one, as a share of its norm."""
+    """Return the relative difference of an array from another one, by their norms."""
     return float(np.linalg.norm(value - exact) / np.linalg.norm(exact))

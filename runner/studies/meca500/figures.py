@@ -46,7 +46,7 @@ def turns(run: Run) -> FloatArray:
 
 
 def displacement(run: Run) -> FloatArray:
-    """Return how far the tip has gone and turned since the first row, shape (T, 6), in m and rad."""
+    """Return the tip's translation and rotation since the first row, shape (T, 6), in m and rad."""
     tip = run.vector("tip")
     return np.hstack([tip - tip[0], turns(run)])
 
@@ -84,10 +84,10 @@ def servo_compliance(run: Run) -> FloatArray:
 
 
 def bounces(run: Run) -> bool:
-    """Tell whether contact is unstable as observed.
+    """Return True if contact is observed to be unstable.
 
-    It is where in the last third of a run the tip leaves the wall, or the force swings more widely than in the third
-    before.
+    It is unstable if in the last third of a run the tip leaves the wall, or if the force swings more widely than in
+    the third before.
     """
     force = -wrenches(run, "external")[:, 0]
     third = len(force) // 3
@@ -126,7 +126,7 @@ def error(*names: str) -> Callable[[Calibration], float]:
 
 
 def predicted(*names: str) -> Callable[[Calibration], float]:
-    """Return what the covariances say of `error`."""
+    """Return the standard deviation of `error` by the covariances."""
     return lambda done: float(np.sqrt(np.mean(np.sum(done.values("deviations", *names) ** 2, axis=1))))
 
 
@@ -150,7 +150,7 @@ def nees_of(done: Calibration) -> dict[str, str]:
 
 
 def varied(words: Mapping[str, str]) -> Column:
-    """Return a column with what is varied in KIND/VARIATION/LEVEL, in words."""
+    """Return a column with the varied quantity of KIND/VARIATION/LEVEL, as text."""
     return Column("varied", lambda _, row: words[row.name.split("/")[1]])
 
 
@@ -201,7 +201,7 @@ def as_felt(run: Run) -> FloatArray:
 def forces(run: Run) -> dict[str, float]:
     """Return the forces against the way into a wall, in N, how far in the spring's rest is led, in m, and shares.
 
-    The force felt at the end is held against the wall's stiffness times the depth of the tip, and against the springs
+    The force felt at the end is compared with the wall's stiffness times the depth of the tip, and against the springs
     of law, wall and servos in series: off_depth and off_series say by which share it is above them.
     """
     wall, trajectory = run.config["environment"], run.config["trajectory"]
@@ -237,10 +237,10 @@ def joint_speeds(runs: Runs, run: str) -> list[Series]:
 
 
 def limits(run: Run) -> dict[str, Any]:
-    """Return how close a run comes to limits, and what it says of itself.
+    """Return a run's distances from limits, and its warnings.
 
     margin to a position limit in rad, below zero beyond it; as shares of the speed limit the largest speed and change
-    of speed from tick to tick; the smallest singular value of the tip's Jacobian as a share of that at the start.
+    of speed from tick to tick; the smallest singular value of the tip's Jacobian over that at the start.
     """
     model, q = run.model, run.joints("q")
     speeds = run.joints("dq") / model.velocity_limits

@@ -49,7 +49,7 @@ def frequency_response(law: Admittance, frequencies: FloatArray) -> ComplexArray
 
 
 def sampled_frequency_response(law: Admittance, period: float, frequencies: FloatArray) -> ComplexArray:
-    """Return what the sampled law answers to a sampled sine, sample by sample, shape (W, 6).
+    """Return the frequency response of the sampled law, sample by sample, shape (W, 6).
 
     It is [1, 0] (z - Phi)^-1 Gamma at z = exp(i omega h); holding the load costs about half a period, h, of lag. The
     frequencies are those of frequency_response, below pi / h.
@@ -79,7 +79,7 @@ def fitted_response(run: Run) -> ComplexArray:
 
 
 def sine(run: Run) -> dict[str, Any]:
-    """Return how a run under a sine answers, each axis over the analytic answer as a text by its name.
+    """Return the answer of a run under a sine; that of each axis over the analytic one is a string, by its name.
 
     In per cent: how far an axis is off_sampled, the sampled law with the give of servos where there are some, and
     off_continuous, and what a delay of half a period makes; samples that a period of the sine holds; and how many times
@@ -131,5 +131,5 @@ def _phase(response: ComplexArray) -> FloatArray:
 
 
 def _give(run: Run) -> FloatArray:
-    """Return what the servos' springs add to x / f of each axis, under the loads of all, shape (6,)."""
+    """Return the compliance that the servos' springs add on each axis, x / f under the loads of all, shape (6,)."""
     return servo_compliance(run) @ loads_of(run) / loads_of(run)

@@ -25,16 +25,16 @@ _CASES = ("nothing taken off", "biases alone", "identified tool and biases")
 
 
 def identified(done: Calibration) -> dict[str, float]:
-    """Return the largest relative error in the first repetition, and in how many cases an interval holds the truth.
+    """Return the largest relative error in the first repetition, and the intervals that hold the truth, in per cent.
 
-    The latter in per cent, as is what an interval is to hold.
+    `interval` is the nominal value of the latter.
     """
     relative = np.abs(done.values("errors")[0]) / np.abs(_truth(done))
     return {"relative": float(relative.max()), "held": 100.0 * float(np.mean(_held(done))), "interval": _INTERVAL}
 
 
 def parameters(calibrations: Calibrations, name: str, caption: str) -> Table:
-    """Return the identified tool and sensor beside the truth."""
+    """Return the identified tool and sensor with the true ones."""
     done, exact = calibrations[name], calibrations[_EXACT]
     rows = []
     for column, value in enumerate(done.truth):
@@ -67,7 +67,7 @@ def choice() -> Column:
 
 
 def refused(caption: str) -> Table:
-    """Return which sets of orientations are refused, and why."""
+    """Return the refused sets of orientations, with the reasons."""
     quarters = np.arange(4) * np.pi / 2
     sets = {
         "2 orientations": [np.zeros(3), np.array([1.0, 0.0, 0.0])],
@@ -105,7 +105,7 @@ def left_over(calibrations: Calibrations, name: str) -> list[list[str]]:
 
 
 def left_over_panels(calibrations: Calibrations, name: str) -> list[Panel]:
-    """Return what compensation leaves over how far the flange's z axis is from straight down."""
+    """Return panels of the wrench left by compensation, over the angle of the flange's z axis from straight down."""
     orientations, left = _left_over(calibrations[name])
     tilt = np.degrees(np.arccos(np.clip(-orientations[:, 2, 2], -1.0, 1.0)))
     order = np.argsort(tilt)
@@ -121,7 +121,7 @@ def left_over_panels(calibrations: Calibrations, name: str) -> list[Panel]:
 
 
 def weighed(runs: Runs, pattern: str, caption: str) -> Table:
-    """Return the identification from the plant's own reaction at the tool's joint, in place of the sensor's model."""
+    """Return the identification from the plant's own reaction at the tool's joint, instead of the sensor's model."""
     at_rest = [each.run for each in found(runs, pattern)]
     first = at_rest[0]
     flange = RobotModel(first.urdf, first.config["robot"]["tip"], first.config["gravity"])
@@ -137,7 +137,7 @@ def weighed(runs: Runs, pattern: str, caption: str) -> Table:
 
 
 def misprints(calibrations: Calibrations) -> dict[str, str]:
-    """Return what the equations as printed and right give of exact readings, as texts."""
+    """Return the results of the printed and the right equations from exact readings, as strings."""
     exact = calibrations[_EXACT]
     truth, R, gravity = _truth(exact), _orientations(exact), float(exact.config["gravity"])
     readings = exact_readings(truth, R, gravity)
@@ -169,7 +169,7 @@ def angles(calibrations: Calibrations, angle: float) -> list[str]:
 
 
 def exact_readings(parameters: FloatArray, orientations: FloatArray, gravity: float) -> FloatArray:
-    """Return what a sensor without noise reads of a tool at rest, by what a calibration estimates, shape (N, 6)."""
+    """Return noiseless readings of a tool at rest, by the parameters that a calibration estimates, shape (N, 6)."""
     mass, theta, (r, F_0, M_0) = parameters[0], parameters[1], np.split(parameters[2:], 3)
     weight = mass * gravity * np.array([np.cos(theta), np.sin(theta), 1.0])
     forces = (force_matrix(orientations) @ np.concatenate([weight, F_0])).reshape(-1, 3)
@@ -206,7 +206,7 @@ def _orientations(done: Calibration) -> FloatArray:
 
 
 def _held(done: Calibration) -> np.ndarray:
-    """Return whether each interval of each repetition holds the truth, shape (repetitions, 11)."""
+    """Return True for each interval of each repetition that holds the truth, shape (repetitions, 11)."""
     return np.abs(done.values("errors")) < _HALF * done.values("deviations")
 
 

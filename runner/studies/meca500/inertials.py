@@ -25,7 +25,7 @@ def masses(runs: Runs) -> list[list[str]]:
     """Return the masses of each link that moves, and of all, in kg, their ratio, and the set of the larger one."""
     first, second = (runs[f"inertials/{name}"] for name in _SETS)
     pairs = _moving(first, second)
-    pairs["all that move"] = (sum(pair[0] for pair in pairs.values()), sum(pair[1] for pair in pairs.values()))
+    pairs["all moving ones"] = (sum(pair[0] for pair in pairs.values()), sum(pair[1] for pair in pairs.values()))
     return [
         [link, number(a), number(b), number(max(a, b) / min(a, b)), list(_SETS.values())[int(b > a)]]
         for link, (a, b) in pairs.items()

@@ -34,7 +34,7 @@ _TURNED = {
 
 
 def equations() -> dict[str, Measured]:
-    """Return how many equations are right, wrong and lost, and in how many postures that is checked."""
+    """Return the numbers of right, wrong and lost equations, and of the configurations in which they are checked."""
     checked = _checked()
     total = counts(checked)
     cells = [cell for name in _SIZES for row in elements(name, "").rows for cell in row[1:]]
@@ -42,8 +42,8 @@ def equations() -> dict[str, Measured]:
         _readable(checked, rows) for rows in (r"T_\d\d", "J_g._[012]", "J_g._[345]")
     )
     found = {
-        "postures": ("postures in which the table of the arm is checked", _COUNT),
-        "samples": ("postures in which the printed elements are checked", _SAMPLES),
+        "postures": ("configurations in which the table of the arm is checked", _COUNT),
+        "samples": ("configurations in which the printed elements are checked", _SAMPLES),
         "all": ("equations", len(checked)),
         "right": ("equations right as printed", total["correct"]),
         "emended": ("equations right after emendation", total["correct after emendation"]),
@@ -56,7 +56,7 @@ def equations() -> dict[str, Measured]:
         "linear_wrong": ("wrong ones of the linear rows", of_linear),
         "angular": ("readable equations of the angular rows", angular),
         "angular_wrong": ("wrong ones of the angular rows", of_angular),
-        "axes": ("those that are the joint's axis without terms that bear an angle", _axes(checked)),
+        "axes": ("those that are the joint's axis without terms that hold an angle", _axes(checked)),
     }
     return {key: Measured(words, count) for key, (words, count) in found.items()}
 
@@ -81,7 +81,7 @@ def frame_off(runs: Runs, case: str) -> list[Measured]:
 
 
 def table_one(runs: Runs) -> list[list[str]]:
-    """Return how far frame 6 is off by Table 1 with and without its lost turns: a row for each case."""
+    """Return the error of frame 6 by Table 1 with and without its lost turns: a row for each case."""
     return [[case, *(number(off.value, rounding=_NOTHING) for off in frame_off(runs, case))] for case in _TURNED]
 
 
@@ -103,7 +103,7 @@ def _checked() -> list[CheckedEquation]:
 
 
 def _readable(checked: Sequence[CheckedEquation], names: str) -> tuple[int, int]:
-    """Return how many equations for elements of such names can be read, and how many of these are wrong."""
+    """Return the number of readable equations for elements of such names, and the number of wrong ones."""
     found = [
         each.verdict
         for each in checked
@@ -113,7 +113,7 @@ def _readable(checked: Sequence[CheckedEquation], names: str) -> tuple[int, int]
 
 
 def _axes(checked: Sequence[CheckedEquation]) -> int:
-    """Return how many wrong equations of the angular rows are right where every bare angle is zero."""
+    """Return the number of wrong equations of the angular rows that are right if every bare angle is zero."""
     wrong = {each.entry.id for each in checked if each.verdict == "wrong as printed"}
     found = 0
     for part in parts("meca500"):

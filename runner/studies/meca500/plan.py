@@ -40,7 +40,7 @@ def computed_runs() -> dict[str, Overrides]:
 
 
 def calibrations(given: Mapping[str, Overrides]) -> dict[str, Overrides]:
-    """Return the overrides of every calibration by name; each draws from a seed of its own.
+    """Return the overrides of every calibration by name; each draws from a separate seed.
 
     With one seed for all they would be the same draws rescaled, and what is counted over them one test. The level of a
     grid that is the base case is the base case itself, which is carried out once.

@@ -22,12 +22,12 @@ from runner.study.prose.patterns import found
 
 @once
 def contact(run: Run) -> dict[str, float]:
-    """Return what is predicted of a run at a wall and what it shows.
+    """Return predictions for a run at a wall, and its observed outcome.
 
     Stiffnesses in N/m: wall, ideal and late, the bounds of ideal joints that act at once or a tick late, and bound,
     that of the run's own joints. Ratios: over, wall to bound; rule, ideal to 2 B / h; behind, bound to ideal; off is
     how far the wall is from the bound, in per cent. radius is the spectral radius of the loop behind servos, and
-    saturated the largest share of ticks that one of them is at its limit. The rest is true or not: that it
+    saturated the largest fraction of ticks that one of them is at its limit. The rest is true or not: that it
     is beyond the bound, that it bounces, that the one says the other, and both.
     """
     own_law, wall = law_of(run), float(run.config["environment"]["stiffness"])
@@ -78,7 +78,7 @@ def softest_unstable(*cases: Run) -> str:
 
 
 def as_predicted(*cases: Run) -> str:
-    """Return how many of some runs bounce or not as predicted."""
+    """Return the number of runs that bounce or not as predicted, out of all given, as text."""
     return f"{sum(contact(run)['right'] for run in cases):g} of {len(cases)}"
 
 

@@ -18,10 +18,10 @@ _SHOWN = ("kinematic, 1 ms", "kinematic, 16.7 ms", "servo, 1 ms", "servo, 16.7 m
 
 @once
 def step(run: Run) -> dict[str, Any]:
-    """Return the peak as a text, and as shares of it the largest distance from the analytic answer and what makes it.
+    """Return the peak as a string, and relative to it the largest distance from the analytic answer and its parts.
 
-    The error is that of the answer joined by straight lines, error_at_ticks that at the ticks alone. give is how far
-    servos give way at rest by the closed form, and beyond_give how far that and the error are apart.
+    error is that of the answer joined by straight lines, and error_at_ticks that only at the ticks. give is the servos'
+    deflection at rest by the closed form, and beyond_give the difference between it and the error.
     """
     index, times = _pushed(run), np.linspace(0.0, run.t[-1], 3001)
     answer = displacement(run)[:, index]
@@ -40,7 +40,7 @@ def step(run: Run) -> dict[str, Any]:
 
 
 def kept(shorter: float) -> Callable[[Run], float]:
-    """Return which share of its stiffness the last servo keeps, in per cent, with a period so many times as long."""
+    """Return the stiffness that the last servo keeps, in per cent, with a period `shorter` times as long."""
 
     def share(run: Run) -> float:
         inertia = np.diagonal(run.model.mass_matrix(run.joints("q")[0]))
@@ -50,7 +50,7 @@ def kept(shorter: float) -> Callable[[Run], float]:
 
 
 def answers(runs: Runs) -> list[Panel]:
-    """Return the answers of the six axes, the analytic ones beside them."""
+    """Return the answers of the six axes, with the analytic ones."""
     panels = []
     for index, axis in enumerate(AXES):
         found = {case: runs[f"step/{case}/{axis}"] for case in _SHOWN}
@@ -60,7 +60,7 @@ def answers(runs: Runs) -> list[Panel]:
         series = [Series("analytic", times - begin, 1e3 * _expected(first, times), "dashed")]
         for case, run in found.items():
             moved = 1e3 * displacement(run)[:, index]
-            style = "points" if case == "kinematic, 16.7 ms" else "line"  # of which the line would hide the others
+            style = "points" if case == "kinematic, 16.7 ms" else "line"  # a line would hide the others
             series.append(Series(case, run.t - begins[case], moved, style))  # type: ignore[arg-type]
         label = f"displacement ({'mm' if index < 3 else 'mrad'})"
         panels.append(Panel(axis, "time since the push (s)", label, series, x_range=(-0.02, 0.4)))

@@ -30,7 +30,7 @@ def power_of_spread(calibrations: Calibrations) -> Measured:
 
 
 def shared_pose(calibrations: Calibrations, name: str) -> dict[str, Measured]:
-    """Return what becomes of errors where pose 1 is taken as new in each row, which all hold it, or as no other."""
+    """Return predicted errors: with rows taken as independent, with pose 1 shared, and with no pose singled out."""
     done = calibrations[name]
     model = flange_of(done)
     poses = np.array([model.tip_pose(q) for q in done.postures])
@@ -70,20 +70,20 @@ def independent_rows_covariance(poses: FloatArray, tips: FloatArray) -> FloatArr
 
 
 def common_point_covariance(poses: FloatArray, tips: FloatArray) -> FloatArray:
-    """Return the covariance of p where R_k p - c = -P_k is solved for p and c, shape (3, 3), in m^2, likewise."""
+    """Return the covariance of p where R_k p - c = -P_k is solved for p and c, shape (3, 3), in m^2."""
     A = np.vstack([np.hstack([pose[:3, :3], -np.eye(3)]) for pose in poses])
     blocks = np.linalg.pinv(A)[:3].reshape(3, len(poses), 3).transpose(1, 0, 2)
     return np.asarray(np.sum(blocks @ tips @ blocks.transpose(0, 2, 1), axis=0))
 
 
 def refused(calibrations: Calibrations, caption: str) -> Table:
-    """Return which sets of poses are refused, and why."""
+    """Return the refused sets of poses, with the reasons."""
     tip = np.array(calibrations[f"{_KIND}/base"].config["robot"]["tool"]["tip"])
     axis = np.array([0.0, 0.6, 0.8])
     attempts = {
         "2 poses": [np.zeros(3), 0.5 * axis],
         "4 poses turned about one axis by 0, 20, 40 and 60 deg": [np.radians(20.0 * k) * axis for k in range(4)],
-        "4 poses turned about one axis but for 0.2 deg": [
+        "4 poses turned about one axis, up to 0.2 deg": [
             np.radians(20.0 * k) * axis + np.radians(0.2) * np.eye(3)[k % 3] for k in range(4)
         ],
         "4 poses tilted by 0.1 deg": [np.radians(0.1) * v for v in (*np.eye(3), -np.ones(3) / np.sqrt(3.0))],

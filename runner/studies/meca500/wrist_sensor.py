@@ -21,13 +21,13 @@ from runner.study.run_values import values
 def reaction(run: Run) -> dict[str, float]:
     """Return the tool's weight, how far the reaction at the end is off it, in N, and how far it is off the balance.
 
-    Of the tool's rigid-body balance the reaction's force is off by force in motion, in N, and its moment along an axis
+    The reaction differs from the tool's rigid-body balance by force in motion, in N, and its moment along an axis
     by moment, in N m; force_at_rest and moment_at_rest are the largest differences along an axis at the end.
     """
     apart, tool = _apart(run), run.config["robot"]["tool"]
     weight = float(tool["mass"]) * float(run.config["gravity"])
     return {
-        "force": float(np.linalg.norm(apart[1:, :3], axis=1).max()),  # there is no reaction before the first step
+        "force": float(np.linalg.norm(apart[1:, :3], axis=1).max()),  # the first reaction follows the first step
         "moment": float(apart[1:, 3:].max()),
         "force_at_rest": float(apart[-1, :3].max()),
         "moment_at_rest": float(apart[-1, 3:].max()),
@@ -44,7 +44,7 @@ def power(runs: Runs, words: str, pattern: str) -> Measured:
 
 
 def parting(runs: Runs, pattern: str) -> list[Series]:
-    """Return how far the forces are apart over the speed of the fastest joint, tick by tick."""
+    """Return the distance between the forces over the speed of the fastest joint, tick by tick."""
     series = []
     for each in found(runs, pattern):
         speed = np.abs(each.run.joints("dq")).max(axis=1)[1:]
@@ -55,7 +55,7 @@ def parting(runs: Runs, pattern: str) -> list[Series]:
 
 
 def noise(runs: Runs, pattern: str) -> Table:
-    """Return what is left of readings at rest less bias and true load, against noise and quantisation."""
+    """Return the residuals of readings at rest, less bias and true load, with noise and quantisation."""
     at_rest = [each.run for each in found(runs, pattern)]
     sensor = ForceTorqueConfig.model_validate(at_rest[0].config["wrist_sensor"])
     seen = np.linalg.inv(wrench_transform(sensor.pose))
@@ -68,7 +68,7 @@ def noise(runs: Runs, pattern: str) -> Table:
     ]
     ratios = [float(row[3]) for row in rows]
     caption = (
-        f"What is left of a Mini40's readings is {min(ratios):.2f} to {max(ratios):.2f} times noise and quantisation; "
+        f"The residual of a Mini40's readings is {min(ratios):.2f} to {max(ratios):.2f} times noise and quantisation; "
         f"{len(left)} readings, in N and N m."
     )
     header = ["axis", "root mean square", "noise and quantisation", "ratio"]

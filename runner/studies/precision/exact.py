@@ -14,7 +14,7 @@ _ITERATIONS, _SETTLED = 60, 4e-16  # at most; the change relative to the state a
 
 
 class _Arm(Plant):
-    """The state of an arm that stands on the ground; see Plant.
+    """The state of an arm on the ground; see Plant.
 
     Args:
         model: The arm.

@@ -15,7 +15,7 @@ _ARMS = {"macro": "Macro", "combined": "Mini on Macro", "xarm7": "xArm7"}
 _CASES = {"free": "free", "control": "under control"}
 _PAIRS = [(case, arm) for arm in _ARMS for case in _CASES]
 _LABELLED = {"PyBullet": -1, "MuJoCo": 0, COMPILED: 0}  # places of the steps named in the figure
-_ROOM = (0.1, 100.0)  # around the errors, for what stands above a line
+_ROOM = (0.1, 100.0)  # around the errors, for labels above a line
 
 
 def plants(first: int, last: int) -> tuple[str, ...]:
@@ -46,7 +46,7 @@ def accuracy(runs: Mapping[str, Run], caption: str) -> Curves:
 
 
 def reference_table(runs: Mapping[str, Run], caption: str) -> Table:
-    """Return how far the ways to the solution are from each other."""
+    """Return a table of the differences between the ways to the solution."""
     header = ["another method (rad)", "coarser tolerance (rad)", "energy"]
 
     def cells(case: str, arm: str) -> list[str]:
@@ -73,7 +73,7 @@ def errors(runs: Mapping[str, Run], caption: str) -> Table:
 
 
 def knees(runs: Mapping[str, Run], caption: str) -> Table:
-    """Return below which step of each plant a smaller one is not worth its price, and the joint error left there."""
+    """Return the step of each plant below which a smaller one does not pay, and the joint error left there."""
 
     def cell(tried: list[Tried], _: float) -> str:
         at = knee(tried)

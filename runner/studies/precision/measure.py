@@ -49,7 +49,7 @@ class Interpreted(Rk4):
 
 
 def measure(outputs: Path) -> None:
-    """Work out the solutions unless a folder holds those of the same runs already; takes some seconds.
+    """Compute the solutions, in a few seconds, unless a folder holds those of the same runs.
 
     Raises:
         StoreError: if the file cannot be written.
@@ -78,7 +78,7 @@ def measure(outputs: Path) -> None:
 
 
 def load(path: Path) -> dict[str, Any] | None:
-    """Return what a folder holds; None where there is none that can be read."""
+    """Return the content of a folder; None if it cannot be read."""
     try:
         return read_json(path, "`runner reproduce precision` makes it again")
     except StoreError:
@@ -105,7 +105,7 @@ def _solved(steps: Mapping[str, RunConfig]) -> dict[str, Any]:
 
 
 def _interpreted(config: RunConfig, exact: Trace) -> dict[str, float]:
-    """Return how far Runge-Kutta by Pinocchio is from a solution, in rad and m, and what it takes, in s."""
+    """Return the errors of Runge-Kutta by Pinocchio from a solution, in rad and m, and its time, in s."""
     plant = Interpreted(config.arm.model, config.timing.step, config.timing.steps_per_tick)
     trace = _simulated(config, assemble(config), plant)
     return {

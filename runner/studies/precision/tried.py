@@ -72,13 +72,13 @@ def knee(tried: list[Tried]) -> Tried | None:
 
 
 def allowed_error(runs: Mapping[str, Run], case: str, arm: str) -> float:
-    """Return which error of the tip is taken as small enough, in m."""
+    """Return the error of the tip that is taken as small enough, in m."""
     run = found(runs, f"{case}/{arm}/{{plant={PLANT}}}/{{step}}")[0].run
     return _BAND * float(run.config["robot"]["settling_band"])
 
 
 def solutions(runs: Mapping[str, Run]) -> Mapping[str, Any]:
-    """Return the solution of each case and arm that lies beside the runs, with what measure.py adds to it.
+    """Return the solution of each case and arm, stored next to the runs, with the additions of measure.py.
 
     Raises:
         MissingError: if there are none, or those of other runs.
@@ -86,7 +86,7 @@ def solutions(runs: Mapping[str, Run]) -> Mapping[str, Any]:
     path = next(iter(runs.values())).folder.parent.parent / FILE
     record = _loaded(path, path.stat().st_mtime_ns) if path.is_file() else None
     if record is None or any(runs[name].hash != of for name, of in record["runs"].items()):
-        raise MissingError(f"{FILE}: not worked out for these runs; runner reproduce precision does it")
+        raise MissingError(f"{FILE}: not computed for these runs; runner reproduce precision does it")
     cases: Mapping[str, Any] = record["cases"]
     return cases
 

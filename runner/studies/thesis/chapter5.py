@@ -23,8 +23,8 @@ _WHOLE_BODY = (
     "Macro and Mini come out"
 )
 _DOES = {
-    "independent": "each follows a target of its own; the Mini keeps its offset at home, which turns with the wrist",
-    "independent_base": "each follows a target of its own; the Mini keeps its offset at home in the base frame, for "
+    "independent": "each follows a separate target; the Mini keeps its offset at home, which turns with the wrist",
+    "independent_base": "each follows a separate target; the Mini keeps its offset at home in the base frame, for "
     "which it reads the Macro's wrist",
     "one_way": "the Mini's target is what is left of the way from the Macro's measured end point to the desired tip",
     "two_way": "the Mini's target is what is left of the way from the Macro's measured end point to the desired tip, "
@@ -69,7 +69,7 @@ def steps(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Pictu
 
 
 def shares(runs: Mapping[str, Run], caption: str, number: str, *names: str) -> Curves:
-    """Return how Macro and Mini share the way to the desired tip in some runs, in x direction, a row for each."""
+    """Return curves of the ways of Macro and Mini to the desired tip, in x direction, a row for each run."""
     figures = [macro_mini_targets(runs[name], number, caption) for name in names]
     return replace(figures[0], panels=[panel for figure in figures for panel in figure.panels])
 
@@ -92,12 +92,12 @@ def spreads(runs: Mapping[str, Run], title: str, name: str, *metrics: str) -> li
 def macro_mini_targets(
     run: Run, number: str = "", caption: str = "", until: float | None = None, axis: str = "x"
 ) -> Curves:
-    """Return how the way to the desired tip is shared between the carrying arm and the riding one, along one axis.
+    """Return curves of the ways of Macro and Mini to the desired tip, along one axis.
 
     Args:
         run: A run of a robot with two stages.
         number: Number of the figure in the source.
-        caption: What is seen; "" takes a sentence of its own.
+        caption: What is seen; "" takes the default sentence.
         until: End of the time axis, in s; None shows the whole run.
         axis: The axis of the base frame: x, y or z.
     """
@@ -119,5 +119,5 @@ def macro_mini_targets(
         Panel(f"Positions in {axis} direction", "time (s)", f"{axis} (m)", positions),
         Panel(f"The {small}'s share of them", "time (s)", f"{axis} (m)", shares),
     )
-    caption = caption or f"How {big} and {small} share the way to the desired tip, in {axis} direction."
+    caption = caption or f"Ways of {big} and {small} to the desired tip, in {axis} direction."
     return Curves(caption, panels, origin=origin(run, number))

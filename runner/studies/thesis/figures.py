@@ -70,7 +70,7 @@ def _angle(value: float) -> str:
 
 
 def printed_matrices(runs: Mapping[str, Run], run: str, caption: str, mini: bool, samples: int) -> Table:
-    """Return how far the thesis' matrices, mended, and the model of an arm are apart at so many random states."""
+    """Return a table of the largest differences between the thesis' corrected matrices and an arm's model."""
     differences = compare(runs[run].model, mini, samples, np.random.default_rng(0))
     rows = [
         [f"${symbol}$", meaning, above_rounding(differences[symbol], unit)]
@@ -118,7 +118,7 @@ def at_rest(run: Run) -> list[float]:
 
 
 def count_diverging(run: Run) -> int:
-    """Return how many repetitions of a run diverge."""
+    """Return the number of diverging repetitions of a run."""
     return int(run.config["repetitions"]) - len(at_rest(run))
 
 
@@ -143,7 +143,7 @@ def mass_of(runs: Mapping[str, Run], name: str, words: str = "mass of the Mini")
 def around_the_break(runs: Mapping[str, Run], payload: str) -> tuple[str, str]:
     """Return the runs of the heaviest Mini with which one-way control works without noise, and of the next one.
 
-    It is broken where the tip errs more than ten times as much as that of the thesis' Mini. Where none works, or none
+    It is broken if the tip's error is above ten times that of the thesis' Mini. Where none works, or none
     is broken, both are one.
     """
     names = [one.name for one in found(runs, f"mass/{{mass}}/{payload}")]

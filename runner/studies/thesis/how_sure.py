@@ -55,13 +55,13 @@ def seeds(given: Sequence[Judged], words: str) -> Measured:
 
 
 def of_one_seed(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
-    """Return which share of the seeds alone would judge a claim otherwise, in per cent."""
+    """Return the fraction of single seeds that would judge a claim otherwise, in per cent."""
     each = _find(given, claim, preset)
     return Measured(words, each.share_otherwise(each.alone), "%")
 
 
 def of_groups(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
-    """Return which share of judgements by as many seeds as the study's would be another, in per cent."""
+    """Return the fraction of judgements by as many seeds as the study's that would differ, in per cent."""
     each = _find(given, claim, preset)
     return Measured(words, each.share_otherwise(each.drawn), "%")
 
@@ -77,7 +77,7 @@ def unanimous(given: Sequence[Judged], words: str) -> Measured:
 
 
 def other_by_plant(given: Sequence[Judged], words: str) -> Measured:
-    """Return how many of the study's own verdicts are not those of the seeds."""
+    """Return the number of the study's own verdicts that differ from those of the seeds."""
     return Measured(words, sum(each.verdict != each.own_verdict for each in given))
 
 

@@ -29,7 +29,7 @@ class Judged:
         values: Simulated value of each seed, shape (seeds,); infinite where it has none.
         printed: What the median of all seeds is compared with; None where there is nothing.
         verdict: Verdict on that median.
-        alone: Verdict on each seed alone.
+        alone: Verdict on each single seed.
         drawn: Verdicts on the medians of groups that are as large as the study's own run, drawn with replacement.
         own: Median of the study's own run, on the plant by which its claims are judged.
         own_verdict: Verdict on that.
@@ -46,11 +46,11 @@ class Judged:
     own_verdict: Verdict | None
 
     def otherwise(self, verdicts: _Verdicts) -> int:
-        """Return how many verdicts are not that of all seeds."""
+        """Return the number of verdicts that differ from that of all seeds."""
         return sum(verdict != self.verdict for verdict in verdicts)
 
     def share_otherwise(self, verdicts: _Verdicts) -> float | None:
-        """Return the share of these in per cent; None where there are none."""
+        """Return the differing verdicts in per cent; None if none are given."""
         return 100.0 * self.otherwise(verdicts) / len(verdicts) if verdicts else None
 
     def quantiles(self) -> FloatArray:
@@ -78,7 +78,7 @@ def judge_by_seeds(
         claim: The claim.
         claims: All claims of the study.
         seeds: The runs of many seeds, by the end of the experiment's name.
-        own: The study's own runs likewise.
+        own: The study's own runs, also by the end of the experiment's name.
         preset: The preset that both have.
     """
 

@@ -13,7 +13,7 @@ def speed_seen(run: Run) -> FloatArray:
 
 
 def speed_on_the_ground(run: Run) -> FloatArray:
-    """Return the speed of x_d - x_E, likewise."""
+    """Return the speed of x_d - x_E in the base frame between ticks, shape (T - 1,), in m/s."""
     return _speeds(run, np.broadcast_to(np.eye(3), (len(run.trace()), 3, 3)))
 
 

@@ -11,12 +11,12 @@ _LONGEST = 0.5  # s, over which it is measured, before the reach is lost
 
 
 def share_beyond(run: Run) -> float:
-    """Return for which share of a run the target is out of reach, in %."""
+    """Return the part of a run with the target out of reach, in %."""
     return 100.0 * float(np.mean(way_left(run) > run.config["controller"]["reach"]))
 
 
 def predicted(run: Run) -> float | None:
-    """Return the speed at which the Macro's damping bears what its law leaves out, in m/s."""
+    """Return the speed at which the Macro's damping balances the terms that its law omits, in m/s."""
     window, controller = _window(run), run.config["controller"]
     damping = 2.0 * float(controller["damping_ratio"]["macro"]) * float(controller["natural_frequency"]["macro"])
     return None if window is None else missing_acceleration(run, sum(window) // 2) / damping

@@ -21,24 +21,24 @@ def rate(run: Run) -> float:
 
 
 def bears(run: Run) -> float:
-    """Return the largest omega_n h that the delay, or the pattern of misses, of a run bears by the closed form."""
+    """Return the largest stable omega_n h under the delay, or the pattern of misses, of a run, by the closed form."""
     computation = run.config["plant"]["computation"]
     pattern = computation["miss"]
     return pattern_limit(sum(pattern)) if isinstance(pattern, list) else delay_limit(int(computation["delay"]))
 
 
 def as_predicted(run: Run) -> bool:
-    """Tell whether a run diverges, or not, as the closed form says."""
+    """Return True if a run diverges or not as the closed form predicts."""
     return failed(run) == (rate(run) > bears(run))
 
 
 def limits(runs: Mapping[str, Run], pattern: str) -> list[Series]:
-    """Return an upright line at the limit of each of some runs, which differ in it alone, as long as the axis."""
+    """Return an upright line, as long as the axis, at the limit of each of some runs, which differ only in it."""
     return _upright(bears(one.run) for one in found(runs, pattern))
 
 
 def miss_limits(runs: Mapping[str, Run], pattern: str) -> list[Series]:
-    """Return an upright line at the probability of a miss that each rate bears in the mean square."""
+    """Return an upright line at the probability of a miss up to which each rate is stable in the mean square."""
     return _upright(round(miss_limit(rate(one.run)), 9) for one in found(runs, pattern))
 
 
@@ -50,7 +50,7 @@ def _upright(places: Iterable[float]) -> list[Series]:
 
 
 def borne(run: Run) -> float:
-    """Return the probability of a miss that a run's rate bears in the mean square."""
+    """Return the probability of a miss up to which a run's rate is stable in the mean square."""
     return miss_limit(rate(run))
 
 

@@ -22,7 +22,7 @@ _KICK = 0.3  # s, after which the push of a run that rings is over
 _PEAKS = 2
 _GRID = 13  # points of a map
 _MAP_STEP = 2.5e-3  # s, of the plant
-_HEARD = 0.02  # of the largest peak, below which peaks tell nothing of one mode
+_HEARD = 0.02  # of the largest peak, below which peaks are ignored
 _SETTLED = 2e-3  # m
 _STILL = 1e-9  # m/s, of a desired motion that has ended
 _REST = 0.3  # s at the end of a run, over which the place is taken where the tip rests
@@ -39,13 +39,13 @@ def modes(runs: Mapping[str, Run], run: str, law: float) -> list[Series]:
 
 
 def lowest_mode(run: Run) -> float:
-    """Return the frequency of the Macro's lowest mode at home, with what rides on it held, in Hz."""
+    """Return the frequency of the Macro's lowest mode at home, with the joints mounted on it held, in Hz."""
     stiffness = float(run.config["plant"]["flexible_joints"]["stiffness"]["macro"])
     return float(np.sqrt(stiffness / np.linalg.eigvalsh(_mass(run))[-1]) / (2.0 * np.pi))
 
 
 def grows(run: Run) -> bool:
-    """Tell whether what moves at the end moves faster than half-way, as it does where a law is unstable."""
+    """Return True if the motion at the end is faster than half-way, which an unstable law causes."""
     if run.status == "failed":
         return True
     speed = np.abs(run.joints("dq")).max(axis=1)
@@ -60,7 +60,7 @@ def motors_bear(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
 
 
 def links_bear(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
-    """Return the natural frequency in rad/s that a first joint bears by encoders at links, against its resonance."""
+    """Return the largest stable natural frequency in rad/s of a first joint by encoders at links, by its resonance."""
     joints = runs[run].config["plant"]["flexible_joints"]
     link, motor = float(_mass(runs[run])[0, 0]), float(joints["motor_inertia"][0])
     share = float(joints["damping_ratio"]) * float(np.sqrt((link + motor) / motor))
@@ -68,7 +68,7 @@ def links_bear(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
 
 
 def map_of_motors(runs: Mapping[str, Run], run: str) -> list[Series]:
-    """Return where the law of a run is stable by encoders at the motors, over their inertia in kg m^2."""
+    """Return the stability map of a run's law by encoders at the motors, over their inertia in kg m^2."""
     inertias, frequencies = np.geomspace(0.4, 10.0, _GRID), np.geomspace(8.0, 100.0, _GRID)
     return stable_and_not(
         runs[run],
@@ -79,7 +79,7 @@ def map_of_motors(runs: Mapping[str, Run], run: str) -> list[Series]:
 
 
 def map_of_links(runs: Mapping[str, Run], run: str) -> list[Series]:
-    """Return where the law of a run is stable by encoders at the links, over the resonance of joint 1 in rad/s."""
+    """Return the stability map of a run's law by encoders at the links, over the resonance of joint 1 in rad/s."""
     resonances, frequencies = np.geomspace(12.0, 120.0, _GRID), np.geomspace(0.5, 12.0, _GRID)
     motor = float(runs[run].config["plant"]["flexible_joints"]["motor_inertia"][0])
     link = float(_mass(runs[run])[0, 0])
@@ -126,7 +126,7 @@ def damping_ratio(run: Run, bare: Run) -> float:
 
 
 def closed_damping(run: Run, bare: Run) -> float:
-    """Return what closed forms say of it: of goals without velocities, or of inertial damping; else 0."""
+    """Return the damping ratio by closed forms: for goals without velocities, or for inertial damping; else 0."""
     law = run.config["controller"]
     if law["coupling"] == "inertial_damping":
         return damping_by_gain(run, bare)(float(law["damping_gain"]))
@@ -149,7 +149,7 @@ def damping_by_gain(run: Run, bare: Run) -> Callable[[float], float]:
 
 
 def left_of_vibration(run: Run, unshaped: Run) -> float:
-    """Return how much joint 1 rings after a shaped move, over what it does after the same unshaped."""
+    """Return the vibration of joint 1 after a shaped move, over that after the same unshaped move."""
     return _rings(run) / _rings(unshaped)
 
 
@@ -166,7 +166,7 @@ def off_the_line(runs: Mapping[str, Run], pattern: str, unshaped: str, kind: Lit
 
 
 def rings_after(run: Run) -> float:
-    """Return how far the tip is from where it rests, at most, once its desired motion has ended, in m; NaN before."""
+    """Return the tip's largest distance from its rest, once its desired motion has ended, in m; NaN before."""
     error, t, ended = run.vector("error"), run.t, _first_at_rest(run)
     if ended is None:
         return float("nan")
@@ -224,6 +224,6 @@ def _shape(bare: Run) -> FloatArray:
 
 
 def _mass(run: Run) -> NDArray[np.float64]:
-    """Return the mass matrix of the Macro's joints at home, with what rides on it held, shape (3, 3)."""
+    """Return the mass matrix of the Macro's joints at home, with the joints mounted on it held, shape (3, 3)."""
     model = run.model
     return model.mass_matrix(np.zeros(model.nq))[:_MACRO, :_MACRO]

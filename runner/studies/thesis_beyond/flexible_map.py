@@ -17,11 +17,11 @@ _WIDTH = 1e-6  # rad and rad/s, of the central differences
 
 
 def radius(run: Run, changes: Mapping[str, Any]) -> float:
-    """Return how a small motion about the start of a run grows in a period of its law: the map's spectral radius.
+    """Return the spectral radius of the map of small motions about the start of a run over a period of its law.
 
     Args:
         run: A run of one loop on flexible joints.
-        changes: Values in place of those of its config, by dotted key.
+        changes: Values instead of those of its config, by dotted key.
     """
     closed = assemble(validate(Composed(_changed(run.config, changes))))
     try:
@@ -54,7 +54,7 @@ def radius(run: Run, changes: Mapping[str, Any]) -> float:
 def stable_and_not(
     run: Run, places: FloatArray, frequencies: FloatArray, changes: Callable[[float], Mapping[str, Any]]
 ) -> list[Series]:
-    """Return where a law is stable and where it is not, as points: a number against the natural frequency in rad/s.
+    """Return the stable and the unstable points of a law: a number against the natural frequency in rad/s.
 
     Args:
         run: A run of one loop on flexible joints.

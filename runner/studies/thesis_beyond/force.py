@@ -25,7 +25,7 @@ def push(run: Run) -> FloatArray:
 
 
 def rise_time(run: Run) -> float:
-    """Return how long the force takes from 10 % to 90 % of what is asked, in s; NaN where it never does."""
+    """Return the rise time of the force from 10 % to 90 % of the desired one, in s; NaN if it never rises so far."""
     force, asked, t = push(run), float(run.config["controller"]["force"]), run.t
     if not (force >= 0.9 * asked).any():
         return float("nan")
@@ -40,7 +40,7 @@ def closed_rise_time(run: Run) -> float:
 
 
 def bounces(run: Run) -> bool:
-    """Tell whether the force does not come to rest at what is asked."""
+    """Return True if the force does not come to rest at the desired one."""
     asked = float(run.config["controller"]["force"])
     return run.status == "failed" or bool(np.abs(push(run)[-_END:] - asked).max() > _BOUNCES * asked)
 
@@ -65,7 +65,7 @@ def stiffest_of(mass: float, force_gain: float, late: int) -> Callable[[float], 
 
 
 def speed_at_touch(run: Run) -> float:
-    """Return how fast a tip comes to the wall, in m/s; NaN where it does not."""
+    """Return the speed of a tip at its first touch of the wall, in m/s; NaN if it does not touch it."""
     row = _touch(run)
     if row is None:
         return float("nan")
@@ -93,13 +93,13 @@ def friction_while_sliding(run: Run) -> float | None:
 
 
 def along_the_push(run: Run) -> FloatArray:
-    """Return how far the tip has gone along a push at each row, in m."""
+    """Return the tip's displacement along a push at each row, in m."""
     tip, way = run.vector("tip"), _way(run)
     return np.asarray((tip - tip[0]) @ way)
 
 
 def beside_the_push(run: Run) -> float:
-    """Return how far the tip is beside the line of a push in the end, in m."""
+    """Return the tip's distance from the line of a push in the end, in m."""
     tip, way = run.vector("tip"), _way(run)
     moved = tip[-1] - tip[0]
     return float(np.linalg.norm(moved - way * (moved @ way)))
@@ -118,7 +118,7 @@ def _way(run: Run) -> FloatArray:
 
 
 def _slides(run: Run) -> NDArray[np.bool_]:
-    """Return which rows are in the middle of the motion along a wall."""
+    """Return True for each row in the middle of the motion along a wall."""
     t = run.t
     return np.asarray((t >= _SLIDES[0]) & (t <= _SLIDES[1]))
 

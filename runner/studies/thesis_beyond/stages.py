@@ -28,7 +28,7 @@ def mass_of_stage(stage: int, which: int) -> Callable[[Run], float]:
 
 
 def force_bandwidth(stage: int) -> Callable[[Run], float]:
-    """Return up to which frequency a stage can push on the stiffest wall that its period bears, in Hz."""
+    """Return the largest frequency of a stage's force on the stiffest stable wall of its period, in Hz."""
 
     def bandwidth(run: Run) -> float:
         period = float(list(run.config["controller"]["period"].values())[stage])
@@ -51,7 +51,7 @@ def least_gain(run: Run) -> float:
 
 
 def force_rise_time(run: Run) -> float:
-    """Return how long the force on a wall takes from 10 % to 90 % of what is asked, in s."""
+    """Return the rise time of the force on a wall from 10 % to 90 % of the desired one, in s."""
     return rise_time(run)
 
 

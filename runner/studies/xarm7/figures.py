@@ -56,7 +56,7 @@ def peak_speed(run: Run) -> float:
 
 
 def first_saturation(run: Run) -> tuple[int, float] | None:
-    """Return which joint is the first at its effort limit, counted from 0, and when, in s; None where none is."""
+    """Return the first joint at its effort limit, counted from 0, and its time, in s; None if none reaches it."""
     at_limit = _at_limits(run)
     if not at_limit.any():
         return None
@@ -71,7 +71,7 @@ def first_at_limit(run: Run) -> str:
 
 
 def ticks_at_a_limit(run: Run) -> str:
-    """Return the share of the ticks at which a joint is at its effort limit, as a cell of a table."""
+    """Return the ticks at which a joint is at its effort limit, in per cent, as a cell of a table."""
     return f"{100.0 * float(run.metrics['saturation_fraction'].median or 0.0):.3g} %"
 
 
@@ -93,7 +93,7 @@ def _at_limits(run: Run) -> np.ndarray:
 
 
 def nearest_to_its_limit(run: Run) -> str:
-    """Return which joint comes closest to its effort limit, or is the first at it, and how close, as a cell."""
+    """Return the joint that comes closest to its effort limit, or is the first at it, and its load, as a cell."""
     torques = np.abs(run.joints("tau"))[:-1].max(axis=0, initial=0.0)
     shares = torques / run.model.effort_limits
     saturated = first_saturation(run)
@@ -117,7 +117,7 @@ def flange_turn(run: Run) -> float:
 
 
 def second_drift(run: Run) -> float:
-    """Return how far the joints are in the end from where they were after the first period, the largest, in rad."""
+    """Return the largest joint displacement from the end of the first period to the end, in rad."""
     q = run.joints("q")
     after = int(np.searchsorted(run.t, float(run.config["trajectory"]["duration"]) - 1e-9))
     return float(np.abs(q[-1] - q[after]).max())

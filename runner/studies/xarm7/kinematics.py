@@ -16,7 +16,7 @@ from runner.studies.xarm7.equations.derivations.xarm7 import JOINTS, constants
 from runner.studies.xarm7.parts.three_joint_kinematics import BRANCHES, MOVING, Branch, ThreeJointArm
 
 CENTIMETRES = 100.0
-"""What one metre is in the report's unit of length."""
+"""One metre in the report's unit of length."""
 _TIP = ("P_ex", "P_ey", "P_ez")
 _INVERSE = ("q1", "p1", "p2", "M", "q4", "p3", "p4", "q2")  # in the order in which each takes those before it
 _LENGTHS = ("l1", "l2", "l3", "l4", "l5")
@@ -37,7 +37,7 @@ def _value(name: str, right: bool, values: Mapping[str, FloatArray]) -> FloatArr
 def printed_tip(q: FloatArray, right: bool) -> FloatArray:
     """Return P_e at rows of joint positions, shapes (N, 7) in rad to (N, 3) in m.
 
-    As printed q1, q5 and q2 stand where theta1 and theta2 do if it is put right, as in A14, A24 and A34.
+    As printed it holds q1, q5 and q2; corrected, theta1 and theta2 replace them, as in A14, A24 and A34.
     """
     values = constants(len(q)) | {f"q{joint + 1}": q[:, joint] for joint in range(JOINTS)}
     return np.stack([_value(name, right, values) for name in _TIP], axis=1) / CENTIMETRES

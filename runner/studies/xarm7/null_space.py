@@ -20,7 +20,7 @@ _ELBOW = 4  # the one of them that shows it
 def between_commands(run: Run) -> float | None:
     """Return the largest of these distances half way between commands, in m; None where servos move the joints.
 
-    Where none do, the joints move evenly from one command to the next.
+    If none do, the joints move evenly from one command to the next.
     """
     if run.config["plant"]["kind"] != "kinematic":
         return None
@@ -30,7 +30,7 @@ def between_commands(run: Run) -> float | None:
 
 
 def drifts(run: Run) -> FloatArray:
-    """Return how far the joints are from where they were a cycle before, after each, shape (cycles,), in rad."""
+    """Return the joints' displacement over each cycle, shape (cycles,), in rad."""
     return np.asarray(np.linalg.norm(np.diff(run.joints("q")[:: _cycle(run)], axis=0), axis=1))
 
 
@@ -46,7 +46,7 @@ def drift_by_cycle(runs: Mapping[str, Run], pattern: str) -> list[Series]:
 
 
 def in_last_cycle(signal: Signal) -> Callable[[Run], FloatArray]:
-    """Return a signal of the last cycle alone."""
+    """Return the last cycle of a signal."""
     return lambda run: trace_of(signal, run)[max(len(run.trace()) - _cycle(run) - 1, 0) :]
 
 
@@ -63,7 +63,7 @@ def gain(sought: Measured, plain: Measured) -> Measured:
 
 
 def aside(run: Run) -> float:
-    """Return how far the joints that lead the elbow out of the arm's vertical plane are from zero at the start."""
+    """Return the largest initial position of the joints that lead the elbow out of the arm's plane, in rad."""
     return float(np.abs(run.joints("q")[0, _ASIDE]).max())
 
 

@@ -12,7 +12,7 @@ from runner.store import Run
 from runner.studies.xarm7.figures import SHOULDER
 from runner.study.prose.patterns import found
 
-_PLANE = [1, 3, 5]  # the joints that turn in the arm's vertical plane
+_PLANE = [1, 3, 5]  # the joints in the arm's vertical plane
 _GRID = 12  # angles of each, where the search for the widest posture begins
 
 
@@ -28,7 +28,7 @@ def largest_payloads(torque: FloatArray, per_kilogram: FloatArray, limits: Float
 
 
 def stretched(run: Run) -> tuple[float, FloatArray]:
-    """Return how far the flange is from the first axis with a run's arm stretched out level, and what a joint bears.
+    """Return the flange's distance from the first axis with the arm stretched out level, and each joint's payload.
 
     The distance is in m; the payload with which a joint's static torque is its limit in kg, shape (nq,), inf for none.
     """
@@ -80,9 +80,9 @@ def _kilograms(mass: float) -> str:
 
 
 def asked(runs: Mapping[str, Run], group: str, largest: float) -> list[Series]:
-    """Return what the line asks of each joint as a share of its effort limit, over the payload in kg.
+    """Return each joint's largest torque on the line over its effort limit, by the payload in kg.
 
-    The names of two runs begin so whose joints go where they are told, without payload and with one.
+    Two runs on ideal joints have names that begin so: one without payload and one with it.
     """
     light, torque, added = _torques(runs, group)
     masses = np.linspace(0.0, largest, 51)
@@ -106,7 +106,7 @@ def lost_when(run: Run) -> str:
 
 
 def beyond_the_rating(runs: Mapping[str, Run]) -> list[Block]:
-    """Return a warning that tells of the payloads above the maker's rating; nothing where there are none."""
+    """Return a warning about payloads above the manufacturer's rating; empty if none is above it."""
     ours = [run for name, run in runs.items() if name.startswith("payload/")]
     texts = sorted({str(caveat["text"]) for run in ours for caveat in run.caveats if caveat["rule"] == "overload"})
     return [Notice("warning", "Beyond the rating", f"In these runs {'; '.join(texts)}.")] if texts else []

@@ -40,7 +40,7 @@ def apart_in(*signals: str) -> Callable[[Run, Run], float]:
 
 
 def home_tip(runs: Mapping[str, Run], run: str) -> list[float]:
-    """Return where the tip is at home, in m."""
+    """Return the tip's position at home, in m."""
     home: list[float] = runs[run].model.tip_position(np.array(runs[run].config["robot"]["home"])).tolist()
     return home
 

@@ -18,17 +18,17 @@ from runner.study.prose.patterns import found
 from runner.study.run_values import cell
 
 _COUNT, _SEED = 1000, 7  # of the random postures
-_ZERO = 7  # palette index of singular values that are zero but for rounding
+_ZERO = 7  # palette index of singular values that are zero except for rounding
 _METRICS = ("max_axis_error", "cross_track_error", "peak_joint_speed")
 
 
 @dataclass(frozen=True)
 class Inversion:
-    """What comes of (J^T J)^-1 J^T over some postures.
+    """Properties of (J^T J)^-1 J^T over some postures.
 
     Attributes:
         ranks: Rank of J^T J at each posture, shape (N,).
-        offs: |J X - 1|, X in place of J^+, where NumPy does not refuse to invert it; spectral norm, zero of J^+.
+        offs: |J X - 1|, X instead of J^+, if NumPy does not refuse to invert it; spectral norm, zero of J^+.
         right: The same of J^T (J J^T)^-1 at every posture, shape (N,).
     """
 
@@ -38,7 +38,7 @@ class Inversion:
 
 
 def invert(jacobians: FloatArray) -> Inversion:
-    """Take the printed pseudo-inverse of each of some Jacobians, shape (N, m, n), as NumPy does."""
+    """Take the printed pseudo-inverse of each of some Jacobians, shape (N, m, n), by NumPy."""
     unit = np.eye(jacobians.shape[1])
     offs: list[float] = []
     for J in jacobians:
@@ -54,7 +54,7 @@ def invert(jacobians: FloatArray) -> Inversion:
 
 
 def inversions(runs: Mapping[str, Run]) -> dict[tuple[str, str], Inversion]:
-    """Return what comes of it by the tip's task and by where the postures are: random, or on the line."""
+    """Return the inversions by the tip's task and by the kind of postures: random, or on the line."""
     model = runs["printed/position/working"].model
     everywhere = _true(model, random_postures(model, _COUNT, _SEED))
     return {
@@ -84,7 +84,7 @@ def inverse_rows(tried: Mapping[tuple[str, str], Inversion]) -> list[list[str]]:
 
 
 def inverse_values(tried: Mapping[tuple[str, str], Inversion]) -> dict[str, float | None]:
-    """Return what is concluded of them: cases, those refused, rank beyond J's rows, |J X - 1| of printed and right."""
+    """Return their summary: cases, those refused, rank beyond J's rows, |J X - 1| of printed and right."""
     results = tried.values()
     answers, cases = np.concatenate([result.offs for result in results]), sum(result.right.size for result in results)
     return {
@@ -115,7 +115,7 @@ def least_true_value(runs: Mapping[str, Run]) -> float:
 
 
 def largest_rounded_value(runs: Mapping[str, Run]) -> float:
-    """Return the largest of the others, which are zero but for rounding."""
+    """Return the largest of the others, which are zero except for rounding."""
     return max(float(np.max(each.y)) for each in _all_singular_values(runs) if each.style != "line")
 
 
@@ -153,7 +153,7 @@ def jacobians(model: RobotModel, postures: FloatArray, shifted: bool, mistaken: 
 def compare(runs: Mapping[str, Run], run: str) -> dict[str, FloatArray]:
     """Return Jacobians at random postures and at those along a run's line, shapes (N, 6, 7).
 
-    Those `as_printed`, with `angles` alone wrong, with the columns `shifted` alone, `fixed`, and the `true` ones;
+    Those `as_printed`, with only `angles` wrong, with only the columns `shifted`, `fixed`, and the `true` ones;
     `line_printed` and `line_true` along the line.
     """
     model = runs[run].model
@@ -167,7 +167,7 @@ def compare(runs: Mapping[str, Run], run: str) -> dict[str, FloatArray]:
 
 
 def column_rows(compared: Mapping[str, FloatArray]) -> list[list[str]]:
-    """Return how far each printed column is from the true one: a row for each."""
+    """Return the distance of each printed column from the true one: a row for each."""
     return [_column_row(compared, k, max(k - 1, 0)) for k in range(compared["true"].shape[2])]
 
 
@@ -207,11 +207,11 @@ def largest_column_error(runs: Mapping[str, Run], run: str, shifted: bool) -> fl
 
 
 def column_values(compared: Mapping[str, FloatArray]) -> dict[str, float]:
-    """Return what is concluded of the columns.
+    """Return a summary of the columns.
 
-    How far they are put right, and with the columns alone wrong from the true columns `before` them; the least of the
-    largest distances of each from its `own` true column; the `first` one's median; the least distance from the `last`
-    true one; the linear part's error along the line as a `share` of its norm; and smallest singular values there.
+    Largest differences of the `fixed` columns from the true ones, and of the shifted ones from those `before` them; the
+    least of the largest distances of each from its `own` true column; the `first` one's median; the least distance from
+    the `last` true one; the linear part's error along the line as a `share` of its norm; smallest singular values.
     """
     true, shifted, off = compared["true"], compared["shifted"], compared["as_printed"] - compared["true"]
     printed_line, true_line = compared["line_printed"], compared["line_true"]
@@ -229,7 +229,7 @@ def column_values(compared: Mapping[str, FloatArray]) -> dict[str, float]:
 
 
 def outcomes(runs: Mapping[str, Run]) -> list[list[str]]:
-    """Return what becomes of each run with the report's errors, and of the corrected law: a row for each."""
+    """Return the outcome of each run with the report's errors, and of the corrected law: a row for each."""
     rows = []
     for one in found(runs, "printed/{task}/{case}"):
         task, case = one.levels.values()
@@ -250,7 +250,7 @@ def _outcome(run: Run) -> list[str]:
 
 
 def with_the_inverse(runs: Mapping[str, Run]) -> dict[str, int]:
-    """Return how many runs take the inverse as printed, how many of them follow the line, and how many end early."""
+    """Return the numbers of runs with the inverse as printed: all, those on the line, and those that end early."""
     ours = [one.run for one in found(runs, "printed/{task}/{case=as printed|inverse alone}")]
     errors = [(run.median("max_axis_error"), line_length(run)) for run in ours]
     following = sum(error is not None and error < 0.1 * length for error, length in errors)

@@ -234,7 +234,7 @@ def test_every_arm_and_law_of_ours_has_its_section_and_words(made, whole):
     assert [each.title for each in arms.sections] == ["Macro", "Planar arm", "xArm7", "Panda"]
     assert len(laws.sections) == len(LAWS)
     told = texts(laws)
-    assert not {"A law from outside.", "not told here"} & set(told)
+    assert not {"A law from outside.", "not known here"} & set(told)
     assert {name.split("/")[1] for name in whole if name.startswith("first/")} == set(ARMS)
     assert {name.split("/")[4] for name in whole if name.startswith("first/")} == set(CONDITIONS)
 

@@ -157,5 +157,5 @@ def test_solutions_of_other_runs_are_refused(runs: Mapping[str, Run]) -> None:
     others = dict(runs)
     name = "free/macro/Runge-Kutta/0.008"
     others[name] = runs["control/macro/Runge-Kutta/0.01"]
-    with pytest.raises(MissingError, match="not worked out for these runs; runner reproduce precision does it"):
+    with pytest.raises(MissingError, match="not computed for these runs; runner reproduce precision does it"):
         tried.solutions(others)

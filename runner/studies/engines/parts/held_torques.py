@@ -19,7 +19,7 @@ class HeldTorquesConfig(StrictModel):
     Attributes:
         kind: Its name in the registry.
         period: Time between two ticks, in s.
-        torques: Of every joint or one for each, in N m, or in N where a joint slides.
+        torques: Of every joint or one for each, in N m, or in N for a prismatic joint.
     """
 
     kind: Literal["held_torques"]

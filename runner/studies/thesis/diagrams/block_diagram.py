@@ -26,7 +26,7 @@ _SIGN_PLACE = {"left": (-0.1, 0.1), "right": (0.1, 0.1), "top": (0.11, 0.08), "b
 
 @dataclass(frozen=True)
 class _Box:
-    """Where a node stands: centre and half of its size."""
+    """Place of a node: centre and half of its size."""
 
     centre: FloatArray
     half: FloatArray
@@ -91,7 +91,7 @@ def _route(edge: Edge, boxes: dict[str, _Box]) -> FloatArray:
 
 
 def _same_wire(edge: Edge, other: Edge, routes: dict[Edge, FloatArray]) -> bool:
-    """Return whether another signal leaves with this one and goes on beyond the point where this one turns off."""
+    """Return True if another signal leaves with this one and continues beyond the point where this one turns off."""
     if other is edge or (other.source, other.leave) != (edge.source, edge.leave):
         return False
     start, turn = routes[edge][1], routes[edge][2]
@@ -108,7 +108,7 @@ def _write_label(axes: Axes, edge: Edge, route: FloatArray) -> None:
         return
     start, end = max(pairwise(route), key=lambda pair: abs(float(pair[1][0] - pair[0][0])))
     length = abs(end[0] - start[0])
-    room = length if len(route) == 2 else min(length, 2.0)  # a long way bears its label near its source
+    room = length if len(route) == 2 else min(length, 2.0)  # a long way has its label near its source
     if edge.sign and edge.enter == "left" and len(route) == 2:
         room = min(room - 0.18, 0.8)  # leave the sign its place
     x = start[0] + np.sign(end[0] - start[0]) * room / 2.0

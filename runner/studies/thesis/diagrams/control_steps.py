@@ -42,7 +42,7 @@ class Step:
 
 
 def steps(schedule: str, beyond_reach: str) -> tuple[Step, ...]:
-    """Return what `MacroController` and a following `MiniController` do in each period, the first step first.
+    """Return the steps of `MacroController` and a following `MiniController` in each period, the first step first.
 
     Args:
         schedule: both, both arms move at any time; or turns, a period of the Macro's each.

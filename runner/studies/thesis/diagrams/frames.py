@@ -22,13 +22,13 @@ _LINK = 2.7  # size of the enlarged part, in lengths of an axis
 
 @dataclass(frozen=True)
 class _Part:
-    """What is drawn together: the whole arm, or its small end.
+    """Part of a drawing: the whole arm, or its small end.
 
     Attributes:
         line: Corners of the arm, shape (N, 3), in m.
         joints: Number, origin and axis of its joints.
         frames: Name and pose of its frames.
-        aside: How far frames at one place stand from it, sideways and upwards, in lengths of an axis.
+        aside: Offset of frames at one place from it, sideways and upwards, in lengths of an axis.
     """
 
     line: FloatArray
@@ -41,9 +41,8 @@ class _Part:
 def frame_assignment(model: RobotModel, first: int = 0, last: str = "E", camera: Camera | None = None) -> Figure:
     """Draw an arm at q = 0 with its joint axes and its D-H frames.
 
-    Frames whose origins coincide or nearly so are drawn beside them, each tied to its true place by a dotted line.
-    Where the outer joints are so close together that they could not be told apart (a small arm on a large one), they
-    are drawn once more, enlarged, and their frames there.
+    Frames whose origins coincide or nearly so are drawn next to them, each tied to its true place by a dotted line.
+    If the outer joints would overlap (a small arm on a large one), they are drawn again, enlarged, with their frames.
 
     Args:
         model: The robot.
@@ -76,7 +75,7 @@ def frame_assignment(model: RobotModel, first: int = 0, last: str = "E", camera:
     notes.insert(0, _draw_part(axes, camera, whole, length))
     notes = [note for note in notes if note]
     if notes:
-        axes.annotate(f"{'; '.join(notes)}: drawn beside their origin", (0.5, 0.0), (0, -6), "axes fraction",
+        axes.annotate(f"{'; '.join(notes)}: drawn next to their origin", (0.5, 0.0), (0, -6), "axes fraction",
                       "offset points", ha="center", va="top", fontsize=7.5, color=GREY)  # fmt: skip
     axes.autoscale_view()
     return figure
@@ -152,7 +151,7 @@ def _draw_detail(axes: Axes, camera: Camera, part: _Part, zoom: int, length: flo
 
 
 def _draw_part(axes: Axes, camera: Camera, part: _Part, length: float) -> str:
-    """Draw joints and frames; return which frames stand beside their place."""
+    """Draw joints and frames; return the names of frames drawn next to their place, as text."""
     for number, origin, axis in part.joints:
         _draw_joint(axes, camera, origin, axis, length, f"$q_{{{number}}}$")
     crowded = _draw_frames(axes, camera, part, length)
@@ -184,7 +183,7 @@ def _draw_joint(axes: Axes, camera: Camera, origin: FloatArray, axis: FloatArray
 
 
 def _draw_frames(axes: Axes, camera: Camera, part: _Part, length: float) -> list[tuple[str, ...]]:
-    """Draw all frames; return the names of those drawn beside their place, by place."""
+    """Draw all frames; return the names of those drawn next to their place, by place."""
     poses = np.array([pose for _, pose in part.frames])
     names = [name for name, _ in part.frames]
     middle = camera.project(part.line.max(axis=0) + part.line.min(axis=0)) / 2.0

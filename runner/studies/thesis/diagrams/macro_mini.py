@@ -209,7 +209,7 @@ def _add_mini_target(parts: _Parts, flags: _Flags) -> None:
         _add_base_offset(parts, flags)
         return
     if not flags.follows:
-        label = "Home posture $q_0$" if flags.coupling == "mini_held" else "Home offset $r_0$"
+        label = "Home configuration $q_0$" if flags.coupling == "mini_held" else "Home offset $r_0$"
         parts.nodes.append(Node("mini_target", "source", label, 3.3, _MINI))
         parts.edges.append(Edge("mini_target", "mini_controller"))
         return

@@ -62,7 +62,7 @@ def _draw_section(figure: Figure, axes: Axes, workspace: Workspace) -> None:
     edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
     mesh.set_mask(edges.max(axis=1) > 4.0 * outer / _CELLS)
     filled = axes.tricontourf(mesh, w, levels=MaxNLocator(9).tick_values(0.0, w.max()), cmap="viridis")
-    filled.set_rasterized(True)  # jagged outlines of many points: a picture of 10 kB in place of 150 kB of paths
+    filled.set_rasterized(True)  # jagged outlines of many points: a picture of 10 kB instead of 150 kB of paths
     angle = np.linspace(-np.pi / 2.0, np.pi / 2.0, 90)
     cos, sin = np.cos(angle), np.sin(angle)
     red: dict[str, Any] = {"color": _SINGULAR, "lw": 1.8, "clip_on": False, "zorder": 4}

@@ -80,7 +80,7 @@ def build(config: ThreeJointConfig, robot: Robot) -> tuple[Loop, ...]:
 
 
 def start_posture(config: ThreeJointConfig, robot: Robot, start: FloatArray) -> FloatArray:
-    """Return where the arm starts: the three joints' posture.
+    """Return the initial joint positions, by the three joints.
 
     Raises:
         numpy.linalg.LinAlgError: if the start cannot be reached.

@@ -30,7 +30,7 @@ BRANCHES = tuple(Branch(shoulder, elbow) for shoulder in (1, -1) for elbow in (1
 
 
 class ThreeJointArm:
-    r"""The xArm7 moved by joints 1, 2 and 4 alone (xArm7 report, section "inverse kinematic control").
+    r"""The xArm7 moved only by joints 1, 2 and 4 (xArm7 report, section "inverse kinematic control").
 
     With A = l4 cos theta1 + l5 cos(q6 - theta2), B = l4 sin theta1 - l5 sin(q6 - theta2), r = +-hypot(x, y) and
     z' = z - l1, the shoulder's plane holds two links, (l3, l2) and (A, B), and

@@ -47,7 +47,7 @@ class PrintedJacobian:
 
     Its columns are b_{i-1} x r_{i-1,E} over b_{i-1}, taken from the frame before each joint: as the constant part of
     the report's transforms comes first, that frame turns with the joint before, and column k is the true column k - 1.
-    The last true column appears nowhere, and the first stands there twice. The lengths l4 and l5 are multiplied by the
+    The last true column is missing, and the first appears twice. The lengths l4 and l5 are multiplied by the
     cosines and sines of q1, of q5 and of q2, where the constants theta1 and theta2 are meant.
 
     Args:
@@ -141,5 +141,5 @@ def build(config: AsPrintedConfig, robot: Robot) -> tuple[Loop, ...]:
 
 
 def start_posture(config: AsPrintedConfig, robot: Robot, start: FloatArray) -> FloatArray | None:
-    """Return where the arm stands at a trajectory's start: for a pose, with home's orientation."""
+    """Return the joint positions at a trajectory's start: for a pose, with home's orientation."""
     return task_start(config.task, robot, start)

@@ -22,7 +22,7 @@ _TURN = np.array([0.3, 0.0, 0.0])  # rad/s about the base's x axis
 
 
 def table() -> Consequence:
-    """Return where the printed table says that the flange is, on a joint motion from home."""
+    """Return the error of the flange's position by the printed table, on a joint motion from home."""
     angle = np.linspace(0, 0.5, 101)
     q = angle[:, None] * np.ones(meca500.JOINTS)
     rows = [replace(row, theta=0.0) for row in meca500.TABLE]
@@ -59,7 +59,7 @@ def _turn(jacobian: Callable[[FloatArray], FloatArray]) -> FloatArray:
 
 
 def summed_angles() -> Consequence:
-    """Return the attitude that the sum of joint angles along their axes tells, on a joint motion from home."""
+    """Return the attitude by the sum of joint angles along their axes, on a joint motion from home."""
     angle = np.linspace(0, 1, 101)
     q = angle[:, None] * np.array([0.5, -0.5, 0.5, 1.0, 0.5, 1.0])
     home = meca500.pose(np.zeros((1, meca500.JOINTS)))[0, :3, :3]
@@ -79,7 +79,7 @@ def swapped_axes() -> Consequence:
 
 
 def sensor_turn() -> Consequence:
-    """Return the force that a free tool seems to feel when the sensor's turn is taken from one function alone."""
+    """Return the force that a free tool seems to feel when the sensor's turn is taken from only one function."""
     degrees = np.linspace(-180, 180, 181)
     theta = np.radians(degrees)
     R = np.repeat(meca500.BY_MODEL.pose(_START[None])[:, :3, :3], len(theta), axis=0)
@@ -93,7 +93,7 @@ def sensor_turn() -> Consequence:
 
 
 def alignment() -> Consequence:
-    """Return how far a tool pushed along the aligned z axis strays when the rotation is taken as it is labelled."""
+    """Return the error of a tool pushed along the aligned z axis if the rotation is taken as labelled."""
     tilt = np.linspace(0, 60, 61)
     side = np.radians(tilt)
     t = np.column_stack([np.sin(side) / np.sqrt(2), np.sin(side) / np.sqrt(2), np.cos(side)])
@@ -109,7 +109,7 @@ def alignment() -> Consequence:
 
 
 def wrench() -> Consequence:
-    """Return the moment told at the tool's tip of a push, by the printed equation for M_p."""
+    """Return the moment of a push at the tool's tip, by the printed equation for M_p."""
     lever = np.linspace(0, 150, 61)
     push = np.tile([5.0, 0.0, 0.0], (len(lever), 1))
     shift = np.column_stack([0 * lever, 0 * lever, lever])

@@ -48,7 +48,7 @@ BY_MODEL = by_model(ARM.model)
 
 
 def symbols(count: int, generator: np.random.Generator) -> Symbols:
-    """Return what the report's names stand for at random configurations, each joint drawn from a full turn.
+    """Return the values of the report's names at random configurations, each joint drawn from a full turn.
 
     `theta1` to `theta6` are the joint positions in rad, `S1`, `C1` and so on their sines and cosines, `S23`, `C23` of
     the sum of the second and third. `R_6` and `P_6` are rotation and origin of frame 6, `T_55` frame 5 in itself.

@@ -62,7 +62,7 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
 
 
 def step_response(values: Symbols) -> Elements:
-    """Return what 1 / (M s^2 + B s + K) makes of a constant force, by partial fractions."""
+    """Return the response of 1 / (M s^2 + B s + K) to a constant force, by partial fractions."""
     M, B, K, f, t = (values[name].astype(complex) for name in "MBKft")
     root = np.sqrt(B**2 - 4 * M * K)
     slow, fast = (-B + root) / (2 * M), (-B - root) / (2 * M)

@@ -11,7 +11,7 @@ POSES = 4
 
 
 def symbols(count: int, generator: np.random.Generator) -> Symbols:
-    """Return tools held against a fixed point in four random orientations.
+    """Return tools that touch a fixed point in four random orientations.
 
     `R_1` to `R_4` are the flange's rotations and `P_1` to `P_4` its positions, shapes (T, 3, 3) and (T, 3); `p` is the
     tool tip in the flange and `X` the point in the base frame; `short` is a shorter tool in the same direction `t`.

@@ -30,7 +30,7 @@ Jacobian = Callable[[FloatArray], FloatArray]
 def _follow(arm: Arm, jacobian: Jacobian) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return times, joint positions and distances from the path of an arm led along the thesis' quintic by joint rates.
 
-    The joints move at J^+ (dx_d + k (x_d - x)), J as believed and the tip's position as it is, from home.
+    The joints move at J^+ (dx_d + k (x_d - x)), with the given J and the tip's true position, from home.
     """
     model = arm.model
     path = quintic_motion(model.tip_position(np.zeros(3)), _GOAL * arm.a[2], _DURATION)
@@ -52,7 +52,7 @@ def _right(arm: Arm) -> Jacobian:
 
 
 def lever_arms() -> Consequence:
-    """Return how the Macro follows its path by the columns of (3.6), and by the exchanged indices of J_ij."""
+    """Return the Macro's errors on its path by the columns of (3.6), and by the exchanged indices of J_ij."""
 
     def printed(q: FloatArray) -> FloatArray:
         names = frame_symbols(MACRO, q[None]) | {f"eps_{i}": np.ones(1) for i in (1, 2, 3)}
@@ -69,7 +69,7 @@ def lever_arms() -> Consequence:
 
 
 def mini_jacobian() -> Consequence:
-    """Return how the Mini follows its path by the printed J_v6."""
+    """Return the Mini's error on its path by the printed J_v6."""
 
     def printed(q: FloatArray) -> FloatArray:
         J = _right(MINI)(q)
@@ -83,7 +83,7 @@ def mini_jacobian() -> Consequence:
 
 
 def chained_tables() -> Consequence:
-    """Return where the two D-H tables, one behind the other, place the tip of the combined arm."""
+    """Return the error of the combined arm's tip by the two D-H tables, one behind the other."""
     angle = np.linspace(0.0, 1.0, 101)
     q = angle[:, None] * np.ones(6)
     real = tip_pose(COMBINED, q)[:, :3, 3]
@@ -96,7 +96,7 @@ def chained_tables() -> Consequence:
 
 
 def mini_reference() -> Consequence:
-    """Return where the tip comes to be when the Mini follows the difference in frame 0, the Macro on its path."""
+    """Return the tip's error if the Mini follows the difference in frame 0, with the Macro on its path."""
     times, q, _ = _follow(MACRO, _right(MACRO))
     turn = thesis_measures.base_of_mini(q)
     wanted = np.tile(_OFFSET, (len(times), 1))
@@ -106,7 +106,7 @@ def mini_reference() -> Consequence:
 
 
 def leaning_mini() -> Consequence:
-    """Return what the Mini does under its weight's torques: by the printed G, and with gravity turned into frame 3."""
+    """Return the Mini's errors under its weight's torques: by the printed G, and with gravity turned into frame 3."""
     g = along(thesis_measures.base_of_mini(_LEAN[None]).transpose(0, 2, 1), np.array([[0.0, 0.0, -9.81]]))
     times = np.arange(0.0, 0.3 + _STEP / 2, _STEP)
     whole, mini = COMBINED.model, MINI.model
@@ -129,7 +129,7 @@ def leaning_mini() -> Consequence:
 
 
 def gravity() -> Consequence:
-    """Return how far the Macro sags with s2 in the place of s23."""
+    """Return the sag of the Macro with s2 instead of s23."""
     degrees = np.linspace(-75, 75, 151)
     q = np.column_stack([np.full(len(degrees), angle) for angle in _POSTURE] + [np.radians(degrees)])
     c2, s2, s23 = np.cos(q[:, 1]), np.sin(q[:, 1]), np.sin(q[:, 1] + q[:, 2])
@@ -140,7 +140,7 @@ def gravity() -> Consequence:
 
 
 def _sag(q: FloatArray, compensated: FloatArray) -> FloatArray:
-    """Return how far the tip rests from its goal: Lambda omega_n^2 error = J^-T (G - what is compensated)."""
+    """Return the tip's distance from its goal at rest: Lambda omega_n^2 error = J^-T (G - what is compensated)."""
     model = MACRO.model
     distances = []
     for row, torque in zip(q, compensated, strict=True):

@@ -21,7 +21,7 @@ def symbols(count: int, generator: np.random.Generator) -> dict[str, FloatArray]
 
 
 def regular_symbols(count: int, generator: np.random.Generator) -> dict[str, FloatArray]:
-    """Return random states as `symbols` does, without those beside a singular posture of either arm.
+    """Return random states as `symbols` does, without those near a singular configuration of either arm.
 
     The determinant of the linear Jacobian is -c3 (c2 - s23) for the Macro, and alike for the Mini.
     """

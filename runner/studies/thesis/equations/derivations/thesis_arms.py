@@ -117,7 +117,7 @@ MACRO = Arm("macro", slice(0, 3), _HOME, (0.0, 0.0, 0.0), (0.0, 1.0, 1.0), _TWIS
 """The Macro of Tables 2.1 and 3.1."""
 
 MINI = Arm("mini", slice(3, 6), _HOME, (0.0, 0.0, 0.0), (0.0, 0.1, 0.1), _TWISTS, (0.0, 0.1, 0.1))
-"""The Mini of Tables 2.1 and 4.1, on a base of its own, frame 3."""
+"""The Mini of Tables 2.1 and 4.1, with frame 3 as its base."""
 
 COMBINED = Arm(
     "combined",

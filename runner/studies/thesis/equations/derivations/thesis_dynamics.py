@@ -36,7 +36,7 @@ def symbols(count: int, generator: np.random.Generator) -> Symbols:
     return {**s, **motion, **energy, **levers, **tensor_symbols(MACRO, q)}
 
 
-# What the Macro's joints carry while the Mini holds still, section 5.3.1.
+# Torques of the Macro's joints while the Mini holds still, section 5.3.1.
 
 
 def combined_symbols(count: int, generator: np.random.Generator) -> Symbols:

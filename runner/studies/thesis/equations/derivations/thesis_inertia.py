@@ -78,7 +78,7 @@ macro_tensors, mini_tensors = _tensors(MACRO), _tensors(MINI)
 
 
 def _of_link(link: int) -> Derivations:
-    """Return what turning adds to the Mini's M by one of its links."""
+    """Return the contribution to the Mini's M of the rotation of one of its links."""
 
     def by_link(s: Symbols) -> Elements:
         q, at = MINI.q(s), _at(MINI, f"link{link}")

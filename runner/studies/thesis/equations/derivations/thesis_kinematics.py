@@ -92,7 +92,7 @@ def _table(arm: Arm) -> Derivation:
 
 
 def _table_by_axes(arm: Arm) -> Derivation:
-    """Return the same from the joint axes and origins where they stand at each sample, by the rules of section 3.1.
+    """Return the same from the joint axes and origins at each sample, by the rules of section 3.1.
 
     Joint axes 1 and 2 intersect, so x_1 lies along z_0 x z_1; axes 2 and 3 are parallel, so x_2 runs from one to the
     other.

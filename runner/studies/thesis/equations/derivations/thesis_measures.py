@@ -91,7 +91,7 @@ macro_reach, mini_reach = _reach(MACRO), _reach(MINI)
 macro_home, mini_home, combined_home = _at_home(MACRO), _at_home(MINI), _at_home(COMBINED)
 
 
-# What equations of transforms, velocities and points name.
+# Names in the equations of transforms, velocities and points.
 
 
 def symbols(count: int, generator: np.random.Generator) -> Symbols:
@@ -141,7 +141,7 @@ combined_tip = Derivations(
 
 
 def base_of_mini(q: FloatArray) -> FloatArray:
-    """Return how the Mini's base, frame 3, is turned at the Macro's joint positions (T, 3), shape (T, 3, 3)."""
+    """Return the rotation of the Mini's base, frame 3, at the Macro's joint positions (T, 3), shape (T, 3, 3)."""
     return np.asarray(tip_pose(MACRO, q)[:, :3, :3] @ _BASE_OF_MINI)
 
 

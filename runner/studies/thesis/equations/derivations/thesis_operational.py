@@ -63,7 +63,7 @@ def _chain_bias(s: Symbols) -> FloatArray:
 
 
 def _of_motion(d: Dynamics, bias: FloatArray, s: Symbols) -> Elements:
-    """Return what the tip's motion asks for, found in joint space: the joints that give it, then their torques."""
+    """Return the terms of the tip's motion, found in joint space: the joints' motion, then their torques."""
     q, dq = MACRO.q(s), MACRO.dq(s)
     M, V, G, J = d.mass_matrix(q), d.velocity_torque(q, dq[None])[0], d.gravity(q), d.jacobian(q)[:, :3]
 

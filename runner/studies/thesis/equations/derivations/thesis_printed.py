@@ -52,7 +52,7 @@ def gravity_torque(q: FloatArray, mini: bool = False) -> FloatArray:
 
 
 def compare(model: RobotModel, mini: bool, samples: int, generator: np.random.Generator) -> dict[str, float]:
-    """Return how far M, V, G, J and the tip's transform T are at most from those of an arm's model, by symbol.
+    """Return the largest differences of M, V, G, J and the tip's transform T from those of an arm's model, by symbol.
 
     The states are random, positions within +-pi rad and velocities within +-1 rad/s.
     """

@@ -26,7 +26,7 @@ Inverse = Callable[[FloatArray], FloatArray]
 
 
 def tip_formula() -> Consequence:
-    """Return where the printed P_e says that the tip is, on the line."""
+    """Return the error of the tip's position by the printed P_e, on the line."""
     y = np.linspace(*ENDS, _POINTS)
     q = full(solve(points(y)))
     error = np.linalg.norm(CENTIMETRES * printed_tip(q, right=False) - points(y), axis=1)
@@ -35,7 +35,7 @@ def tip_formula() -> Consequence:
 
 
 def line_by_inverse() -> Consequence:
-    """Return where the tip goes with the printed q2, the printed q4 and the right ones."""
+    """Return the tip's errors with the printed q2, the printed q4 and the right ones."""
     y = np.linspace(*ENDS, _POINTS)
     target = points(y)
 
@@ -72,7 +72,7 @@ def _right_inverse(q: FloatArray) -> FloatArray:
 
 
 def _follow(inverse: Inverse) -> tuple[FloatArray, FloatArray]:
-    """Follow the line at constant speed by joint rates alone, the inverse times the twist.
+    """Follow the line at constant speed only by joint rates, the inverse times the twist.
 
     Return the tip's distance from its target, in cm, and the fastest joint, in rad/s, in time; NaN after the end.
     """

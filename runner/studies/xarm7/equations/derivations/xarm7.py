@@ -101,7 +101,7 @@ transform = _by_chain(lambda poses: whole_and_elements("A", poses))
 tip = _by_chain(lambda poses: coordinates("P_e", poses[:, :3, 3], ""))
 
 
-# The maker's links, between which the report's transforms stand.
+# The manufacturer's links, which the report's transforms connect.
 
 _ORIGINS = (  # of each joint in the link before it, in cm, and its roll in quarter turns: the maker's numbers
     ((0, 0, 26.7), 0),
@@ -150,7 +150,7 @@ def _metres(values: Symbols) -> FloatArray:
 
 
 def left_inverse_of(q: FloatArray) -> FloatArray:
-    """Return what a computer makes of (J' J)^-1 J', shapes (7,) to (7, 6): rounding, or nothing at an exact zero."""
+    """Return (J' J)^-1 J' in floating point, shapes (7,) to (7, 6): rounding, or NaN at an exact zero."""
     J = BY_MODEL.jacobian(q[None])[0]
     try:
         inverse: FloatArray = np.linalg.inv(J.T @ J) @ J.T

@@ -104,7 +104,7 @@ joints = Derivations(
 )
 
 
-# The first task in words: a line along y, 40 cm long.
+# The first task as text: a line along y, 40 cm long.
 
 X, Z = 64.3, 15.08  # cm
 ENDS = (-20.0, 20.0)  # cm
@@ -124,7 +124,7 @@ def points(y: FloatArray) -> FloatArray:
 def solve(target: FloatArray, *, sign: bool = True, root: bool = True) -> FloatArray:
     """Return q1, q2, q4 by the report's inverse kinematics for tip positions in cm, shapes (T, 3) to (T, 3), in rad.
 
-    Without `sign` the denominator of q2 is as printed; without `root` M^2 stands beside the root of q4, as printed.
+    Without `sign` the denominator of q2 is as printed; without `root` M^2 is outside the root of q4, as printed.
     """
     right = [name for name, emended in (("q2", sign), ("q4", root)) if emended]
     return printed_inverse(target / CENTIMETRES, Q6, right)
