@@ -136,7 +136,7 @@ def told_by_graph(graph, config, time, q, dq, reference):
             if r"\omega" in names["mini_target"]:
                 aim[1] = -R.T @ np.cross(spin, aim[0])
             aim[0] = R.T @ aim[0]
-        mini = ("hold", np.zeros(3)) if "posture" in names["mini_target"] else ("move", aim)
+        mini = ("hold", np.zeros(3)) if "configuration" in names["mini_target"] else ("move", aim)
     elif ("Own turn" in names["reach"] and not mini_turn) or (not within and "else stretch" not in names["reach"]):
         mini = ("hold", q[3:])
     else:
