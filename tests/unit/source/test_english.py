@@ -42,14 +42,14 @@ MOST = {
     "docs": 13,
     "conf": 2,
     "bench": 10,
-    "tools": 35,
+    "tools": 31,
     "tests": 642,
     "runner/base": 38,
     "runner/cli": 7,
     "runner/config": 26,
     "runner/reporting": 164,
     "runner/robots": 42,
-    "runner/studies": 187,
+    "runner/studies": 184,
     "runner/study": 84,
 }
 REST = 164
