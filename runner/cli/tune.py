@@ -71,8 +71,8 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _tell(tuning: "Tuning") -> int:
-    from runner.reporting.answers import CHOSEN
     from runner.reporting.stored import write
+    from runner.reporting.sweep.tuning import compare_on_fresh_seed
     from runner.sweeps.tuning.objective import best
     from runner.sweeps.tuning.study import at_ends
 
@@ -85,7 +85,8 @@ def _tell(tuning: "Tuning") -> int:
             for objective, value in zip(objectives, trials[number].values, strict=True)
         )
         print(f"chosen: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
-    for sentence in (*at_ends(tuning), *([CHOSEN] if failed < len(trials) else [])):
+    _, told = compare_on_fresh_seed(tuning)
+    for sentence in (*at_ends(tuning), *told):
         print(f"runner: {sentence}", file=sys.stderr)
     progress.begin("preparing the report")
     print(write([tuning.folder], (), report.FORMATS))

@@ -124,24 +124,38 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
         folder = _write_sweep(plan, checked, command)
         note(folder)
         rules = replace(make_rules(checked.settings, folder, len(names)), accept_cut_short=accept_cut_short)
-        ends = _find_stored(checked, rules)
-        stored = len(ends)
-        left = ends.left[np.argsort(-checked.costs[ends.left], kind="stable")]
-        queue = Queue(plan.alike, names, checked.costs, left, rules)
-        try:
-            for report in make_jobs(plan, checked, queue, left, engine, stored):
-                ends.add(report.outcomes)
-                if report.trouble:
-                    raise StoreError(f"{report.trouble}; finished runs are stored; the same command continues")
-                if rules.stop_at_failure and any(end.failure for end in report.outcomes):
-                    break
-        except KeyboardInterrupt:  # no worker is left to finish its run
-            clean(rules, names)
-            raise
-        clean(rules, names)
+        ends, stored = make_missing(plan, checked, rules, engine)
     failed = [(cell, ends[names[cell]]) for cell in ends.failed.tolist()]
     failures = [(plan.overrides(cell), end.failure, _where(end.name, outputs, folder)) for cell, end in failed]
     return Ended(folder, outputs, names, ends, failures, len(ends.left), stored, checked.resolved)
+
+
+def make_missing(plan: Plan, checked: Checked, rules: Rules, engine: Engine) -> tuple[Ends, int]:
+    """Execute the missing runs and calibrations of a checked plan; return the outcomes and the number of cached ones.
+
+    The caller holds the lock of the outputs folder.
+
+    Raises:
+        ConfigError: if the jobs exceed a limit of CPU time or memory.
+        StoreError: if a result cannot be written, or a worker fails.
+    """
+    names = checked.names
+    ends = _find_stored(checked, rules)
+    stored = len(ends)
+    left = ends.left[np.argsort(-checked.costs[ends.left], kind="stable")]
+    queue = Queue(plan.alike, names, checked.costs, left, rules)
+    try:
+        for report in make_jobs(plan, checked, queue, left, engine, stored):
+            ends.add(report.outcomes)
+            if report.trouble:
+                raise StoreError(f"{report.trouble}; finished runs are stored; the same command continues")
+            if rules.stop_at_failure and any(end.failure for end in report.outcomes):
+                break
+    except KeyboardInterrupt:  # no worker is left to finish its run
+        clean(rules, names)
+        raise
+    clean(rules, names)
+    return ends, stored
 
 
 def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:

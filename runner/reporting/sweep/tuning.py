@@ -13,18 +13,20 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity
 from runner.config.compose.units import key_unit
 from runner.plugins.metric_units import units
-from runner.reporting.answers import CHOSEN
+from runner.reporting.answers import CHOSEN, Answer, sentences
 from runner.reporting.charts.figure import spaced_indices
+from runner.reporting.comparison.sweeps import compare_runs
 from runner.reporting.document import Block, Curves, Document, Notice, Origin, Panel, Section, Series, Table, Text
 from runner.reporting.figures import cover
 from runner.reporting.markup import literal, literals
 from runner.reporting.metric_titles import metric_label, title
 from runner.reporting.sweep.cells import caveats_section, failed_table, has_caveats
 from runner.reporting.sweep.distributions import motion_blocks
+from runner.reporting.sweep.question import answer_blocks
 from runner.reporting.sweep.report import list_runs, made_by, run_command
-from runner.reporting.sweep.subject import Subject, key_label, spans_decades
+from runner.reporting.sweep.subject import Subject, key_label, main_metrics, spans_decades
 from runner.store import Run, Sweep, open_run
-from runner.sweeps.measurements import Measurements, measure_sweep
+from runner.sweeps.measurements import Measurements, measure_run, measure_sweep
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective, best
 from runner.sweeps.tuning.study import Tuning, at_ends
@@ -113,7 +115,9 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     overrides = [tuning.study.trial_overrides(tuning.trials[place]) for place in made]
     sweep = Sweep(tuning.folder, overrides, [tuning.trials[place].run for place in made], tuning.study.command)
     measurements = measure_sweep(sweep)
-    sections, shown = [_what(trials)], None
+    answers, told = compare_on_fresh_seed(tuning)
+    compared = [Section("Default and tuned on a fresh seed", answer_blocks(answers))] if answers else []
+    sections, shown = [*compared, _what(trials)], None
     if trials.good:
         sections.append(history_section(trials))
         sections += [_front(trials)] if len(trials.objectives) > 1 else []
@@ -142,12 +146,27 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     return Document(
         title=f"Tuning to {goals}",
         subtitle=", ".join(tuning.study.overrides),
-        abstract=literal(_abstract(trials)),
+        abstract=literal("\n".join([_abstract(trials), *told])),
         sections=sections,
         date=max(measurements.provenance.get("made on", [""])),
         cover=shown,
         key_numbers=_key_numbers(trials),
     )
+
+
+def compare_on_fresh_seed(tuning: Tuning) -> tuple[list[Answer], list[str]]:
+    """Return the tuned config compared with the default one on a seed that chose nothing, and that in sentences."""
+    if tuning.fresh is None:
+        return [], [CHOSEN] if best(tuning.trials, tuning.study.objectives) else []
+    names = "default", f"trial {tuning.fresh.trial}"
+    runs = [open_run(tuning.folder.parents[1] / "runs" / run) for run in (tuning.fresh.default, tuning.fresh.tuned)]
+    sides = [measure_run(run, name) for run, name in zip(runs, names, strict=True)]
+    metrics = [*(objective.metric for objective in tuning.study.objectives), *main_metrics(sides)]
+    answers, why = compare_runs(sides[0], sides[1], list(dict.fromkeys(metrics)))
+    seed, repetitions = (runs[0].config[key] for key in ("seed", "repetitions"))
+    failed = [f"{name} {run.failure}." for name, run in zip(names, runs, strict=True) if run.failure]
+    told = sentences(answers) or [f"{why}."]
+    return answers, [f"With seed {seed}, which chose nothing, and {repetitions} repetitions:", *failed, *told]
 
 
 def _key_numbers(trials: Trials) -> list[tuple[str, str, str]]:
@@ -177,7 +196,7 @@ def _abstract(trials: Trials) -> str:
     texts = [f"{count} trials over {names}; {count - len(trials.good)} of them failed."]
     chosen = summary_of_tuning(trials.tuning)
     texts += [f"Chosen is t{chosen[1:]}" if len(trials.best) == 1 else chosen, *at_ends(trials.tuning)]
-    return " ".join(filter(None, [*texts, CHOSEN if trials.best else ""]))
+    return " ".join(filter(None, texts))
 
 
 def _what(trials: Trials) -> Section:

@@ -24,6 +24,7 @@ from runner.sweeps.check import Checked, check
 from runner.sweeps.plan import Grid, Plan
 from runner.sweeps.run import Engine, clean, make_jobs, make_rules
 from runner.sweeps.status import at_work
+from runner.sweeps.tuning.fresh import run_on_fresh_seed
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import RANGES, Key, read_key
 from runner.sweeps.tuning.objective import Objective
@@ -81,7 +82,10 @@ def tune(
         finally:
             study.write(folder, journal.trials)
         clean(rules, [trial.run for trial in journal.trials if trial.run])
-    return Tuning(folder, study, journal.trials)
+        unsimulated = [text for text in shared if not is_simulated(text)]
+        fresh = run_on_fresh_seed(study, journal.trials, unsimulated, loader, rules, engine)
+        study.write(folder, journal.trials, fresh)
+    return Tuning(folder, study, journal.trials, fresh)
 
 
 def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, ended: int) -> None:

@@ -50,14 +50,30 @@ class Study:
         content = [list(probes), [asdict(key) for key in self.keys], objectives, self.at_once]
         return outputs / "tunings" / hashlib.sha256(json.dumps(content).encode()).hexdigest()[:24]
 
-    def write(self, folder: Path, trials: Sequence[Trial]) -> None:
+    def write(self, folder: Path, trials: Sequence[Trial], fresh: "Fresh | None" = None) -> None:
         """Write the definition and the list of runs, which makes the tuning a sweep for all other commands.
 
         Raises:
             StoreError: if a file cannot be written.
         """
-        write_atomically(folder / _FILE, sealed_json({**asdict(self), "trials": len(trials)}))
+        more = {"trials": len(trials), "fresh": None if fresh is None else asdict(fresh)}
+        write_atomically(folder / _FILE, sealed_json({**asdict(self), **more}))
         write_jobs(folder, [(self.trial_overrides(trial), trial.run) for trial in trials if trial.run], self.command)
+
+
+@dataclass(frozen=True)
+class Fresh:
+    """Runs on a seed that the tuning did not use; see fresh.py.
+
+    Attributes:
+        trial: Number of the chosen trial; of several on a Pareto front, the best one in the first objective.
+        default: Hash of the run with the default values of the tuned keys.
+        tuned: Hash of the run with the values of the trial.
+    """
+
+    trial: int
+    default: str
+    tuned: str
 
 
 @dataclass(frozen=True)
@@ -68,11 +84,13 @@ class Tuning:
         folder: Folder of the tuning.
         study: Definition of the tuning.
         trials: The finished trials.
+        fresh: Runs of the default and the tuned config on another seed; None if there are none.
     """
 
     folder: Path
     study: Study
     trials: Sequence[Trial]
+    fresh: Fresh | None = None
 
 
 def at_ends(tuning: Tuning) -> list[str]:
@@ -119,7 +137,7 @@ def open_tuning(folder: Path) -> Tuning:
             at_once=content["at_once"],
             command=content["command"],
         )
-        ended = content["trials"]
+        ended, fresh = content["trials"], content["fresh"] and Fresh(**content["fresh"])
     except (KeyError, TypeError) as error:
         raise DamagedError(
             f"cannot read {path}: it does not describe a tuning: {type(error).__name__}: {error}; {_MEND}"
@@ -127,4 +145,4 @@ def open_tuning(folder: Path) -> Tuning:
     trials = read_trials(journal)
     if len(trials) < ended:
         raise DamagedError(f"cannot read {journal}: it has {len(trials)} of the {ended} trials that ended; {_MEND}")
-    return Tuning(folder, study, trials)
+    return Tuning(folder, study, trials, fresh)

@@ -60,6 +60,7 @@ def section(document, title):
 def test_the_report_has_its_parts(tuning):
     made = document(tuning)
     assert titles(made) == [
+        "Default and tuned on a fresh seed",
         "What was tuned",
         "History",
         "Trade-off",
@@ -134,7 +135,7 @@ def test_the_key_that_decides_is_said(tuning):
 def test_failed_trials_are_listed_and_stand_in_no_figure(tuning):
     failed = with_failures(tuning)
     made = document(failed)
-    assert blocks(made.sections[0], Notice)[0].title == "2 of 22 trials failed"
+    assert blocks(section(made, "What was tuned"), Notice)[0].title == "2 of 22 trials failed"
     (table,) = blocks(section(made, "Failed trials"), Table)
     assert [(row[0], row[3]) for row in table.rows] == [("0", "diverged, at $$once$$"), ("1", "plant.step: no divisor")]
     for panel in blocks(section(made, "History"), Curves)[0].panels:
@@ -160,7 +161,7 @@ def test_every_run_is_listed_with_its_trial_keys_and_address(tuning):
 
 
 def test_a_tuning_in_which_all_failed_has_a_report(tuning):
-    lost = replace(tuning, trials=[replace(trial, failure="diverged") for trial in tuning.trials])
+    lost = replace(tuning, trials=[replace(trial, failure="diverged") for trial in tuning.trials], fresh=None)
     assert document(lost).key_numbers == [("trials", "22", "22 of them failed")]
     assert titles(document(lost)) == ["What was tuned", "Failed trials", "Caveats", "All runs", "Provenance"]
 

@@ -13,6 +13,7 @@ from runner.sweeps.tuning.study import journal_path, open_tuning
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "duration=1")
 STOP = "sweep.on_failure=stop"
+FRESH = 2  # runs on a seed that chooses nothing
 PERIOD = "controller.period=range(0.005,0.0651,0.005)"  # 0.06 diverges
 
 
@@ -39,11 +40,11 @@ def test_a_tuning_is_a_sweep_to_other_commands(tuned):
 @pytest.mark.costs(2)
 def test_nothing_is_simulated_twice(tuned, simulated_runs):
     first = tuned()
-    assert len(simulated_runs) == 8
+    assert len(simulated_runs) == 8 + FRESH
     assert tuned() == first
-    assert len(simulated_runs) == 8
+    assert len(simulated_runs) == 8 + FRESH
     whole = tuned("repetitions=int(interval(1,2))", trials=6)
-    assert len(set(simulated_runs)) == len(simulated_runs) == 10
+    assert len(set(simulated_runs)) == len(simulated_runs) == 10 + FRESH
     assert len(whole.trials) == 6
 
 
@@ -52,7 +53,7 @@ def test_more_trials_add_to_those_that_are_there(tuned, simulated_runs):
     more = tuned(trials=9)
     assert more.folder == first.folder
     assert more.trials[:5] == first.trials
-    assert len(simulated_runs) == 9
+    assert len(simulated_runs) == 9 + FRESH
     assert tuned(trials=3).trials == more.trials
 
 
@@ -97,8 +98,30 @@ def test_a_failed_run_is_the_worst(tuned, simulated_runs):
         run = store.open_run(tuning.folder.parent.parent / "runs" / trial.run)
         assert trial.failure == (run.failure or "")
     assert all(trial.values == (-np.inf, np.inf) for trial in failed)
-    assert len(simulated_runs) == len({trial.run for trial in tuning.trials}) < 20
+    assert len(simulated_runs) == len({trial.run for trial in tuning.trials}) + FRESH < 22
     assert open_tuning(tuning.folder) == tuning
+
+
+def test_default_and_tuned_config_run_on_a_seed_that_chose_nothing(tuned):
+    tuning = tuned("seed=3", "repetitions=9", "noise.position=1e-4", FREQUENCY, trials=3)
+    values = [trial.values[0] for trial in tuning.trials]
+    assert tuning.fresh.trial == values.index(min(values))
+    folder = tuning.folder.parents[1] / "runs"
+    default, chosen = (store.open_run(folder / run) for run in (tuning.fresh.default, tuning.fresh.tuned))
+    assert [run.config["seed"] for run in (default, chosen)] == [4, 4]
+    assert [run.config["repetitions"] for run in (default, chosen)] == [9, 9]
+    params = tuning.trials[tuning.fresh.trial].params
+    assert chosen.config["controller"]["natural_frequency"] == params["controller.natural_frequency"]
+    assert default.config["controller"]["natural_frequency"] not in [
+        trial.params["controller.natural_frequency"] for trial in tuning.trials
+    ]
+    assert open_tuning(tuning.folder) == tuning
+
+
+def test_a_default_config_that_cannot_run_is_not_compared(tuned, capsys):
+    tuning = tuned("plant=rk4", "plant.step=0.004", "controller.period=range(0.02,0.041,0.02)", trials=2)
+    assert tuning.fresh is None
+    assert "default and tuned config are not compared on seed=1: 1 problem in the config" in capsys.readouterr().err
 
 
 def test_what_never_settles_failed(tuned):
@@ -110,6 +133,7 @@ def test_what_never_settles_failed(tuned):
     )
     assert [trial.failure for trial in tuning.trials] == ["settling_time: beyond every number"] * 2
     assert all(trial.values == (np.inf,) for trial in tuning.trials)
+    assert tuning.fresh is None
 
 
 def test_a_trial_that_cannot_be_run_failed(tuned):
