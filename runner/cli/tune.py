@@ -85,8 +85,8 @@ def _tell(tuning: "Tuning") -> int:
             for objective, value in zip(objectives, trials[number].values, strict=True)
         )
         print(f"chosen: {values} with {shlex.join(tuning.study.trial_overrides(trials[number]))}")
-    _, told = compare_on_fresh_seed(tuning)
-    for sentence in (*at_ends(tuning), *told):
+    _, compared = compare_on_fresh_seed(tuning)
+    for sentence in (*at_ends(tuning), *compared):
         print(f"runner: {sentence}", file=sys.stderr)
     progress.begin("preparing the report")
     print(write([tuning.folder], (), report.FORMATS))

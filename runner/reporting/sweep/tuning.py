@@ -115,7 +115,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     overrides = [tuning.study.trial_overrides(tuning.trials[place]) for place in made]
     sweep = Sweep(tuning.folder, overrides, [tuning.trials[place].run for place in made], tuning.study.command)
     measurements = measure_sweep(sweep)
-    answers, told = compare_on_fresh_seed(tuning)
+    answers, texts = compare_on_fresh_seed(tuning)
     compared = [Section("Default and tuned on a fresh seed", answer_blocks(answers))] if answers else []
     sections, shown = [*compared, _what(trials)], None
     if trials.good:
@@ -146,7 +146,7 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
     return Document(
         title=f"Tuning to {goals}",
         subtitle=", ".join(tuning.study.overrides),
-        abstract=literal("\n".join([_abstract(trials), *told])),
+        abstract=literal("\n".join([_abstract(trials), *texts])),
         sections=sections,
         date=max(measurements.provenance.get("made on", [""])),
         cover=shown,
@@ -165,8 +165,8 @@ def compare_on_fresh_seed(tuning: Tuning) -> tuple[list[Answer], list[str]]:
     answers, why = compare_runs(sides[0], sides[1], list(dict.fromkeys(metrics)))
     seed, repetitions = (runs[0].config[key] for key in ("seed", "repetitions"))
     failed = [f"{name} {run.failure}." for name, run in zip(names, runs, strict=True) if run.failure]
-    told = sentences(answers) or [f"{why}."]
-    return answers, [f"With seed {seed}, which chose nothing, and {repetitions} repetitions:", *failed, *told]
+    texts = sentences(answers) or [f"{why}."]
+    return answers, [f"With seed {seed}, which chose nothing, and {repetitions} repetitions:", *failed, *texts]
 
 
 def _key_numbers(trials: Trials) -> list[tuple[str, str, str]]:
