@@ -40,16 +40,16 @@ for (const figure of document.querySelectorAll("figure.equations")) {
   filter.addEventListener("submit", (event) => event.preventDefault());
 }
 
-// A formula that is wider than the page is scrolled by keys, too.
-const reach = (formula) => {
-  if (formula.scrollWidth > formula.clientWidth) formula.tabIndex = 0;
-  else formula.removeAttribute("tabindex");
+// Keys also scroll a formula or a command that is wider than the page.
+const reach = (line) => {
+  if (line.scrollWidth > line.clientWidth) line.tabIndex = 0;
+  else line.removeAttribute("tabindex");
 };
 const wide = new ResizeObserver((entries) => entries.forEach(({ target }) => reach(target)));
-// A folded formula is not observed, and the font of mathematics changes the width of its content.
-document.fonts.ready.then(() => document.querySelectorAll(".equation, .form-math").forEach((formula) => {
-  reach(formula);
-  wide.observe(formula);
+// A folded line is not observed, and the font of mathematics changes the width of a formula.
+document.fonts.ready.then(() => document.querySelectorAll(".equation, .form-math, .command code").forEach((line) => {
+  reach(line);
+  wide.observe(line);
 }));
 
 /* ---- formulas ---- */
