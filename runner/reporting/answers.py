@@ -326,10 +326,15 @@ def judge(asked: Sequence[Asked], first: Sequence[str]) -> list[Answer]:
 
 
 def short_table(answers: Sequence[Answer]) -> tuple[list[str], list[list[str]]]:
-    """Return header and rows of a short table: every metric over all levels, and the first screen's at each level."""
-    answers = [one for one in answers if not one.at] + [one for one in answers if one.at and one.rank < 2]
+    """Return header and rows of a short table: every metric over all levels, and the first screen's at each level.
+
+    With more than two values compared, rows at each level would make a long table; the full tables have them.
+    """
+    overall = [one for one in answers if not one.at]
     names = list(dict.fromkeys(one.names for one in answers))
-    at, several = any(one.at for one in answers), len(names) > 1
+    several = len(names) > 1
+    answers = overall if overall and several else overall + [one for one in answers if one.at and one.rank < 2]
+    at = any(one.at for one in answers)
     first, second = ("first", "second") if several else names[0]
     header = ["metric", *["at"] * at, *["compared"] * several, first, second, "difference", "sure?"]
     rows = [

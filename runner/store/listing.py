@@ -7,6 +7,7 @@ from pathlib import Path
 
 from runner.base.errors import StoreError
 from runner.store.kinds import KINDS, Kind
+from runner.store.seal import read_json
 from runner.store.sweep import open_sweep
 
 _OF_SWEEPS: tuple[Kind, ...] = ("sweep", "tuning")
@@ -49,8 +50,14 @@ def runs_of_sweeps(entries: Sequence[Entry]) -> set[str]:
     Raises:
         StoreError: if one of these is damaged.
     """
-    finished = (entry.folder for entry in entries if entry.kind in _OF_SWEEPS and entry.finished)
-    return {name for folder in finished for name in open_sweep(folder).hashes}
+    names = set[str]()
+    for entry in entries:
+        if entry.kind in _OF_SWEEPS and entry.finished:
+            names.update(open_sweep(entry.folder).hashes)
+        if entry.kind == "tuning" and entry.finished:
+            fresh = read_json(entry.folder / KINDS["tuning"].files[0], "the tuning's command makes it again")["fresh"]
+            names |= {fresh["default"], fresh["tuned"]} if fresh else set()
+    return names
 
 
 def removable(entries: Sequence[Entry], before: float) -> list[Entry]:

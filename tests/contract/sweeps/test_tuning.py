@@ -7,6 +7,7 @@ from support.short_runs import DAMPING, FREQUENCY
 from runner import store
 from runner.base.errors import ConfigError, RunnerError, StoreError
 from runner.store import SchemaError
+from runner.store.listing import list_entries, runs_of_sweeps
 from runner.store.seal import sealed_json
 from runner.sweeps.status import at_work
 from runner.sweeps.tuning.study import journal_path, open_tuning
@@ -116,6 +117,8 @@ def test_default_and_tuned_config_run_on_a_seed_that_chose_nothing(tuned):
         trial.params["controller.natural_frequency"] for trial in tuning.trials
     ]
     assert open_tuning(tuning.folder) == tuning
+    runs = {trial.run for trial in tuning.trials} | {default.hash, chosen.hash}
+    assert runs_of_sweeps(list_entries(tuning.folder.parents[1])) == runs
 
 
 def test_a_default_config_that_cannot_run_is_not_compared(tuned, capsys):
