@@ -62,7 +62,7 @@ class Measured:
         small = self.value is not None and 0.0 < abs(self.value) < limit
         return f"less than {quantity(limit, self.unit)}" if small else quantity(self.value, self.unit)
 
-    def beside(self, other: Measured) -> str:
+    def with_other(self, other: Measured) -> str:
         """Return it and another value of the same kind in one unit, such as "0.775 and 108 mm"."""
         return format_range(self.value, other.value, self.unit, word="and")
 

@@ -31,7 +31,7 @@ PRIVATE = re.compile("[\ue000-\uf8ff]")
 _STATEMENT = re.compile(r"\{%|%\}|\{#")
 _SET = re.compile(r"^\{% set (\w+) = (.*?) %\}$", re.MULTILINE | re.DOTALL)
 _BRANCHES = (ast.IfExp, ast.BoolOp, ast.Not)
-_MEMBERS = {Measured: ("value", "shown", "near", "beside"), Condition: ("holds",), Quantity: ()}
+_MEMBERS = {Measured: ("value", "shown", "near", "with_other"), Condition: ("holds",), Quantity: ()}
 _HANDED = (*get_args(Block), Section, Column, Panel, Series, Claim, np.ndarray)
 
 

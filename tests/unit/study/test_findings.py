@@ -17,8 +17,8 @@ def test_a_comparison_says_itself_in_words_with_its_values():
 
 
 def test_two_values_of_a_kind_have_one_unit():
-    assert Measured("of the pair", 7.75e-4, "m").beside(Measured("of the Macro", 0.108, "m")) == "0.775 and 108 mm"
-    assert Measured("of the pair", 1.63, "s").beside(Measured("of the Macro", 1.6, "s")) == "1.63 and 1.6 s"
+    assert Measured("of the pair", 7.75e-4, "m").with_other(Measured("of the Macro", 0.108, "m")) == "0.775 and 108 mm"
+    assert Measured("of the pair", 1.63, "s").with_other(Measured("of the Macro", 1.6, "s")) == "1.63 and 1.6 s"
 
 
 @pytest.mark.parametrize(
