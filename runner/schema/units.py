@@ -131,13 +131,13 @@ def read_quantity(value: object) -> Quantity | None:
     if not isinstance(value, str) or len(value) > _LONGEST:
         return None
     match = _QUANTITY.fullmatch(value)
-    if match is None or _is_number(value):
+    if match is None or is_number(value):
         return None
     unit = match[2].strip()
     return Quantity(Decimal(match[1].replace("_", "")), _BARE.get(unit.translate(_ALIKE), unit))
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
     """Return True for a number without unit, such as 1e3, although its end looks like a unit."""
     try:
         float(text)

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from runner.base.sanitize import plain
+from runner.schema.units import is_number
 
 _MM = 25.4  # in an inch
 _DESIGNED = 7.0  # pt, for which the measures below are made
@@ -157,7 +158,7 @@ def names_below(names: Sequence[str], length: float, sheet: Sheet) -> Names:
     longest = max(map(len, texts), default=0)
     if (longest + 2) * sheet.character <= place:
         return Names(texts, 1, False, sheet.line)
-    if all(map(_is_number, texts)):
+    if all(map(is_number, texts)):
         step = math.ceil((longest + 2) * sheet.character / place)
         return Names(texts[::step], step, False, sheet.line)
     lines = [_broken(text, int(place / sheet.character) - 1) for text in texts]
@@ -186,14 +187,6 @@ def _broken(text: str, most: int, lines: int = _MOST_LINES) -> list[str]:
         found[-1] += part
     found = [line.rstrip() for line in found]
     return found if len(found) <= lines and max(map(len, found)) <= most else []
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def literal(label: Text, text: str) -> None:

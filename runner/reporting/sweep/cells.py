@@ -117,9 +117,9 @@ def _failure_map(subject: Subject, failed: NDArray[np.bool_]) -> list[Block]:
     if len(across.values) > _MOST_ACROSS or len(down.values) > _MOST_FAILURES:
         return []
     causes = np.array([(text.partition(": ")[2] or text).partition(": ")[0] for text in subject.measurements.failures])
+    columns = range(len(across.values))
     rows = [
-        [down.text(row), *(_causes(causes[(down.level == row) & (across.level == column)]) for column in places)]
-        for places in [range(len(across.values))]
+        [down.text(row), *(_causes(causes[(down.level == row) & (across.level == column)]) for column in columns)]
         for row in range(len(down.values))
     ]
     header = [key_label(down.name), *(f"{across.name}={text}" for text in across.texts)]
