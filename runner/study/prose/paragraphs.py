@@ -70,8 +70,7 @@ class Paragraphs:
         for token in tokens:
             line = self._values.line_of(first_line + (token.map[0] if token.map else 0))
             if token.type == "heading_open":
-                title = self._inline(next(tokens), line)
-                yield Heading(int(token.tag[1]), title, line)
+                yield Heading(int(token.tag[1]), self.title(next(tokens).content, line), line)
                 next(tokens)
             elif token.type == "paragraph_open":
                 yield from self._paragraph(next(tokens), line)
@@ -80,6 +79,19 @@ class Paragraphs:
                 yield Items(tuple(self._items(tokens, line)))
             else:
                 raise self._refused(token, line)
+
+    def title(self, text: str, line: int) -> str:
+        """Return the title of a section or a box, which is plain text.
+
+        Raises:
+            ProseError: if it has mathematics, emphasis, code or a link.
+        """
+        parts: list[str] = []
+        for child in self._parser.parseInline(text)[0].children or ():
+            if child.type != "text":
+                raise ProseError(self._file, line, f"'{text}': a title is plain text; write the rest in the paragraph")
+            parts.append(literal(child.content))
+        return filled("".join(parts), self._values, self._file).replace("$$", "$")
 
     def _paragraph(self, inline: Token, line: int) -> Iterator[Piece]:
         alone = PLACEHOLDER.sub("", inline.content).strip() == ""

@@ -9,7 +9,7 @@ from runner.base.errors import nearest
 from runner.reporting.document import Block, NoticeKind, Section, Text
 from runner.study.measured import ANSWERS, Condition, Finding, finding
 from runner.study.prose.expressions import ProseError, Values
-from runner.study.prose.paragraphs import Heading, Paragraphs, Piece, filled
+from runner.study.prose.paragraphs import Heading, Paragraphs, Piece
 
 _CONTAINERS = ("finding", *ANSWERS)
 _FENCE = ":::"
@@ -138,7 +138,7 @@ def _finding(file: str, box: _Container, values: Values, paragraphs: Paragraphs)
     if not answered and not (blocks and all(isinstance(block, Text) for block in blocks)):
         raise ProseError(file, box.line, "a finding contains only sentences; put blocks before or after it")
     text = " ".join(block.text for block in blocks if isinstance(block, Text))
-    return finding(filled(box.title, values, file), text, *conditions, kind=box.kind)
+    return finding(paragraphs.title(box.title, box.line), text, *conditions, kind=box.kind)
 
 
 def conditions_of(

@@ -54,6 +54,13 @@ def test_no_value_becomes_markup_a_block_or_an_expression():
     assert text.text == "Say <b>$$x$$ *a* [l](http://q) {{ 1 }} \ufffdb\ufffd ::: finding here."
 
 
+def test_a_title_is_plain_text():
+    chapter = read("## It costs $5, {{ evil }}\n\n::: finding A $5 box, {{ x }}\nSo.\nholds: turns > both\n:::")
+    (section,) = chapter.sections
+    assert section.title == "It costs $5, <b>$x$ *a* [l](http://q) {{ 1 }} \ufffdb\ufffd ::: finding"
+    assert section.blocks[0].title == "A $5 box, 3.5"
+
+
 def test_a_finding_has_its_conditions():
     words = "Turns do {{ turns }} harm\nThey err by {{ turns }}\nagainst {{ both }}."
     box = f"::: finding {words}\nholds: turns > 10 * both\n:::"
@@ -84,6 +91,8 @@ def test_an_answer_may_be_its_title_only_and_says_when_it_no_longer_holds(kind):
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
+        ("## The error is $a^2$", 3, r"'The error is \$a\^2\$': a title is plain text"),
+        ("::: finding So is *it*\nSo.\nholds: turns > both\n:::", 3, r"'So is \*it\*': a title is plain text"),
         ("::: fnding A\nSo.\n:::", 3, r"no box 'fnding' \(did you mean finding\?\); boxes: finding, stands, falls"),
         ("::: stand A\n:::", 3, r"no box 'stand' \(did you mean stands\?\)"),
         ("::: why\n:::", 3, "a box without a title; write `::: why TITLE`"),
