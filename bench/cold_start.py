@@ -1,8 +1,8 @@
 """Cost of a typed command until its answer, each in its own process: wall time, and CPU time against Hydra's.
 
 CPU time (user and system) is divided by that of `python -c "import hydra"`, measured in turn with the commands, so that
-a busy machine slows both. A TAB at a key composes the config the first time, and later in the same line reads its keys
-from a cache; both are measured.
+a busy machine slows both. A report on a sweep is written as HTML and PDF. A TAB at a key composes the config the first
+time, and later in the same line reads its keys from a cache; both are measured.
 """
 
 import os
@@ -23,6 +23,8 @@ TARGET = 0.5  # s, for commands that only print and compute nothing
 HELP_TARGET = 0.1  # s
 DOCTOR_TARGET = 5.0  # s, for an arm of seven joints with meshes
 _RUNNER = str(Path(sys.executable).parent / "runner")
+_SWEEP = ("-m", "robot=macro", "trajectory=quintic", "noise=thesis", "repetitions=10", "controller.period=5ms,10ms",
+          "controller.natural_frequency=range(10,60,5)")  # fmt: skip
 _KUKA = str(Path(pybullet_data.getDataPath()) / "kuka_iiwa" / "model_free_base.urdf")
 _HYDRA = (sys.executable, "-c", "import hydra")
 
@@ -49,6 +51,7 @@ class _Command:
 _COMMANDS = (
     _Command("runner robot=macro, stored already", ("robot=macro",), 2.5),
     _Command("runner report nosuch", ("report", "nosuch"), 0.3),
+    _Command("runner report SWEEP, of 20 runs", ("report", "latest", "--output", "report"), 15.0),
     *(
         _Command(f"TAB at `runner {line}`", (), target, f"runner {line}", first)
         for line, target, first in (
@@ -92,6 +95,7 @@ def _ratios(folder: Path) -> bool:
     found: dict[_Command, list[float]] = {}
     hydra: list[float] = []
     kept = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
+    _cpu(folder, [_RUNNER, *_SWEEP], kept)
     for command in _COMMANDS:  # so that all is compiled, stored and kept
         _cpu(folder, [_RUNNER, *command.arguments], _environment(command, kept))
     for repeat in range(REPEATS):

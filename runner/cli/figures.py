@@ -154,7 +154,7 @@ def _tell_failure(run: "Run") -> None:
     """Print that a run failed, and the end of its trace; raise an error if it has no trace to draw."""
     if run.status == "ok":
         return
-    times = run.trace()["t"] if (run.folder / "trace.parquet").exists() else ()
+    times = run.t if (run.folder / "trace.parquet").exists() else ()
     if len(times) < 2:
         raise RunnerError(f"{run.folder}: the run {run.failure}; it has no trace to draw")
     print(f"runner: the run {run.failure}; its figures show repetition 0, up to {max(times):.4g} s", file=sys.stderr)

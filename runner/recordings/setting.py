@@ -60,18 +60,10 @@ def setting_of(run: Run) -> Setting:
 
 
 def _stored_trace(run: Run, config: RunConfig) -> Trace:
-    frame, model = run.trace(), config.arm.model
-
-    def tip(stem: str) -> FloatArray:
-        return np.asarray(frame[[f"{stem}_{axis}" for axis in AXES]].to_numpy())
-
-    def joints(stem: str) -> FloatArray:
-        return np.asarray(frame[[f"{stem}{joint + 1}" for joint in range(model.nq)]].to_numpy())
-
-    q, dq, tau, t = joints("q"), joints("dq"), joints("tau"), np.asarray(frame["t"].to_numpy())
+    q, dq, tau, t = run.joints("q"), run.joints("dq"), run.joints("tau"), run.t
     points = end_points(config.arm, q, config.ignore_base_rotation)
-    points[-1] = tip("tip")
-    desired = np.stack([tip(stem) for stem in ("desired", "desired_velocity", "desired_acceleration")], axis=1)
+    points[-1] = run.vector("tip")
+    desired = np.stack([run.vector(stem) for stem in ("desired", "desired_velocity", "desired_acceleration")], axis=1)
     return Trace(
         t=t,
         q=q,

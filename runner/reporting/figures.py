@@ -89,13 +89,13 @@ def last_moments(run: Run, failed_at: float) -> Curves:
 def desired_motion(run: Run, caption: str, number: str = "", axes: tuple[str, ...] = AXES) -> Curves:
     """Return desired position, velocity and acceleration of the tip over the motion's time, of a shaped one all."""
     rows = rows_until(run, None if "input_shaper" in run.config else run.config["trajectory"]["duration"])
-    trace, t = run.trace()[rows], run.t[rows]
+    t = run.t[rows]
     panels = [
         Panel(
             title,
             "time (s)",
             f"{title.lower()} ({unit})",
-            [Series(axis, t, trace[f"{stem}_{axis}"].to_numpy(), color=AXES.index(axis)) for axis in axes],
+            [Series(axis, t, run.signal(f"{stem}_{axis}")[rows], color=AXES.index(axis)) for axis in axes],
         )
         for title, stem, unit in (
             ("Desired position", "desired", "m"),

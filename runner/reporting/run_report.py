@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 import yaml
 
 from runner.base.errors import ConfigError, RunnerError
@@ -29,7 +30,6 @@ _LEVELS = {"0.01": "1 %", "0.99": "99 %"}  # quantiles that a table has room for
 
 def run_document(run: Run) -> Document:
     """Return the report on a stored run: its name, the moving arm and four numbers first."""
-    shown = run.trace()[[f"q{joint + 1}" for joint in range(len(run.provenance["joints"]))]]
     return Document(
         title=run_name(run),
         subtitle=_subtitle(run),
@@ -40,7 +40,7 @@ def run_document(run: Run) -> Document:
             Section("Provenance", (provenance([run]),)),
         ],
         date=str(run.provenance["date"]),
-        cover=_cover(run) if shown.notna().all(axis=1).sum() > 1 else None,
+        cover=_cover(run) if (~np.isnan(run.joints("q"))).all(axis=1).sum() > 1 else None,
         notes=[literal(f"Caveats: {', '.join(_spaced(caveat['rule']) for caveat in run.caveats)}.")]
         if run.caveats
         else [],

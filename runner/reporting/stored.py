@@ -9,16 +9,10 @@ from runner import store
 from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.reporting import render
-from runner.reporting.comparison.report import comparison_document
-from runner.reporting.comparison.runs import runs_document
 from runner.reporting.comparison.sweeps import letter
 from runner.reporting.document import Document
-from runner.reporting.run_report import run_document
-from runner.reporting.sweep.report import sweep_document
-from runner.reporting.sweep.tuning import tuning_document
 from runner.store.kinds import kind_of, note, outputs_of
 from runner.sweeps.measurements import measure_stored
-from runner.sweeps.tuning.study import Tuning, open_tuning
 
 
 def write(folders: Sequence[Path], metrics: Sequence[str], formats: Sequence[str], output: Path | None = None) -> Path:
@@ -53,24 +47,35 @@ def compose_report(
         RunnerError: If metrics are given without a sweep, or a sweep lacks them.
         StoreError: If a run is missing or damaged.
     """
-    things = [open_tuning(folder) if kind_of(folder) == "tuning" else store.open_stored(folder) for folder in folders]
+    tunings = [folder for folder in folders if kind_of(folder) == "tuning"]
+    things = [store.open_stored(folder) for folder in folders if folder not in tunings]
     sweeps = [thing for thing in things if isinstance(thing, store.Sweep)]
     runs = [thing for thing in things if isinstance(thing, store.Run)]
-    first, reports = things[0], outputs_of(folders[0]) / "reports"
+    reports = outputs_of(folders[0]) / "reports"
     place = output or reports / "any"
-    if len(things) > 1 and len(things) not in (len(sweeps), len(runs)):
+    if len(folders) > 1 and len(folders) not in (len(sweeps), len(runs)):
         raise RunnerError("these results have no common report. Allowed: only runs, only sweeps, or one folder.")
     if metrics and not sweeps:
         raise RunnerError(f"--metrics: {folders[0]} is not a sweep. Allowed: only for sweeps.")
-    if isinstance(first, Tuning):
-        document = tuning_document(first, place)
+    if tunings:
+        from runner.reporting.sweep.tuning import tuning_document  # Hydra, which sweeps do without
+        from runner.sweeps.tuning.study import open_tuning
+
+        document = tuning_document(open_tuning(tunings[0]), place)
     elif runs:
+        from runner.reporting.comparison.runs import runs_document
+        from runner.reporting.run_report import run_document
+
         progress.begin("reading runs")
         document = run_document(runs[0]) if len(runs) == 1 else runs_document(runs)
     elif len(sweeps) == 1:
+        from runner.reporting.sweep.report import sweep_document
+
         address = os.path.relpath(sweeps[0].outputs / "runs", place) + "/"
         document = sweep_document(sweeps[0], metrics, address)
     else:
+        from runner.reporting.comparison.report import comparison_document
+
         sides = [measure_stored(sweep, letter(place)) for place, sweep in enumerate(sweeps)]
         document = comparison_document(sides, metrics)
     return document, output or reports / report_name(folders, metrics)

@@ -150,8 +150,23 @@ def read_column(file: Any, path: Path, name: str) -> FloatArray:
     table = read_table(file, path, [name])
     if table.column_names != [name]:
         raise DamagedError(f"cannot read {path}: it has no column {name}; {MEND}")
-    column: FloatArray = table[name].combine_chunks().to_numpy(zero_copy_only=False).astype(np.float64, copy=False)
-    return column
+    return numbers(table[name].chunks)
+
+
+def numbers(chunks: Sequence[Any]) -> FloatArray:
+    """Return the chunks of a column of 64-bit numbers as an array, shape (rows,), NaN for null.
+
+    The `to_numpy` of pyarrow would import pandas.
+    """
+    parts = [np.empty(0)]
+    for chunk in filter(len, chunks):
+        rows = slice(chunk.offset, chunk.offset + len(chunk))
+        present, values = chunk.buffers()
+        parts.append(np.frombuffer(values)[rows])
+        if chunk.null_count:
+            bits = np.unpackbits(np.frombuffer(present, np.uint8), bitorder="little")[rows]
+            parts[-1] = np.where(bits, parts[-1], np.nan)
+    return np.concatenate(parts)
 
 
 def _damaged(path: Path, error: Exception) -> DamagedError:

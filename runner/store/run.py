@@ -15,7 +15,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, StoreError, nearest
 from runner.config.composed import Composed
 from runner.store.kinds import kind_of
-from runner.store.parquet import VALUES_FILE, open_parquet, read_column, read_table
+from runner.store.parquet import VALUES_FILE, numbers, open_parquet, read_column, read_table
 from runner.store.record import Metrics, find_faults
 from runner.store.seal import MEND, DamagedError, Stored, read_job, write_job
 
@@ -168,26 +168,32 @@ class Run(Stored):
             DamagedError: if the file is missing or damaged.
             StoreError: if the run has no trace.
         """
-        return self._frame.copy(deep=False)  # pandas copies what is written to
-
-    @cached_property
-    def _frame(self) -> "pd.DataFrame":
         frame: pd.DataFrame = self._table.to_pandas()
         return frame
 
     @property
     def t(self) -> FloatArray:
         """Times of the trace's rows, shape (T,), in s."""
-        return self._frame["t"].to_numpy()
+        return self.signal("t")
+
+    def signal(self, column: str) -> FloatArray:
+        """Return a column of the trace, shape (T,).
+
+        Raises:
+            RunnerError: if the trace has no such column.
+        """
+        if column not in (known := self._table.column_names):
+            raise RunnerError(f"run {self.hash} has no signal '{column}'{nearest(column, known)}")
+        return numbers(self._table[column].chunks)
 
     def joints(self, signal: str = "q") -> FloatArray:
         """Return a signal of each joint in the trace, shape (T, nq): the columns signal1, signal2 and so on."""
-        names = [name for name in self._frame.columns if name.startswith(signal) and name[len(signal) :].isdigit()]
-        return self._frame[names].to_numpy()
+        names = [name for name in self._table.column_names if name.startswith(signal) and name[len(signal) :].isdigit()]
+        return np.array([self.signal(name) for name in names]).reshape(len(names), self._table.num_rows).T
 
     def vector(self, signal: str) -> FloatArray:
         """Return a vector in the trace, shape (T, 3): the columns signal_x, signal_y and signal_z."""
-        return self._frame[[f"{signal}_{axis}" for axis in "xyz"]].to_numpy()
+        return np.stack([self.signal(f"{signal}_{axis}") for axis in "xyz"]).T
 
     def median(self, metric: str) -> float | None:
         """Return the median of a metric; None if the run failed or the metric has no value.

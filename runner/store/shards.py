@@ -23,7 +23,7 @@ from runner.base.arrays import FloatArray
 from runner.base.limits import ExcessError, open_parquet
 from runner.store.atomic import write_atomically
 from runner.store.names import Names
-from runner.store.parquet import list_column, text_column, truth_column, whole_column
+from runner.store.parquet import list_column, numbers, text_column, truth_column, whole_column
 from runner.store.record import find_faults
 from runner.store.run import Run
 from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest, encode_finite
@@ -247,8 +247,7 @@ def _values_in(path: Path, row: int, metric: str) -> FloatArray:
 
 def _list_at(column: Any, row: int) -> FloatArray:
     """Return the numbers of a list in a column, NaN for none."""
-    values: FloatArray = column[row].values.to_numpy(zero_copy_only=False).astype(np.float64, copy=False)
-    return values
+    return numbers([column[row].values])
 
 
 def metric_columns(runs: Sequence[tuple[tuple[tuple[str, str], ...], FloatArray]]) -> Iterator[tuple[Any, Any]]:

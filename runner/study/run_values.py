@@ -72,8 +72,7 @@ def trace_of(signal: Signal, *runs: Run) -> FloatArray:
     """
     if callable(signal):
         return np.asarray(signal(*runs), dtype=float)
-    check_signal(runs[0], signal)
-    return np.asarray(runs[0].trace()[signal].to_numpy(), dtype=float)
+    return runs[0].signal(signal)
 
 
 def number_of(what: Signal, *runs: Run) -> float | None:
@@ -96,14 +95,3 @@ def config_value(run: Run, key: str) -> Any:
             raise RunnerError(f"no key {key} in a config{nearest(part, value if isinstance(value, Mapping) else ())}")
         value = value[part]
     return value
-
-
-def check_signal(run: Run, column: str) -> None:
-    """Refuse a signal that a run does not have.
-
-    Raises:
-        RunnerError: if its trace has no such column.
-    """
-    if column not in run.trace().columns:
-        near = nearest(column, [str(name) for name in run.trace().columns])
-        raise RunnerError(f"run {run.hash} has no signal '{column}'{near}")

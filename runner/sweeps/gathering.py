@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.store.parquet import numbers
 from runner.store.run import Run
 from runner.store.shards import METRIC, open_row, read_columns
 from runner.sweeps.differing import Resolver
@@ -245,7 +246,7 @@ def _metrics(table: Any) -> Iterator[tuple[str, str, Cells, FloatArray]]:
             counts = values.value_lengths().to_numpy(zero_copy_only=False)
             members = np.flatnonzero(~np.isnan(counts.astype(float)))
             sizes = counts[members].astype(int)
-            flat = values.flatten().to_numpy(zero_copy_only=False).astype(float)
+            flat = numbers([values.flatten()])
             rows = np.full((len(members), int(sizes.max(initial=0))), np.nan)
             rows[np.arange(rows.shape[1]) < sizes[:, None]] = np.where(np.isnan(flat), np.inf, flat)
             yield field.name.removeprefix(METRIC), (field.metadata or {}).get(b"unit", b"").decode(), members, rows

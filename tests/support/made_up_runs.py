@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import pyarrow
 
 from runner.store import Run
 
@@ -36,5 +37,5 @@ def made_up_run(
         "provenance": {"commit": "", "command": "runner", **provenance},
     }
     run = Run(Path("run"), config or {}, record)
-    run.__dict__["_frame"] = pd.DataFrame(trace or {})
+    run.__dict__["_table"] = pyarrow.Table.from_pandas(pd.DataFrame(trace or {}, dtype=float), preserve_index=False)
     return run

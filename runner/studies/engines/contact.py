@@ -79,7 +79,7 @@ def unrest(run: Run) -> float:
 
 
 def _wall_force(run: Run) -> FloatArray:
-    return np.asarray(-run.trace()["external_force_x"].to_numpy(), dtype=float)
+    return -run.signal("external_force_x")
 
 
 def _frequency(run: Run) -> float:

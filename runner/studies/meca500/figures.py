@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,6 @@ from runner.calibration.tool_direction import alignment, alignment_angles
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
 from runner.reporting.document import Series, Verdicts
 from runner.reporting.equation import EquationVerdict
-from runner.reporting.figures import AXES
 from runner.reporting.published_claims import Verdict, load_statements
 from runner.robots import RobotModel
 from runner.store import Calibration, Run
@@ -33,8 +31,7 @@ _STILL = 1e-4  # N, below which a force that swings is rounding
 
 def wrenches(run: Run, signal: str) -> FloatArray:
     """Return a signal such as "felt" at each tick, force in N and moment in N m, shape (T, 6)."""
-    names = [f"{signal}_{kind}_{axis}" for kind, axis in product(("force", "moment"), AXES)]
-    return run.trace()[names].to_numpy()
+    return np.hstack([run.vector(f"{signal}_{kind}") for kind in ("force", "moment")])
 
 
 @once

@@ -79,7 +79,7 @@ def shaken(runs: Runs, name: str, caption: str) -> Table:
     """Return the standard deviations of felt wrench and tip at rest, against those of the sampled law."""
     run = runs[name]
     Phi, Gamma = discretise(law_of(run), float(run.config["controller"]["period"]))
-    settled = slice(len(run.trace()) // 6, None)
+    settled = slice(len(run.t) // 6, None)
     felt, tip = wrenches(run, "felt")[settled].std(axis=0), displacement(run)[settled].std(axis=0)
     rows = []
     for index, axis in enumerate(AXES):

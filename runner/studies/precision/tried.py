@@ -97,4 +97,4 @@ def _loaded(path: Path, _written: int) -> dict[str, Any] | None:
 
 
 def _seconds(run: Run) -> float:
-    return float(run.record["timing"]["tick_time_median"]) * (len(run.trace()) - 1)
+    return float(run.record["timing"]["tick_time_median"]) * (len(run.t) - 1)

@@ -30,4 +30,4 @@ def distance_between(path: FloatArray, point: FloatArray) -> float:
 def ticks_at_limit(run: Run) -> float:
     """Return at how many ticks joint 1 is at its limit."""
     limit = float(run.config["torque_limits"]["max"])
-    return float(np.count_nonzero(np.abs(run.trace()["tau1"].to_numpy()) >= limit * (1.0 - 1e-12)))
+    return float(np.count_nonzero(np.abs(run.signal("tau1")) >= limit * (1.0 - 1e-12)))

@@ -102,9 +102,9 @@ def macro_mini_targets(
         axis: The axis of the base frame: x, y or z.
     """
     rows = rows_until(run, until)
-    trace, t = run.trace()[rows], run.t[rows]
+    t = run.t[rows]
     macro, mini = list(run.provenance["stages"])[:2]
-    desired, tip, end_point = (trace[f"{stem}_{axis}"].to_numpy() for stem in ("desired", "tip", f"{macro}_tip"))
+    desired, tip, end_point = (run.signal(f"{stem}_{axis}")[rows] for stem in ("desired", "tip", f"{macro}_tip"))
     big, small = macro.capitalize(), mini.capitalize()
     positions = (
         Series("tip", t, tip, color=0),

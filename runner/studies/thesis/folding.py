@@ -26,7 +26,7 @@ def singular_value(run: Run) -> FloatArray:
 def sag(run: Run) -> float:
     """Return the closed form of the Macro's sag at the end of a run, in m."""
     rate = float(run.config["controller"]["natural_frequency"]["macro"])
-    return missing_acceleration(run, len(run.trace()) - 1) / rate**2
+    return missing_acceleration(run, len(run.t) - 1) / rate**2
 
 
 def parted_at(first: Run, second: Run) -> float | None:

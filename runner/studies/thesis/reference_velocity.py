@@ -14,7 +14,7 @@ def speed_seen(run: Run) -> FloatArray:
 
 def speed_on_the_ground(run: Run) -> FloatArray:
     """Return the speed of x_d - x_E in the base frame between ticks, shape (T - 1,), in m/s."""
-    return _speeds(run, np.broadcast_to(np.eye(3), (len(run.trace()), 3, 3)))
+    return _speeds(run, np.broadcast_to(np.eye(3), (len(run.t), 3, 3)))
 
 
 def _speeds(run: Run, frames: FloatArray) -> FloatArray:
@@ -29,7 +29,7 @@ def _wrist_rotations(run: Run) -> FloatArray:
     model = run.model
     base = model.pin_model.getFrameId(run.provenance["stages"]["mini"])
     data = model.pin_model.createData()
-    rotations = np.full((len(run.trace()), 3, 3), np.nan)
+    rotations = np.full((len(run.t), 3, 3), np.nan)
     for row, q in zip(rotations, run.joints("q"), strict=True):
         if np.isfinite(q).all():
             pin.forwardKinematics(model.pin_model, data, q)

@@ -198,7 +198,7 @@ def _rings(run: Run) -> float:
 def _first_at_rest(run: Run) -> int | None:
     """Return the first row after the desired motion; None of a run that ends before."""
     moving = np.flatnonzero(np.abs(run.vector("desired_velocity")).max(axis=1) > _STILL)
-    return int(moving[-1]) + 1 if len(moving) and moving[-1] + 1 < len(run.trace()) else None
+    return int(moving[-1]) + 1 if len(moving) and moving[-1] + 1 < len(run.t) else None
 
 
 def _first_mode(run: Run, bare: Run) -> tuple[float, float]:

@@ -47,7 +47,7 @@ def drift_by_cycle(runs: Mapping[str, Run], pattern: str) -> list[Series]:
 
 def in_last_cycle(signal: Signal) -> Callable[[Run], FloatArray]:
     """Return the last cycle of a signal."""
-    return lambda run: trace_of(signal, run)[max(len(run.trace()) - _cycle(run) - 1, 0) :]
+    return lambda run: trace_of(signal, run)[max(len(run.t) - _cycle(run) - 1, 0) :]
 
 
 def range_of_w(run: Run) -> str:

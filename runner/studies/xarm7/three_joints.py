@@ -52,5 +52,5 @@ def reach(run: Run) -> float:
 
 def joint_range(runs: Mapping[str, Run], run: str, joint: str) -> str:
     """Return the least and the largest position of a joint, as a cell of a table."""
-    q = runs[run].trace()[joint]
+    q = runs[run].signal(joint)
     return f"{q.min():.3f} to {q.max():.3f}"

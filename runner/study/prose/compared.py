@@ -123,7 +123,7 @@ class _Figure:
             rows = rows_until(run, self._until)
             kept = run.t[rows] >= (run.t[rows][-1] - last - 1e-9 if last else -np.inf)
             for color, (name, column) in enumerate(columns.items()):
-                t, y = run.t[rows][kept], run.trace()[column].to_numpy()[rows][kept]
+                t, y = run.t[rows][kept], run.signal(column)[rows][kept]
                 series = Series("", t, y, style, color=color)
                 if t.size > _POINTS:
                     series = _bounded(envelope(series, round(_TOGETHER / (t[1] - t[0]))))

@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
 from runner.store import Run
-from runner.study.run_values import Signal, check_signal, config_value, trace_of
+from runner.study.run_values import Signal, config_value, trace_of
 
 
 def _operation(work: Callable[[Any, Any], Any], swapped: bool = False) -> Callable[["Quantity", Any], "Quantity"]:
@@ -63,12 +63,7 @@ def signal(name: Signal) -> Quantity:
 
 def vector(name: str) -> Quantity:
     """Return a vector with columns name_x, name_y and name_z at each row, shape (T, 3)."""
-
-    def rows(run: Run, *_: Run) -> FloatArray:
-        check_signal(run, f"{name}_x")
-        return run.vector(name)
-
-    return Quantity(rows)
+    return Quantity(lambda run, *_: run.vector(name))
 
 
 def of_joints(name: str = "q", first: int = 0, last: int | None = None) -> Quantity:

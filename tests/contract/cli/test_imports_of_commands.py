@@ -34,3 +34,16 @@ def test_runs_sweeps_and_comparisons_need_linear_algebra_and_special_functions_o
     assert codes == [0] * len(LINES)
     assert {*parts} <= {"linalg", "special"}
     assert large == []
+
+
+def test_a_report_on_a_sweep_needs_no_pandas_hydra_or_optuna(tmp_path, cli):
+    folder = cli("-m", *SHORT, "noise=thesis", "controller.period=5ms,10ms", "hydra.sweeper.workers=0").folder
+    script = f"""
+import sys
+from runner.cli.main import dispatch
+
+code = dispatch(["report", {str(folder)!r}, "-o", {str(tmp_path / "report")!r}, "-q"])
+print(code, sorted({{"dask", "hydra", "optuna", "pandas"}} & {{*sys.modules}}))
+"""
+    ended = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True, timeout=PATIENCE)
+    assert ended.stdout.splitlines()[-1] == "0 []"

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pyarrow
 import pytest
 from fixtures.stored import RUNS
 
@@ -88,7 +89,7 @@ def test_a_playback_of_a_diverged_run_leaves_out_what_is_no_number(runs):
     assert failed.status == "failed"
     trace = failed.trace()
     trace.loc[len(trace) - 1, "q1"] = np.nan
-    failed.__dict__["_frame"] = trace
+    failed.__dict__["_table"] = pyarrow.Table.from_pandas(trace)
     shown = playback(failed, "caption")
     assert np.isfinite(shown.path).all()
     assert np.isfinite([body.positions for body in shown.bodies]).all()

@@ -8,7 +8,7 @@ import pyarrow
 import pytest
 
 from runner.store import parquet
-from runner.store.parquet import float_column, list_column, text_column, truth_column, whole_column
+from runner.store.parquet import float_column, list_column, numbers, text_column, truth_column, whole_column
 
 
 @pytest.mark.parametrize("texts", [[], ["", "ä 中", "a" * 100]])
@@ -32,6 +32,13 @@ def test_lists_lack_numbers_and_may_lack_themselves():
     assert found.null_count == 1
     assert list_column(np.arange(3.0), sizes, np.full(4, True)).to_pylist() == [[0.0, 1.0], [], [2.0], []]
     found.validate(full=True)
+
+
+@pytest.mark.parametrize("chunks", [[], [[]], [[0.5, None, -2.0]], [[1.0], [None, None], [], [3.0, 4.0]]])
+def test_numbers_of_a_column_are_those_of_pyarrow(chunks):
+    column = pyarrow.chunked_array(chunks, pyarrow.float64())
+    np.testing.assert_array_equal(numbers(column.chunks), column.to_numpy())
+    np.testing.assert_array_equal(numbers(column[1:].chunks), column.to_numpy()[1:])
 
 
 def test_texts_beyond_what_a_column_addresses_are_refused(monkeypatch):

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+import pyarrow
 import pytest
 from fixtures.studies import Made
 
@@ -43,10 +44,11 @@ def test_repetitions_that_diverge_are_counted_and_the_others_told(
 
 def test_two_draws_part_when_their_joints_are_a_radian_apart(runs: Mapping[str, Run]) -> None:
     first, second = (replace(runs[NAME]) for _ in range(2))
-    parting = first.trace()["t"][3]
-    apart = np.where(first.trace()["t"] < parting, 1e-12, 2.0)
-    second.__dict__["_frame"] = first.trace().assign(q2=first.trace()["q2"] + apart)
+    parting = first.t[3]
+    apart = np.where(first.t < parting, 1e-12, 2.0)
+    q2 = first._table.column_names.index("q2")
+    second.__dict__["_table"] = first._table.set_column(q2, "q2", pyarrow.array(first.signal("q2") + apart))
     assert folding.parted_at(first, second) == pytest.approx(parting)
     assert folding.parted_at(first, first) is None
-    second.__dict__["_frame"] = second.trace()[:3]  # diverged
+    second.__dict__["_table"] = second._table[:3]  # diverged
     assert folding.parted_at(first, second) is None

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
+import pyarrow
 import pytest
 
 from runner.reporting.published_claims import load_claims
@@ -27,7 +27,7 @@ def run(error=1.0, ticks=400, staged=False, kind="goal", caveats=()):
     made = Run(Path("run"), {"trajectory": {"kind": kind}}, record)
     chatter = 50.0 * np.where(np.arange(ticks + 1) % 2, 1.0, -1.0)
     errors = {f"{name}_{axis}": error * np.exp(-3.0 * t) for name in ("error", "macro_error") for axis in "xyz"}
-    made.__dict__["_frame"] = pd.DataFrame({"t": t, "tau1": chatter, "tau2": np.sin(t)} | errors)
+    made.__dict__["_table"] = pyarrow.table({"t": t, "tau1": chatter, "tau2": np.sin(t)} | errors)
     return made
 
 
