@@ -35,7 +35,7 @@ class _Command:
 
     Attributes:
         name: Description of the row.
-        arguments: What follows `runner`.
+        arguments: What follows `runner`; SWEEP is the folder of a sweep.
         target: The largest ratio; None where none is asked for.
         line: The line at whose end TAB is pressed; empty for a command.
         first: Whether the cache folder is empty.
@@ -51,7 +51,7 @@ class _Command:
 _COMMANDS = (
     _Command("runner robot=macro, stored already", ("robot=macro",), 2.5),
     _Command("runner report nosuch", ("report", "nosuch"), 0.3),
-    _Command("runner report SWEEP, of 20 runs", ("report", "latest", "--output", "report"), 15.0),
+    _Command("runner report SWEEP, of 20 runs", ("report", "SWEEP", "--output", "report"), 15.0),
     *(
         _Command(f"TAB at `runner {line}`", (), target, f"runner {line}", first)
         for line, target, first in (
@@ -96,14 +96,19 @@ def _ratios(folder: Path) -> bool:
     hydra: list[float] = []
     kept = {**os.environ, "XDG_CACHE_HOME": str(folder / "cache")}
     _cpu(folder, [_RUNNER, *_SWEEP], kept)
+    (sweep,) = (folder / "outputs" / "sweeps").iterdir()
+
+    def words(command: _Command) -> list[str]:
+        return [_RUNNER, *(str(sweep) if word == "SWEEP" else word for word in command.arguments)]
+
     for command in _COMMANDS:  # so that all is compiled, stored and kept
-        _cpu(folder, [_RUNNER, *command.arguments], _environment(command, kept))
+        _cpu(folder, words(command), _environment(command, kept))
     for repeat in range(REPEATS):
         hydra.append(_cpu(folder, _HYDRA, kept))
         for number, command in enumerate(_COMMANDS):
             cache = {"XDG_CACHE_HOME": str(folder / f"empty_{repeat}_{number}")} if command.first else {}
             environment = _environment(command, {**kept, **cache})
-            found.setdefault(command, []).append(_cpu(folder, [_RUNNER, *command.arguments], environment))
+            found.setdefault(command, []).append(_cpu(folder, words(command), environment))
     print(f"  {'import hydra':50} {median(hydra):5.2f} s")
     met = [_judge_ratio(command, median(seconds), median(hydra)) for command, seconds in found.items()]
     return all(met)
