@@ -2,7 +2,8 @@
 
 Without a baseline, the spec of the run is compared, and no repetition may break a bound. With
 `--max-failure-probability` the whole 95 % interval of the probability of failing must be below P. `--save-baseline`
-writes the baseline of a sweep, and `--baseline` then lists the changes. Exit code 1: the check failed.
+writes the baseline of a sweep, and `--baseline` then lists the changes. If FILE has bands, `--save-baseline` sets their
+ends from a sweep over the seed. Exit code 1: the check failed.
 
 Example: runner check latest --baseline baseline.yaml --format markdown
 """
@@ -34,7 +35,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a run or a sweep, or latest")
     parser.add_shared(
         baseline="bands or a saved sweep (default: the spec, or the experiment's)",
-        save_baseline="write the baseline of a sweep",
+        save_baseline="write the baseline of a sweep, or set the bands in FILE",
     )
     parser.add_argument(
         "--max-failure-probability",
@@ -49,12 +50,15 @@ def run(options: argparse.Namespace) -> int:
     """Check a run or sweep against a baseline, or save one."""
     markdown = options.format == ["markdown"]
     from runner import store
-    from runner.store.baselines import Bands, cell_names, load_baseline, save_baseline
+    from runner.store.baselines import Bands, cell_names, load_baseline, renew_bands, save_baseline
     from runner.store.kinds import kind_of
 
     if options.save_baseline:
-        count = save_baseline(store.open_sweep(options.folder), options.save_baseline)
-        print(f"saved: {count} metrics of {options.folder} are now in {options.save_baseline}")
+        path, sweep = options.save_baseline, store.open_sweep(options.folder)
+        before = load_baseline(path) if path.exists() else None
+        bands = before if isinstance(before, Bands) else None
+        count = renew_bands(bands, list(sweep.runs()), path) if bands else save_baseline(sweep, path)
+        print(f"saved: {count} metrics of {options.folder} are now in {path}")
         return 0
     baseline = load_baseline(options.baseline) if options.baseline else None
     if not (baseline is None or isinstance(baseline, Bands)):

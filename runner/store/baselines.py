@@ -1,21 +1,26 @@
 """Baselines of `runner check`: bands for the metrics of a run, and stored metrics of the cells of a sweep.
 
-A file of bands is `{schema: 1, metrics: {NAME: {min:, max:, reason:}}}`. `runner check --save-baseline` writes the file
-of a sweep, `{schema: 1, cells: {OVERRIDES: {NAME: {unit:, median:, min:, max:, seeds:}}}}`.
+A file of bands is `{schema: 1, metrics: {NAME: {min:, max:, reason:, margin:}}}`. A file of a sweep is `{schema: 1,
+cells: {OVERRIDES: {NAME: {unit:, median:, min:, max:, seeds:}}}}`. `runner check --save-baseline` writes the file of a
+sweep. If the file exists and has bands, it sets their ends again, from a sweep over the seed.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 import yaml
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
-from pydantic import AfterValidator, Field, ValidationError
+from pydantic import AfterValidator, Field, NonNegativeFloat, ValidationError
 
 from runner.base.bounded_yaml import Bounds, YamlError, read_yaml
+from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import RunnerError, StoreError, nearest, unknown
 from runner.base.limits import Limit, read_text
 from runner.base.paths import studies_dir
@@ -27,10 +32,13 @@ from runner.plugins.metric_units import unit_of, units
 from runner.schema.model import StrictModel
 from runner.store import Run, Sweep
 from runner.store.atomic import write_atomically
+from runner.store.record import Metric
 
 SCHEMA = 1
 _BOUNDS = Bounds(Limit(200_000_000, "bytes"), values=5_000_000)  # about 10^5 cells
 _ROUNDING = 1e-6  # relative; rounding differences between machines
+_OTHER_MACHINES = 0.02  # relative; the same, over a whole run
+_OF_SEEDS = re.compile(r"; \d+ seeds gave .*$", re.DOTALL)  # at the end of a reason
 _FOLDER = "references"  # of a study
 
 
@@ -39,9 +47,11 @@ class Band(Bound):
 
     Attributes:
         reason: Why the band has these ends.
+        margin: Distance of the ends from the medians of the seeds, in the metric's unit; see `renew_bands`.
     """
 
     reason: Annotated[str, Field(min_length=1)]
+    margin: NonNegativeFloat | None = None
 
 
 class Spread(StrictModel):
@@ -214,6 +224,57 @@ def save_baseline(sweep: Sweep, path: Path) -> int:
     head = f"# Metrics of each cell over its seeds; written by `runner check DIR --save-baseline {path.name}` after\n"
     write_atomically(path, f"{head}# {escaped(sweep.command)}\n{text}".encode())
     return sum(map(len, cells.values()))
+
+
+def renew_bands(bands: Bands, runs: Sequence[Run], path: Path) -> int:
+    """Set the ends of the bands in a file from runs that differ only in the seed; return the number of bands.
+
+    A band has the smallest and the largest of the runs' medians, and `margin` on both sides. Without `margin` it is
+    half the interquartile range of all repetitions, some three standard errors of a median of 40, and 2 % of the
+    largest median for the rounding of other machines. The file keeps its comments, its metrics and their reasons; a
+    reason ends with the medians.
+
+    Raises:
+        StoreError: if the runs have fewer than two seeds, differ in another key, failed, or lack a median.
+    """
+    if len({run.config["seed"] for run in runs}) < 2:
+        raise StoreError(f"{path} has bands, which need two or more seeds. Sweep the seed, such as 'seed=range(0,5)'.")
+    configs = [{dotted(place): value for place, value in leaves(run.config)} | {"seed": None} for run in runs]
+    known = dict.fromkeys(key for config in configs for key in config)
+    if swept := [key for key in known if any(config.get(key) != configs[0].get(key) for config in configs)]:
+        raise StoreError(f"{path} has bands, which need runs that differ only in the seed, not in {', '.join(swept)}.")
+    if failed := [f"  - {run.folder}: {run.failure}" for run in runs if run.failure]:
+        raise StoreError("\n".join(["a failed run cannot be in a baseline:", *failed]))
+    if absent := [name for name in bands.bands if any(run.median(name) is None for run in runs)]:
+        raise StoreError(f"{path}: some runs have no median of {', '.join(absent)}. Remove such bands from the file.")
+    renewed = {name: _renewed(band, [run.metrics[name] for run in runs]) for name, band in bands.bands.items()}
+    head = "".join(takewhile(lambda line: line.startswith("#"), read_text(path, _BOUNDS.size).splitlines(True)))
+    text = yaml.safe_dump({"schema": SCHEMA, "metrics": renewed}, sort_keys=False, width=116, allow_unicode=True)
+    write_atomically(path, f"{head}{text}".encode())
+    return len(renewed)
+
+
+def _renewed(band: Band, seeds: Sequence[Metric]) -> dict[str, Any]:
+    medians = [seed.median for seed in seeds if seed.median is not None]
+    low, high = min(medians), max(medians)
+    margin = band.margin
+    if margin is None:
+        quartiles = np.nanpercentile(np.concatenate([seed.read() for seed in seeds]), [25, 75])
+        margin = 0.5 * float(np.ptp(quartiles)) + _OTHER_MACHINES * high
+    spread = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
+    unit = "" if seeds[0].unit == "1" else f" {seeds[0].unit}"
+    ends = {
+        "min": max(0.0, _to_three_digits(low - margin, math.floor)),
+        "max": _to_three_digits(high + margin, math.ceil),
+    }
+    reason = f"{_OF_SEEDS.sub('', band.reason)}; {len(seeds)} seeds gave {spread}{unit}"
+    kept = {end: value for end, value in ends.items() if getattr(band, end) is not None}
+    return {**kept, "reason": reason} | ({} if band.margin is None else {"margin": band.margin})
+
+
+def _to_three_digits(value: float, direction: Callable[[float], int]) -> float:
+    digits = 2 - math.floor(math.log10(abs(value) or 1.0))
+    return round(direction(value * 10.0**digits) / 10.0**digits, digits)
 
 
 def find_moves(sweep: Sweep, baseline: Cells) -> list[Move]:

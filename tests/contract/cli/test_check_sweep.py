@@ -122,3 +122,17 @@ def test_markdown_is_for_sweeps(cli, learned):
     ending = cli("check", folder, "--baseline", path, "--format", "markdown")
     assert ending.code == 2
     assert "--format markdown: only for the baseline of a sweep" in ending.err
+
+
+def test_a_file_of_bands_keeps_its_metrics_and_holds_the_seeds(cli, outputs, tmp_path):
+    sweep = cli(*SWEEP, outputs, "seed=0,1", "repetitions=5").folder
+    path = tmp_path / "bands.yaml"
+    path.write_text("# Own\nschema: 1\nmetrics:\n  energy: {min: 0, max: 1e-3, reason: the move}\n")
+    assert cli("check", sweep, "--baseline", path).code == 1
+    assert cli("check", sweep, "--save-baseline", path).out == f"saved: 1 metrics of {sweep} are now in {path}\n"
+    assert cli("check", sweep, "--baseline", path).code == 0
+    (name,) = yaml.safe_load(path.read_text())["metrics"]
+    assert name == "energy"
+    other = cli(*SWEEP, outputs, AXIS, "repetitions=5").folder
+    ending = cli("check", other, "--save-baseline", path)
+    assert (ending.code, ending.err.count("two or more seeds")) == (2, 1)

@@ -2,15 +2,16 @@
 
 import math
 
+import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from runner.base.errors import StoreError
+from runner.base.errors import RunnerError, StoreError
 from runner.config.compose.files import group_options
 from runner.plugins.metric_units import unit_of
 from runner.reporting.published_claims import load_claims
 from runner.store import Run
-from runner.store.baselines import Band, Bands, check_run, load_baseline, load_shipped, shipped_baselines
+from runner.store.baselines import Band, Bands, check_run, load_baseline, load_shipped, renew_bands, shipped_baselines
 
 
 @pytest.fixture
@@ -170,3 +171,77 @@ def test_every_figure_that_carries_a_claim_has_a_reference():
     assert {f"{name}.{preset}" for name in experiments for preset in ("full_equations", "as_reported")} <= set(
         shipped_baselines()
     )
+
+
+FILE = """\
+# Two bands
+# of an arm
+schema: 1
+metrics:
+  energy: {min: 0.0, max: 1.0, reason: 'a sum; over all; 3 seeds gave 1 to 2 J'}
+  settling_time: {max: 1.0, reason: a transient, margin: 0.3}
+  peak_torque: {min: 0.0, max: 0.0, reason: no torque}
+"""
+
+
+def seeds(tmp_path, changes=({}, {}), failed=False, **metrics):
+    """Return runs with seeds 0, 1, ..., from the values of each metric in each run."""
+    runs = []
+    for seed, change in enumerate(changes):
+        own = {name: values[seed] for name, values in metrics.items()}
+        record = {
+            "repetitions": 4, "status": "failed" if failed else "ok", "provenance": {},
+            "failure": {"repetition": 0, "time": 0.1, "joint": "q1", "reason": "diverged"} if failed else None,
+            "metrics": {name: {"unit": unit_of(name), "median": None if np.isnan(each).all() else np.median(each),
+                               "min": min(each), "max": max(each), "values": each} for name, each in own.items()},
+        }  # fmt: skip
+        runs.append(Run(tmp_path, {"seed": seed, "controller": {"kind": "pd", "period": 0.01}} | change, record))
+    return runs
+
+
+VALUES = {
+    "energy": ([10.0, 11.0, 13.0, 14.0], [12.0, 12.0, 20.0, 20.0]),
+    "settling_time": ([1.0] * 4, [1.1] * 4),
+    "peak_torque": ([0.0] * 4, [0.0] * 4),
+}
+
+
+def renew(tmp_path, runs, text=FILE):
+    path = tmp_path / "bands.yaml"
+    path.write_text(text)
+    return path, renew_bands(load_baseline(path), runs, path)
+
+
+def test_bands_are_the_medians_of_the_seeds_with_half_the_quartiles_or_the_margin(tmp_path):
+    path, count = renew(tmp_path, seeds(tmp_path, **VALUES))
+    bands = load_baseline(path).bands
+    assert count == 3
+    # Quartiles of all repetitions of energy are 11.75 and 15.5: 12 and 16, less and plus 1.875 and 2 % of 16.
+    assert (bands["energy"].min, bands["energy"].max) == (9.8, 18.2)
+    assert bands["energy"].reason == "a sum; over all; 2 seeds gave 12 to 16 J"
+    assert (bands["settling_time"].min, bands["settling_time"].max, bands["settling_time"].margin) == (None, 1.4, 0.3)
+    assert (bands["peak_torque"].min, bands["peak_torque"].max) == (0.0, 0.0)
+    text = path.read_text()
+    assert text.startswith("# Two bands\n# of an arm\nschema: 1\n")
+    assert renew(tmp_path, seeds(tmp_path, **VALUES), text)[0].read_text() == text
+
+
+@pytest.mark.parametrize(
+    ("changes", "options", "problem"),
+    [
+        ([{}], {}, "two or more seeds"),
+        ([{}, {"seed": 0}], {}, "two or more seeds"),
+        ([{}, {"controller": {"kind": "pd", "period": 0.02}, "plant": 1}], {}, "not in controller.period, plant."),
+        ([{}, {}], {"failed": True}, "cannot be in a baseline:\n  - .* at t = 0.1 s"),
+        ([{}, {}], {"energy": ([1.0] * 4, [math.nan] * 4)}, "no median of energy. Remove"),
+    ],
+)
+def test_bands_need_good_runs_that_differ_in_the_seed_only(tmp_path, changes, options, problem):
+    with pytest.raises(StoreError, match=problem):
+        renew(tmp_path, seeds(tmp_path, changes, **VALUES | options))
+    assert (tmp_path / "bands.yaml").read_text() == FILE
+
+
+def test_a_band_of_a_metric_that_the_runs_lack_is_rejected(tmp_path):
+    with pytest.raises(RunnerError, match="no metric 'peak_torque'"):
+        renew(tmp_path, seeds(tmp_path, **{name: VALUES[name] for name in ("energy", "settling_time")}))
