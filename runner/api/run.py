@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from runner.analysis.sensitivity import Sensitivity
     from runner.recordings.compare import RecordingComparison
-    from runner.reporting.key_metrics import KeyMetric
+    from runner.reporting.metric_titles import KeyMetric
 
 _IN_TEXT, _ON_PAGE = 1, 6
 
@@ -142,7 +142,7 @@ class Run(store.Run):
         return ", ".join(str(part) for part in (config["robot"]["name"], *kinds))
 
     def _key_metrics(self, most: int) -> "Sequence[KeyMetric]":
-        from runner.reporting.key_metrics import key_metrics
+        from runner.reporting.metric_titles import key_metrics
 
         return key_metrics(self, most)
 

@@ -1,7 +1,5 @@
 """Verdicts on every equation of a source, their table as CSV, and the inventory of the source."""
 
-import csv
-import io
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -12,7 +10,7 @@ from runner.audit.sources import Where, source_of, sources
 from runner.audit.verdict import SAMPLES, VERDICTS, AuditError, Check, CheckedEquation, Verdict
 from runner.base import progress
 from runner.base.data_file import read_data
-from runner.base.sanitize import table_cell
+from runner.base.sanitize import csv_text
 from runner.schema.model import StrictModel
 
 
@@ -63,10 +61,8 @@ def counts(checked: Iterable[CheckedEquation]) -> dict[Verdict, int]:
 
 def as_csv(checked: Sequence[CheckedEquation]) -> str:
     """Return the verdicts as comma-separated values with a header; at least one."""
-    stream, rows = io.StringIO(), [_row(each) for each in checked]
-    table = csv.writer(stream, lineterminator="\n")
-    table.writerows([list(rows[0]), *(map(table_cell, row.values()) for row in rows)])
-    return stream.getvalue()
+    rows = [_row(each) for each in checked]
+    return csv_text([rows[0], *(row.values() for row in rows)])
 
 
 def _row(checked: CheckedEquation) -> dict[str, str]:

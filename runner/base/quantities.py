@@ -23,25 +23,6 @@ _SMALLER = {
 }
 
 
-class Shown(str):
-    """Formatted number that stores its value, so that a table column can be converted to one unit.
-
-    Attributes:
-        value: The number.
-        digits: Number of significant digits.
-    """
-
-    __slots__ = ("digits", "value")
-    value: float
-    digits: int
-
-    def __new__(cls, text: str, value: float, digits: int) -> Shown:
-        """Return the formatted number with its value."""
-        shown = super().__new__(cls, text)
-        shown.value, shown.digits = value, digits
-        return shown
-
-
 def number(
     value: float | None, digits: int = 3, rounding: float = 0.0, zeros: bool = False, plain: float = 1e-2
 ) -> str:
@@ -59,18 +40,9 @@ def number(
     if math.isinf(value):
         return "∞" if value > 0.0 else "-∞"
     if value == 0.0:
-        return Shown("0", 0.0, digits)
+        return "0"
     if 0.0 < abs(value) < rounding:
         return ROUNDED
-    return Shown(_text(value, digits, zeros, plain), value, digits)
-
-
-def plain_number(value: float | None) -> str:
-    """Return a number with five digits for a terminal, or "-" for a missing value."""
-    return "-" if value is None else f"{value:.5g}"
-
-
-def _text(value: float, digits: int, zeros: bool, plain: float) -> str:
     if plain <= abs(value) < 1e4:
         text = f"{value:#.{digits}g}".removesuffix(".") if zeros else f"{value:.{digits}g}"
         return f"{value:.0f}" if "e" in text else text
@@ -78,6 +50,11 @@ def _text(value: float, digits: int, zeros: bool, plain: float) -> str:
     if value == float(f"{value:.0e}") and not zeros:
         mantissa = mantissa.partition(".")[0]  # 6·10⁻⁵ must not suggest more digits
     return f"{mantissa}·10{str(int(exponent)).translate(SUPERSCRIPT)}"
+
+
+def plain_number(value: float | None) -> str:
+    """Return a number with five digits for a terminal, or "-" for a missing value."""
+    return "-" if value is None else f"{value:.5g}"
 
 
 def with_powers(text: str) -> str:

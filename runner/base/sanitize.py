@@ -1,8 +1,10 @@
-"""Sanitized external text for display: one line, no control characters, limited length; aligned columns."""
+"""Sanitized external text for display: one line, no control characters, limited length."""
 
+import csv
+import io
 import re
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 VALUE = 200
 """Largest length of a quoted value, in characters."""
@@ -10,7 +12,6 @@ LINE = 2000
 """Largest length of a line of a message, in characters."""
 LINES = 50
 """Largest number of lines of a message."""
-_NAMES = 8
 _OVERRIDES = ("LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI")
 _SPACE = re.compile(r"\s+")
 
@@ -47,18 +48,10 @@ def quoted(value: object) -> str:
         return f"a value too large to show ({type(value).__name__})"
 
 
-def few(names: Sequence[str]) -> str:
-    """Return names as a list, with at most the first eight."""
-    more = f" and {len(names) - _NAMES} more" if len(names) > _NAMES else ""
-    return ", ".join(names[:_NAMES]) + more
-
-
-def align_columns(rows: Sequence[Sequence[str]], indent: str = "  ") -> str:
-    """Return rows of equal length as lines with aligned columns; the cells are sanitized for a terminal."""
-    rows = [[one_line(cell) for cell in row] for row in rows]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    lines = ("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)) for row in rows)
-    return "\n".join(f"{indent}{line}".rstrip() for line in lines)
+def few(names: Sequence[str], most: int = 8, separator: str = ", ") -> str:
+    """Return names as a list, of many the first ones and the number of the others."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return separator.join(names[:most]) + more
 
 
 def table_cell(text: str) -> str:
@@ -68,6 +61,14 @@ def table_cell(text: str) -> str:
     except ValueError:
         return f"'{escaped(text)}" if text.startswith(("=", "+", "-", "@", "\t", "\r", "\n")) else escaped(text)
     return text
+
+
+def csv_text(rows: Iterable[Iterable[object]]) -> str:
+    """Return rows as comma-separated values, each cell as by `table_cell`; NaN is an empty cell."""
+    stream = io.StringIO(newline="")
+    cells = ([table_cell("" if value != value else str(value)) for value in row] for row in rows)
+    csv.writer(stream, lineterminator="\n").writerows(cells)
+    return stream.getvalue()
 
 
 def plain(text: str) -> str:

@@ -13,9 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
-from runner.base.quantities import plain_number
-from runner.base.sanitize import align_columns
 from runner.cli.arguments import Parser
+from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
 if TYPE_CHECKING:
     from runner.audit.own_formulas import Difference
@@ -72,12 +71,11 @@ def _report(quantity: str, differences: "list[Difference]", tolerance: float) ->
     wrong = [each for each in differences if each.largest > tolerance]
     print(f"{quantity}: {len(differences) - len(wrong)} of {len(differences)} formulas agree")
     if wrong:
-        rows = [["element", "largest error", "typical", "formula gives", "true", "at q [rad]", ""]]
+        rows: list[list[Cell]] = []
         for each in wrong:
             at = " ".join(f"{angle:.3f}" for angle in each.at)
             hint = f"it is the true {each.instead}" if each.instead else ""
-            rows.append(
-                [each.element, *map(plain_number, (each.largest, each.typical, each.found, each.true)), at, hint]
-            )
-        print(align_columns(rows))
+            rows.append([each.element, *map(Number, (each.largest, each.typical, each.found, each.true)), at, hint])
+        header = ["element", *numbers("largest error", "typical", "formula gives", "true"), "at q [rad]", ""]
+        print(terminal(Table("", header, rows)))
     return len(wrong)

@@ -8,8 +8,9 @@ from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from runner.base.quantities import plain_number
-from runner.base.sanitize import align_columns, one_line
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
+from runner.reporting.table import Number, Table, numbers, terminal
 
 if TYPE_CHECKING:
     from runner.store import Calibration
@@ -35,16 +36,18 @@ def run(options: Namespace) -> int:
 
 
 def _report(done: "Calibration") -> str:
-    rows = [["error of", "unit", "median", "min", "max", "standard deviation"]]
+    rows = []
     for name, summary in done.record["errors"].items():
         deviation = done.summary("deviations", name)["median"]
         values = (summary["median"], summary["min"], summary["max"], deviation)
-        rows.append([name, summary["unit"], *map(plain_number, values)])
+        rows.append([name, summary["unit"], *map(Number, values)])
+    header = ["error of", "unit", *numbers("median", "min", "max", "standard deviation")]
+    errors = terminal(Table("", header, rows))
     judged = done.consistency
     if judged is None:
-        return align_columns(rows)
+        return errors
     band = f"{plain_number(judged['lower'])} to {plain_number(judged['upper'])}"
     verdict = "as large as" if judged["holds"] else "not as large as"
     mean, share = plain_number(judged["mean"]), f"{100.0 * judged['level']:g} %"
     text = f"errors are {verdict} predicted: mean normalised error squared {mean}, {share} band {band}"
-    return f"{align_columns(rows)}\n{text}"
+    return f"{errors}\n{text}"

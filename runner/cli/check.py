@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError
 from runner.base.quantities import plain_number
-from runner.base.sanitize import align_columns, one_line
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored
+from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
 if TYPE_CHECKING:
     from runner.statistics.proportion import Share
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from runner.store import Run, Sweep
     from runner.store.baselines import Band, Bands, Cells, Finding, Move
 
-_MOVE_COLUMNS = ("cell", "metric", "was", "is", "moved", "beyond the seeds' spread")
+_MOVE_COLUMNS = ("cell", "metric", *numbers("was", "is", "moved"), "beyond the seeds' spread")
 _DIGITS = 3  # significant digits of the number of repetitions that are still needed
 _SAYS = {"kept": "good", "broken": "broken", "untold": "too few repetitions to tell"}
 
@@ -90,18 +91,18 @@ def _probability(text: str) -> float:
 
 def _check_sweep(sweep: "Sweep", baseline: "Cells", markdown: bool) -> int:
     """Print the changes since a sweep's baseline was saved; return 1 if one exceeds the spread of the seeds."""
+    from runner.reporting.export.columns import write_markdown
     from runner.store.baselines import find_moves
 
     moves = find_moves(sweep, baseline)
     beyond = sum(move.beyond for move in moves)
     total = sum(map(len, baseline.values()))
     summary = f"{total} metrics of {len(baseline)} cells: {len(moves)} moved, {beyond} beyond the seeds' spread"
-    rows = [list(_MOVE_COLUMNS), *map(_move_row, moves)]
+    table = Table("", _MOVE_COLUMNS, list(map(_move_row, moves)))
     if markdown:
-        lines = [f"**{summary}**", "", *_markdown(rows)] if moves else [f"**{summary}**"]
-        print("\n".join(lines))
+        print("\n".join([f"**{summary}**", *(["", write_markdown(table)] if moves else [])]))
     else:
-        print("\n".join([summary, align_columns(rows)]) if moves else f"good: {summary}")
+        print("\n".join([summary, terminal(table)]) if moves else f"good: {summary}")
     return 1 if beyond else 0
 
 
@@ -112,9 +113,8 @@ def _move_row(move: "Move") -> list[str]:
     was, unit = "-", ""
     if move.was is not None:
         unit = "" if move.was.unit == "1" else f" {move.was.unit}"
-        was = plain_number(move.was.median)
-        if move.was.seeds > 1:
-            was += f" ({plain_number(move.was.min)} to {plain_number(move.was.max)})"
+        ends = (move.was.min, move.was.max) if move.was.seeds > 1 else ()
+        was = Number(move.was.median, *ends).text(plain_number)
     return [move.cell, move.metric, was + unit, plain_number(move.value) + unit, _direction(move), beyond]
 
 
@@ -125,11 +125,6 @@ def _direction(move: "Move") -> str:
         return "new" if move.was is None else "up" if new is None else "down"
     share = f" {100.0 * abs(new - old) / abs(old):.2g} %" if old else ""
     return ("up" if new > old else "down") + share
-
-
-def _markdown(rows: "Sequence[Sequence[str]]") -> list[str]:
-    head, *others = ["| " + " | ".join(one_line(cell).replace("|", "\\|") for cell in row) + " |" for row in rows]
-    return [head, "|" + "---|" * len(rows[0]), *others]
 
 
 def _check_bands(runs: "Sequence[Run]", given: "Bands | None") -> int:
@@ -151,9 +146,9 @@ def _check_bands(runs: "Sequence[Run]", given: "Bands | None") -> int:
 def _report(run: "Run", baseline: "Bands", findings: "Sequence[Finding]") -> str:
     wrong = [finding for finding in findings if not finding.good]
     head = f"{run.folder}: {len(wrong)} of {len(findings)} metrics fall short of {baseline.name}"
-    rows = [[f.metric, plain_number(f.value), _range(f.band), f.band.reason] for f in wrong]
+    rows: list[list[Cell]] = [[f.metric, Number(f.value), _range(f.band), f.band.reason] for f in wrong]
     failure = [f"  {run.failure}"] if run.failure else []
-    return "\n".join([head, *failure, align_columns([["metric", "found", "band", "reason"], *rows])])
+    return "\n".join([head, *failure, terminal(Table("", ["metric", *numbers("found", "band"), "reason"], rows))])
 
 
 def _range(band: "Band") -> str:
@@ -164,14 +159,14 @@ def _range(band: "Band") -> str:
 
 def _check_spec(runs: "Sequence[Run]", cells: Sequence[str], at_most: float | None) -> int:
     """Print a line for each bound of some runs; return 1 if one is broken or there are too few repetitions."""
-    from runner.reporting.spec_blocks import HEADER
+    from runner.reporting.spec_blocks import COLUMNS
 
     rows, good = [], []
     for run, named in zip(runs, [[cell] for cell in cells] or [[]], strict=True):
         for said, *row in _rows(run, at_most):
             rows.append([*named, *row])
             good.append(said == "kept")
-    print(align_columns([[*(["cell"] if cells else []), *HEADER, "verdict"], *rows]))
+    print(terminal(Table("", [*(["cell"] if cells else []), *COLUMNS, "verdict"], rows)))
     count = f"{len(good)} bound{'s' if len(good) > 1 else ''}" + (f" of {len(runs)} runs" if len(runs) > 1 else "")
     good_text, bad_text = ("kept in every repetition", "broken") if at_most is None else (
         f"each failing with a probability below {at_most:g}", f"not shown to fail with a probability below {at_most:g}"

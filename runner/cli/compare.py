@@ -15,8 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from runner.base.errors import RunnerError
-from runner.base.quantities import plain_number
-from runner.base.sanitize import align_columns, one_line
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored
 from runner.store.kinds import kind_of, open_stored
 
@@ -205,20 +204,26 @@ def _print_recording(folder: Path, recording: Path, options: Namespace) -> None:
 
 
 def _recording_text(found: "RecordingComparison") -> str:
+    from runner.plugins.metric_units import unit_of
     from runner.recordings import words
+    from runner.reporting.recording_report import friction, residuals
+    from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
+    metrics: list[list[Cell]] = [
+        [name, unit_of(name) or "", *map(Number, both)] for name, both in found.metrics.items()
+    ]
     parts = [
         f"run        {found.run.folder}",
         f"recording  {found.recording.path}",
         one_line(words.aligned_text(found)),
         "",
-        align_columns([words.RESIDUAL_HEADER, *words.residual_rows(found, plain_number)], indent=""),
+        terminal(residuals(found), indent=""),
         "",
         one_line(words.FIT),
         "",
-        align_columns([["metric", "unit", "run", "recording"], *words.metric_rows(found, plain_number)], indent=""),
+        terminal(Table("", ["metric", "unit", *numbers("run", "recording")], metrics), indent=""),
         "",
         *words.friction_lines(found),
     ]
-    rows = words.friction_rows(found, plain_number)
-    return "\n".join([*parts, *([align_columns([words.FRICTION_HEADER, *rows], indent="")] if rows else [])])
+    identified = friction(found)
+    return "\n".join([*parts, *([terminal(identified, indent="")] if identified.rows else [])])

@@ -31,7 +31,6 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Print the results, or what can be removed."""
     from runner.base.errors import RunnerError
-    from runner.base.sanitize import align_columns, one_line
 
     if options.yes and options.delete is None:
         raise RunnerError("--yes: only with --delete OLDER.")
@@ -41,6 +40,7 @@ def run(options: Namespace) -> int:
         _delete(options)
         return 0
     from runner.reporting.results import HEADER, rows_of, write_page
+    from runner.reporting.table import Table, terminal
 
     rows = rows_of(options.outputs)
     if options.output:
@@ -50,8 +50,8 @@ def run(options: Namespace) -> int:
     if not rows:
         print(f"nothing is stored in {options.outputs}")
         return 0
-    table = [[*HEADER, "folder"], *([*row.cells, str(row.entry.folder)] for row in rows)]
-    print(align_columns([[one_line(cell) for cell in cells] for cells in table], indent=""))
+    table = Table("", [*HEADER, "folder"], [[*row.cells, str(row.entry.folder)] for row in rows])
+    print(terminal(table, indent=""))
     return 0
 
 

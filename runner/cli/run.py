@@ -18,9 +18,10 @@ from typing import TYPE_CHECKING, Any
 
 from runner.base.errors import RunnerError
 from runner.base.paths import conf_dir
-from runner.base.sanitize import align_columns, one_line
+from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.files import outputs_dir, user_overrides
+from runner.reporting.table import Table, numbers, terminal
 from runner.store.kinds import WORD
 
 if TYPE_CHECKING:
@@ -186,25 +187,25 @@ def print_run(run: "Run", made: bool, thresholds: Any) -> int:
 
 def _print_metrics(run: "Run", made: bool) -> None:
     """Print the names of a run's parts, its folder, and its main metrics."""
-    from runner.reporting.key_metrics import key_metrics
+    from runner.reporting.metric_titles import key_metrics
 
     config, count = run.config, run.record["repetitions"]
     what = ", ".join(str(config[group][key]) for group, key in _NAMES)
     where = f"{'stored' if made else 'stored before'} in {run.folder}"
     repetitions = "1 repetition" if count == 1 else f"{count} repetitions"
     print(one_line(f"runner: {what}: {repetitions}, {where}"), file=sys.stderr)
-    rows = [[metric.title, metric.value, metric.remark] for metric in key_metrics(run, _METRICS)]
+    rows = key_metrics(run, _METRICS)
     if rows:
-        print(align_columns(rows), file=sys.stderr)
+        print(terminal(Table("", ["", *numbers(""), ""], rows)), file=sys.stderr)
 
 
 def _print_spec(run: "Run") -> None:
     """Print the fraction of repetitions that pass each bound of a run's spec, if it has one."""
     if run.spec is None:
         return
-    from runner.reporting.spec_blocks import HEADER, lacking_text, spec_rows
+    from runner.reporting.spec_blocks import COLUMNS, lacking_text, spec_rows
 
-    print(align_columns([HEADER, *spec_rows(run.spec)]), file=sys.stderr)
+    print(terminal(Table("", COLUMNS, spec_rows(run.spec))), file=sys.stderr)
     lacking = lacking_text(run.spec, run.metrics)
     if lacking:
         print(one_line(f"runner: {lacking}"), file=sys.stderr)
@@ -231,7 +232,7 @@ def print_sweep(ended: "Ended") -> int:
         rows = [[" ".join(overrides), why, str(where)] for overrides, why, where in ended.failures[:_FAILURES_SHOWN]]
         count = len(ended.failures)
         print(f"runner: {count} run{'s' if count > 1 else ''} failed", file=sys.stderr)
-        print(align_columns([["run", "why", "more in"], *rows]), file=sys.stderr)
+        print(terminal(Table("", ["run", "why", "more in"], rows)), file=sys.stderr)
         if len(ended.failures) > len(rows):
             print(f"  and {len(ended.failures) - len(rows)} more", file=sys.stderr)
     counts = ended.ends.caveats

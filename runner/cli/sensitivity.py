@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 
 from runner.base import progress
 from runner.base.quantities import plain_number
-from runner.base.sanitize import align_columns
 from runner.cli.arguments import Names, Parser, Stored
+from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
 if TYPE_CHECKING:
     from runner.analysis.sensitivity import Sensitivity
@@ -59,7 +59,7 @@ def run(options: Namespace) -> int:
     print(_about(stored, found))
     for name in names:
         print(f"\n{name}: {plain_number(found.metrics[name])} {_unit(name)}")
-        print(align_columns(_rows(found, name, compared.get(name))))
+        print(terminal(_table(found, name, compared.get(name))))
     print(*_notes(found), sep="\n")
     return _compare(found, compared) if options.finite_differences else 0
 
@@ -89,13 +89,13 @@ def _unit(name: str) -> str:
     return unit_of(name) or "1"
 
 
-def _rows(found: "Sensitivity", name: str, compared: "Differences | None") -> list[list[str]]:
+def _table(found: "Sensitivity", name: str, compared: "Differences | None") -> Table:
     """Return a table with a row for each parameter, the most important first."""
     unit = _unit(name)
-    head = ["parameter", "value", "unit", "derivative", "its unit", "elasticity"]
+    header = ["parameter", *numbers("value"), "unit", *numbers("derivative"), "its unit", *numbers("elasticity")]
     if compared is not None:
-        head += ["differences", "sure to", "gap"]
-    rows = [head]
+        header += numbers("differences", "sure to", "gap")
+    rows: list[list[Cell]] = []
     elasticities, derivatives = found.elasticities(name), found.derivatives[name]
     for place in found.ranked(name):
         parameter, elasticity, derivative = found.parameters[place], elasticities[place], derivatives[place]
@@ -103,15 +103,15 @@ def _rows(found: "Sensitivity", name: str, compared: "Differences | None") -> li
         by = unit if below == "1" else f"{unit} / {below}"
         rows.append(
             [
-                *(parameter.name, plain_number(parameter.value), parameter.unit, plain_number(derivative), by),
-                "-" if isnan(elasticity) else plain_number(elasticity),
+                *(parameter.name, Number(parameter.value), parameter.unit, Number(derivative), by),
+                Number(None if isnan(elasticity) else elasticity),
             ]
         )
         if compared is not None:
             doubt = _relative(compared.doubts[place], derivative)
             gap = _relative(compared.derivatives[place] - derivative, derivative)
-            rows[-1] += [plain_number(compared.derivatives[place]), f"{doubt:.1g}", f"{gap:.1g}"]
-    return rows
+            rows[-1] += [Number(compared.derivatives[place]), f"{doubt:.1g}", f"{gap:.1g}"]
+    return Table("", header, rows)
 
 
 def _relative(difference: float, derivative: float) -> float:

@@ -15,7 +15,6 @@ from runner.base.sanitize import one_line
 from runner.cli.arguments import Parser, Stored
 
 if TYPE_CHECKING:
-    from runner.reporting.export.paper_table import PaperTable
     from runner.sweeps.measurements import Measurements
 
 _ENDINGS = {".csv": "csv", ".parquet": "parquet", ".md": "markdown", ".tex": "latex", ".typ": "typst"}
@@ -54,7 +53,7 @@ def run(options: Namespace) -> int:
         from runner.reporting.export.paper_table import of_sweep
 
         table = of_sweep(measurements, sweep.command, options.metrics, options.by, swept)
-        return _put(_for_paper(table, chosen), options.output)
+        return _put(table.written(chosen), options.output)
     from runner.reporting.export.pooling import as_csv, as_parquet, selection
 
     frame = selection(measurements, options.metrics, options.by, swept)
@@ -100,7 +99,7 @@ def _of_run(options: Namespace, chosen: str) -> int:
     if chosen in ("", *_FOR_PAPER):
         from runner.reporting.export.paper_table import of_run
 
-        _put(_for_paper(of_run(run, options.metrics), chosen or "markdown"), options.output)
+        _put(of_run(run, options.metrics).written(chosen or "markdown"), options.output)
         if not chosen:
             print(options.folder)
         return 0
@@ -112,18 +111,10 @@ def _of_run(options: Namespace, chosen: str) -> int:
     return _put(as_parquet(frame, measured) if chosen == "parquet" else as_csv(frame), options.output)
 
 
-def _for_paper(table: "PaperTable", chosen: str) -> bytes:
-    from runner.reporting.export.latex import latex
-    from runner.reporting.export.markdown import markdown
-    from runner.reporting.export.typst_table import typst_table
-
-    write = {"markdown": markdown, "latex": latex, "typst": typst_table}[chosen]
-    return write(table).encode("utf-8", errors="replace")
-
-
-def _put(content: bytes, output: Path | None) -> int:
+def _put(content: str | bytes, output: Path | None) -> int:
     from runner.store.atomic import write_atomically
 
+    content = content.encode("utf-8", errors="replace") if isinstance(content, str) else content
     if output is None:
         sys.stdout.write(content.decode())
     else:

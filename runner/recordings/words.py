@@ -1,15 +1,10 @@
-"""Messages and table rows for the comparison of a recording with a run, on a terminal and in a report."""
+"""Messages for the comparison of a recording with a run, on a terminal and in a report."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from runner.base.quantities import quantity
-from runner.plugins.metric_units import unit_of
 from runner.recordings.compare import RecordingComparison
 
-Number = Callable[[float | None], str]
-
-RESIDUAL_HEADER = ["recorded - run", "unit", "mean", "rms", "largest", "fit"]
-FRICTION_HEADER = ["joint", "friction", "unit", "identified", "95 % interval", "in the run"]
 FIT = (
     "fit: 1 - |recorded - run| / |recorded - its mean|, from the normalised root mean square error of system "
     "identification; 1: the same, 0: the mean would be as good"
@@ -47,21 +42,6 @@ def aligned_text(found: RecordingComparison) -> str:
     return text
 
 
-def residual_rows(found: RecordingComparison, number: Number) -> list[list[str]]:
-    """Return a row of RESIDUAL_HEADER for each signal."""
-    return [
-        [residual.signal.words, residual.unit, *map(number, (residual.mean, residual.rms, residual.largest)),
-         "-" if residual.fit is None else f"{residual.fit:.4f}"]
-        for residual in found.residuals
-    ]  # fmt: skip
-
-
-def metric_rows(found: RecordingComparison, number: Number) -> list[list[str]]:
-    """Return name, unit, value of the run and of the recording of each metric."""
-    return [[name, unit_of(name) or "", number(run), number(recorded)]
-            for name, (run, recorded) in found.metrics.items()]  # fmt: skip
-
-
 def friction_lines(found: RecordingComparison) -> Iterator[str]:
     """Yield how friction was identified, or why it was not."""
     if found.friction is None:
@@ -72,18 +52,3 @@ def friction_lines(found: RecordingComparison) -> Iterator[str]:
         yield ONE_LOG
     for reason in found.friction.lacking:
         yield f"Friction cannot be identified of {reason}."
-
-
-def friction_rows(found: RecordingComparison, number: Number) -> list[list[str]]:
-    """Return a row of FRICTION_HEADER for viscous and one for Coulomb friction of each joint."""
-    rows = []
-    for joint in () if found.friction is None else found.friction.joints:
-        turns = joint.unit == "rad"
-        b, c = found.simulated_friction[joint.joint]
-        for kind, unit, value, half, simulated in (
-            ("viscous", "N m s/rad" if turns else "N s/m", joint.viscous, joint.viscous_half, b),
-            ("Coulomb", "N m" if turns else "N", joint.coulomb, joint.coulomb_half, c),
-        ):
-            interval = f"{number(value - half)} to {number(value + half)}"
-            rows.append([joint.joint, kind, unit, number(value), interval, number(simulated)])
-    return rows

@@ -11,9 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from runner.base.quantities import ROUNDING, choose_unit, number, plain_number, quantity, with_ends
+from runner.base.quantities import ROUNDING, choose_unit, number, quantity, with_ends
 from runner.reporting.comparison.pairs import Pairs, compare, label_text
 from runner.reporting.metric_titles import capital, title
+from runner.reporting.table import Cell, Column, Number, numbers
 from runner.statistics import SMALLEST_SAMPLE, Comparison, fewest_pairs, holm, holm_levels
 
 ALPHA = 0.05
@@ -156,12 +157,12 @@ class Answer(Asked):
         ]
 
     @property
-    def plain_cells(self) -> list[str]:
-        """The cells of a table as plain numbers in SI units: HEADER, then the word."""
+    def plain_cells(self) -> list[Cell]:
+        """The cells of a table in SI units: HEADER, then the word."""
         found = self.comparison
         return [
-            plain_number(found.difference),
-            "-" if self.interval is None else " to ".join(map(plain_number, self.interval)),
+            Number(found.difference),
+            Number(None, *(self.interval or ())),
             str(found.n),
             f"{found.effect:.2f}",
             "-" if self.p_value is None else f"{self.p_value:.2g}",
@@ -325,7 +326,7 @@ def judge(asked: Sequence[Asked], first: Sequence[str]) -> list[Answer]:
     return [answers[place] for place in range(len(asked))]
 
 
-def short_table(answers: Sequence[Answer]) -> tuple[list[str], list[list[str]]]:
+def short_table(answers: Sequence[Answer]) -> tuple[list[str | Column], list[list[str]]]:
     """Return header and rows of a short table: every metric over all levels, and the first screen's at each level.
 
     With more than two values compared, rows at each level would make a long table; the full tables have them.
@@ -336,7 +337,7 @@ def short_table(answers: Sequence[Answer]) -> tuple[list[str], list[list[str]]]:
     answers = overall if overall and several else overall + [one for one in answers if one.at and one.rank < 2]
     at = any(one.at for one in answers)
     first, second = ("first", "second") if several else names[0]
-    header = ["metric", *["at"] * at, *["compared"] * several, first, second, "difference", "sure?"]
+    header = ["metric", *["at"] * at, *["compared"] * several, *numbers(first, second, "difference"), "sure?"]
     rows = [
         [
             title(one.metric),

@@ -6,10 +6,10 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.doctor.examination import Examination
 from runner.doctor.finding import GRADES
-from runner.reporting.bodies import joint_places, playback_bodies
 from runner.reporting.charts.arm import arm_motion
 from runner.reporting.document import Document, Notice, Playback, Provenance, Section, Table
-from runner.reporting.markup import literal, literals
+from runner.reporting.playback import joint_places, playback_bodies
+from runner.reporting.table import Column, numbers
 from runner.robots.model import RobotModel
 from runner.simulation.provenance import versions
 
@@ -46,8 +46,10 @@ def doctor_document(found: Examination) -> Document:
 
 
 def _findings(found: Examination) -> Table:
-    rows = [[each.grade, *literals((each.place, each.text, each.remedy))] for each in found.findings]
-    return Table("What was found, and what was done or can be.", ["grade", "where", "what", "done"], rows, badges=(0,))
+    rows = [[each.grade, each.place, each.text, each.remedy] for each in found.findings]
+    return Table(
+        "What was found, and what was done or can be.", [Column("grade", "badge"), "where", "what", "done"], rows
+    )
 
 
 def _swings(found: Examination, model: RobotModel, home: FloatArray) -> Playback:
@@ -71,6 +73,6 @@ def _joints(model: RobotModel) -> Table:
     rows = []
     for name, unit, values in zip(model.joint_names, model.joint_units, limits, strict=True):
         cells = [number(value) if np.isfinite(value) else "none" for value in values]
-        rows.append([literal(name), "slides" if unit == "m" else "turns", *cells])
-    header = ["joint", "motion", "lower (rad, m)", "upper (rad, m)", "speed (rad/s, m/s)", "effort (N m, N)"]
-    return Table("Joints and their limits.", header, rows, (2, 3, 4, 5))
+        rows.append([name, "slides" if unit == "m" else "turns", *cells])
+    header = numbers("lower (rad, m)", "upper (rad, m)", "speed (rad/s, m/s)", "effort (N m, N)")
+    return Table("Joints and their limits.", ["joint", "motion", *header], rows)

@@ -17,13 +17,14 @@ from runner.base.arrays import FloatArray as FloatArray
 from runner.reporting.charts.figure import Curves as Curves
 from runner.reporting.charts.figure import Map as Map
 from runner.reporting.charts.figure import Maps as Maps
-from runner.reporting.charts.figure import Origin as Origin
 from runner.reporting.charts.figure import Panel as Panel
 from runner.reporting.charts.figure import Series as Series
 from runner.reporting.equation import Equation as Equation
 from runner.reporting.equation import EquationForm as EquationForm
 from runner.reporting.equation import EquationVerdict
 from runner.reporting.published_claims import Verdict
+from runner.reporting.table import Origin as Origin
+from runner.reporting.table import Table as Table
 
 
 @dataclass(frozen=True)
@@ -138,32 +139,6 @@ class Picture:
     alt: str
     width: float = 0.7
     origin: Origin = field(default_factory=Origin)
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table of strings; inline mathematics as in Text, in header and cells.
-
-    Attributes:
-        caption: What it lists.
-        header: Column titles, with units.
-        rows: Cells, one sequence per row, each as long as the header.
-        numeric: Indices of the columns that hold numbers, set flush right.
-        origin: Its number in the source, command and commit.
-        code: Indices of the columns that hold what is typed on the command line, set in monospace.
-        folded: True if HTML shows it only on a click, and paper not at all.
-        badges: Indices of the columns that hold a verdict or a grade, set as badges.
-    """
-
-    block: ClassVar[str] = "table"
-    caption: str
-    header: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    numeric: Sequence[int] = ()
-    origin: Origin = field(default_factory=Origin)
-    code: Sequence[int] = ()
-    folded: bool = False
-    badges: Sequence[int] = ()
 
 
 @dataclass(frozen=True)

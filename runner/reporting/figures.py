@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from runner.base.quantities import quantity
-from runner.reporting.bodies import joint_places, playback_bodies
 from runner.reporting.charts.arm import arm_motion, moving_arm
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Cover, Curves, Origin, Panel, Playback, Series
+from runner.reporting.playback import joint_places, playback_bodies
 from runner.store import Calibration, Run
 
 AXES = ("x", "y", "z")
@@ -36,17 +36,9 @@ def rows_until(run: Run, end: float | None) -> slice:
     return slice(None) if end is None else slice(int(np.count_nonzero(run.t <= end + 1e-9)))
 
 
-def torque_and_error(run: Run, caption: str, number: str = "", until: float | None = None) -> Curves:
-    """Return the thesis' layout: torque of each joint (force of prismatic joints), and tip error in x, y, z, over time.
-
-    Args:
-        run: The run.
-        caption: What is seen.
-        number: Number of the figure in the source.
-        until: End of the time axis, in s; None shows the whole run.
-    """
-    rows = rows_until(run, until)
-    t, torques, error = run.t[rows], run.joints("tau")[rows], run.vector("error")[rows]
+def torque_and_error(run: Run, caption: str) -> Curves:
+    """Return the torque of each joint (force of prismatic joints) and the tip error in x, y, z over time."""
+    t, torques, error = run.t, run.joints("tau"), run.vector("error")
     force = [run.units[f"tau{joint + 1}"] == "N" for joint in range(torques.shape[1])]
     panels = []
     for title, label, slides in (("Torque", "torque (N m)", False), ("Force", "force (N)", True)):
@@ -61,7 +53,7 @@ def torque_and_error(run: Run, caption: str, number: str = "", until: float | No
     return Curves(
         caption,
         (*panels, Panel("Tip position error", "time (s)", "tip error (m)", axes)),
-        origin=origin(run, number),
+        origin=origin(run),
     )
 
 

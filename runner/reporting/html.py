@@ -18,8 +18,8 @@ from runner.reporting.document import Curves, Document, Maps, Playback, RunList
 from runner.reporting.outline import Places
 from runner.reporting.playback import playback_spec
 from runner.reporting.run_list import run_list_spec
-from runner.reporting.tally import tallies
 from runner.reporting.templating import Code, html_environment
+from runner.reporting.verdicts import tallies
 
 _OF_PLOTS = ("plot_keys", "curves")
 _SCRIPTS = ("report", *_OF_PLOTS, "motion", "figure_tools")

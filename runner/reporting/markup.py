@@ -5,7 +5,6 @@ characters; readers of files reject them in their input.
 """
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from runner.base.sanitize import plain
@@ -62,11 +61,6 @@ def link_text(text: str, address: str) -> str:
 def literal(text: str) -> str:
     """Return text in which a dollar sign is one, not the begin of mathematics."""
     return text.replace("$", "$$")
-
-
-def literals(cells: Iterable[str]) -> list[str]:
-    """Return strings, such as the cells of a row, in which a dollar sign is one."""
-    return [literal(cell) for cell in cells]
 
 
 def spans(text: str) -> list[Span]:

@@ -102,9 +102,8 @@ def _texts(block: Block) -> Iterator[str]:
             yield block.caption
         case Table():
             yield block.caption
-            yield from block.header
-            for row in block.rows:
-                yield from row
+            for line in block.lines:
+                yield from line
         case Verdicts():
             yield block.caption
             yield from (claim.reason for claim in block.rows)

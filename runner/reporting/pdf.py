@@ -11,9 +11,9 @@ from runner.reporting import formulas, outline
 from runner.reporting.charts import static
 from runner.reporting.document import Curves, Document, Maps
 from runner.reporting.outline import Places
-from runner.reporting.run_list import table_header, table_rows
-from runner.reporting.tally import tallies
+from runner.reporting.run_list import first_runs
 from runner.reporting.templating import typst_environment
+from runner.reporting.verdicts import tallies
 
 
 def render(document: Document) -> bytes:
@@ -30,8 +30,7 @@ def render(document: Document) -> bytes:
                 chapters=outline.chapters(document),
                 formula_valid=lambda text, is_displayed: made[is_displayed].get(text) is not None,
                 figure_file=folder.figure,
-                run_list_header=table_header,
-                run_list_rows=table_rows,
+                first_runs=first_runs,
                 image_file=folder.image,
                 places=Places(document),
                 tallies=tallies(document),

@@ -5,8 +5,7 @@ from typing import Any
 
 from runner.base.quantities import above_rounding, number, quantity
 from runner.metrics.plant_error import COMPARED
-from runner.reporting.key_metrics import key_names
-from runner.reporting.metric_titles import title
+from runner.reporting.metric_titles import key_names, title
 from runner.reporting.words import PLANT
 from runner.store import Run
 

@@ -14,9 +14,10 @@ from runner.recordings.residuals import Residual
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
 from runner.reporting.figures import origin
-from runner.reporting.markup import literal, literals
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.run_report import provenance
+from runner.reporting.table import Cell, Column, Number, numbers
 from runner.store.kinds import outputs_of
 
 _MOST_POINTS = 600
@@ -32,7 +33,7 @@ def recording_document(found: RecordingComparison) -> Document:
         abstract=literal(_abstract(found)),
         sections=[
             Section("Both signals", [_both_curves(found)]),
-            Section("Residuals", [_residuals(found), _residual_curves(found), Text(f"The {words.FIT}.")]),
+            Section("Residuals", [residuals(found), _residual_curves(found), Text(f"The {words.FIT}.")]),
             Section("Time offset", [Text(literal(f"{capital(words.aligned_text(found))}.")), _lag_curves(found)]),
             Section("Friction", _friction(found)),
             Section("Metrics of both", _metrics(found)),
@@ -81,31 +82,51 @@ def _key_numbers(found: RecordingComparison) -> list[tuple[str, str, str]]:
     return numbers
 
 
-def _residuals(found: RecordingComparison) -> Table:
-    rows = [literals(row) for row in words.residual_rows(found, above_rounding)]
-    return Table("Recorded less simulated, at the run's ticks.", words.RESIDUAL_HEADER, rows, (2, 3, 4, 5))
+def residuals(found: RecordingComparison) -> Table:
+    """Return a table with a row for each signal."""
+    rows: list[list[Cell]] = [
+        [residual.signal.words, residual.unit, *map(Number, (residual.mean, residual.rms, residual.largest)),
+         "-" if residual.fit is None else f"{residual.fit:.4f}"]
+        for residual in found.residuals
+    ]  # fmt: skip
+    header = ["recorded - run", "unit", *numbers("mean", "rms", "largest", "fit")]
+    return Table("Recorded less simulated, at the run's ticks.", header, rows)
+
+
+def friction(found: RecordingComparison) -> Table:
+    """Return a table with a row for viscous and one for Coulomb friction of each joint."""
+    rows: list[list[Cell]] = []
+    for joint in () if found.friction is None else found.friction.joints:
+        turns = joint.unit == "rad"
+        b, c = found.simulated_friction[joint.joint]
+        for kind, unit, value, half, simulated in (
+            ("viscous", "N m s/rad" if turns else "N s/m", joint.viscous, joint.viscous_half, b),
+            ("Coulomb", "N m" if turns else "N", joint.coulomb, joint.coulomb_half, c),
+        ):
+            interval = Number(None, value - half, value + half)
+            rows.append([joint.joint, kind, unit, Number(value), interval, Number(simulated)])
+    header = ["joint", "friction", "unit", *numbers("identified", "95 % interval", "in the run")]
+    return Table("Friction of the recorded arm and of the run.", header, rows)
 
 
 def _friction(found: RecordingComparison) -> list[Block]:
     blocks: list[Block] = [Text(literal(text)) for text in words.friction_lines(found)]
     if found.friction is None or not found.friction.joints:
         return [Notice("warning", "No friction was identified", literal(" ".join(words.friction_lines(found))))]
-    rows = [literals(row) for row in words.friction_rows(found, above_rounding)]
-    caption = "Friction of the recorded arm and of the run."
     method = (
         "Residual torque $tau - (M dot.double(q) + V + G)$ with the run's model, regressed on $dot(q)$, "
         '$upright("sgn") dot(q)$, a constant of each joint, and the linear model of the masses; all behind a low-pass '
         f"of {quantity(found.friction.frequency, 'Hz')} without delay, rows near standstill left out. The intervals "
         "allow for what these terms leave over to be correlated within half a second."
     )
-    return [*blocks, Table(caption, words.FRICTION_HEADER, rows, (3, 4, 5)), _friction_curves(found), Text(method)]
+    return [*blocks, friction(found), _friction_curves(found), Text(method)]
 
 
 def _metrics(found: RecordingComparison) -> list[Block]:
     if not found.metrics:
         return [Text("The recording has too few signals for any metric: neither all joints nor the tip.")]
     rows = [
-        literals([title(name), name, *(above_rounding(value, unit_of(name) or "1") for value in both)])
+        [title(name), name, *(above_rounding(value, unit_of(name) or "1") for value in both)]
         for name, both in found.metrics.items()
     ]
     first, last = found.span
@@ -115,8 +136,8 @@ def _metrics(found: RecordingComparison) -> list[Block]:
         "follows from the joints by the run's model. A constant delay of the arm is part of the time offset and not "
         "of the tracking errors."
     )
-    header = ["metric", "name on the command line", "run", "recording"]
-    return [Text(text), Table("Metrics of both.", header, rows, (2, 3), code=(1,))]
+    header = ["metric", Column("name on the command line", "code"), *numbers("run", "recording")]
+    return [Text(text), Table("Metrics of both.", header, rows)]
 
 
 def _made(found: RecordingComparison) -> list[Block]:
@@ -128,13 +149,13 @@ def _made(found: RecordingComparison) -> list[Block]:
         ("SHA-256", hashlib.sha256(_bytes_of(recording)).hexdigest()),
     ]
     columns = [
-        literals([column, signal.words, f"{recording.units[column].factor:.6g}", recording.units[column].unit])
+        [column, signal.words, f"{recording.units[column].factor:.6g}", recording.units[column].unit]
         for signal, column in recording.columns.items()
     ]
     caption = "Columns of the recording, and what makes their numbers SI."
     return [
         Provenance(rows),
-        Table(caption, ["column", "signal", "factor", "unit"], columns, (2,), code=(0,)),
+        Table(caption, [Column("column", "code"), "signal", *numbers("factor"), "unit"], columns),
         provenance([found.run]),
     ]
 

@@ -11,7 +11,7 @@ from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
 from runner.reporting.figures import playback
 from runner.reporting.html import asset, data_uri, script_policy
-from runner.reporting.key_metrics import key_metrics
+from runner.reporting.metric_titles import key_metrics
 from runner.reporting.stored import report_name
 from runner.reporting.sweep.question import in_short
 from runner.reporting.sweep.subject import choose

@@ -8,8 +8,8 @@ import numpy as np
 from runner.base.quantities import number, unit_text
 from runner.base.sanitize import plain
 from runner.reporting.document import RunList
-from runner.reporting.markup import literals
 from runner.reporting.metric_titles import metric_label
+from runner.reporting.table import Table, numbers
 
 Json = dict[str, Any]
 
@@ -36,23 +36,17 @@ def run_list_spec(block: RunList) -> Json:
     }
 
 
-def table_header(block: RunList) -> list[str]:
-    """Return the titles of the table's columns."""
-    axes = [name for name, _ in block.axes]
-    metrics = [metric_label(name, unit) for name, unit in block.metrics[:ON_PAPER_METRICS]]
-    return literals(("run", *axes, "status", *metrics))
-
-
-def table_rows(block: RunList) -> list[list[str]]:
-    """Return the first rows of the table."""
+def first_runs(block: RunList) -> Table:
+    """Return the first rows as a table for paper."""
     rows = []
     for run in range(min(ON_PAPER, len(block.hashes))):
         levels = zip(block.axes, block.levels[run], strict=True)
         values = (None if np.isnan(value) else float(value) for value in block.values[run, :ON_PAPER_METRICS])
         cells = [block.hashes[run][:8], *(names[level] for (_, names), level in levels)]
-        cells += ["failed" if block.failures[run] else "ok", *map(number, values)]
-        rows.append(literals(cells))
-    return rows
+        rows.append([*cells, "failed" if block.failures[run] else "ok", *map(number, values)])
+    metrics = [metric_label(name, unit) for name, unit in block.metrics[:ON_PAPER_METRICS]]
+    header = ["run", *(name for name, _ in block.axes), "status", *numbers(*metrics)]
+    return Table(block.caption, header, rows, block.origin)
 
 
 def _packed(column: np.ndarray) -> str:

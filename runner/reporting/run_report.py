@@ -14,17 +14,18 @@ from runner.config.compose.compose import compose
 from runner.metrics.caveats import changes_since
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import cover, desired_motion, last_moments, playback, torque_and_error
-from runner.reporting.key_metrics import key_metrics
-from runner.reporting.markup import literal, literals
-from runner.reporting.metric_titles import capital, title
+from runner.reporting.markup import literal
+from runner.reporting.metric_titles import capital, key_metrics, title
 from runner.reporting.plant_step import describe_plant, percent
 from runner.reporting.spec_blocks import spec_abstract, spec_blocks
+from runner.reporting.table import Column, numbers
 from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 from runner.store.baselines import check_run, find_shipped
 
 _KEY_METRICS = 4
 _AT_REST = 4.0  # times the settling time, after which an arm is taken to rest
+_KEY_AND_VALUE = (Column("key", "code"), Column("value", "code"))
 _LEVELS = {"0.01": "1 %", "0.99": "99 %"}  # quantiles that a table has room for
 
 
@@ -152,14 +153,12 @@ def _metrics(run: Run) -> Table:
         rows.append([title(name), name, *(above_rounding(value, m.unit) for value in found), *_of_step(worth, name)])
     count = run.record["repetitions"]
     told = "; levels are quantiles, a repetition without a value counting as beyond every number" if many else ""
-    header = ["metric", "name on the command line", "median", "smallest", *levels.values(), "largest"]
-    header += ["the plant's step"] if worth else []
+    of_step = ["the plant's step"] if worth else []
+    names = numbers("median", "smallest", *levels.values(), "largest", *of_step)
     return Table(
         "Metrics of one repetition." if count == 1 else f"Metrics over {count} repetitions{told}.",
-        header,
-        [literals(row) for row in rows],
-        tuple(range(2, len(header))),
-        code=(1,),
+        ["metric", Column("name on the command line", "code"), *names],
+        rows,
     )
 
 
@@ -175,19 +174,19 @@ def config_blocks(run: Run) -> list[Block]:
     """Return the keys that were changed, and then all of them; only all keys for a config that no group here makes."""
     changed = changed_keys(run)
     resolved = {key: value for key, value in run.config.items() if key != "outputs"}
-    rows = [literals([key, _yaml(value)]) for key, value in flatten(resolved).items()]
+    rows = [[key, _yaml(value)] for key, value in flatten(resolved).items()]
     file = Code(yaml.safe_dump(resolved, sort_keys=False, allow_unicode=True), "config.yaml")
     everything: list[Block] = [
-        Table("All keys and their values.", ["key", "value"], rows, code=(0, 1), folded=changed is not None),
+        Table("All keys and their values.", [*_KEY_AND_VALUE], rows, folded=changed is not None),
         file,
     ]
     if changed is None:
         return everything
-    own = [literals([key, _yaml(value), _yaml(before)]) for key, (before, value) in changed.items()]
+    own = [[key, _yaml(value), _yaml(before)] for key, (before, value) in changed.items()]
     if not own:
         return [Text("Every key has the value that its group gives it."), *everything]
-    header = ["key", "value", "in its group"]
-    return [Table("Keys that were changed against the groups chosen.", header, own, code=(0, 1, 2)), *everything]
+    header = [*_KEY_AND_VALUE, Column("in its group", "code")]
+    return [Table("Keys that were changed against the groups chosen.", header, own), *everything]
 
 
 def provenance(runs: Sequence[Run]) -> Provenance:

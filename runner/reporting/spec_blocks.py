@@ -8,8 +8,9 @@ from runner.base.quantities import format_range, number, quantity
 from runner.config.judgement import Bound
 from runner.plugins.metric_units import unit_of
 from runner.reporting.document import Block, Notice, Table
-from runner.reporting.markup import literal, literals
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
+from runner.reporting.table import numbers
 from runner.statistics.spec.history import History, ends_of, set_after
 from runner.store import Run
 
@@ -21,8 +22,8 @@ RULE = (
     "The interval is that of Clopper and Pearson: it holds the true probability in 95 % of cases or more. A repetition "
     "that failed, or has no value, as it never settled, does not keep its bound."
 )
-_NUMERIC = (1, 2, 3)  # columns
-HEADER = ("bound", "kept", "probability of failing", "95 % interval")
+COLUMNS = ("bound", *numbers("kept", "probability of failing", "95 % interval"))
+"""Columns of the rows of `spec_rows`."""
 _ALL = "all of them"
 _DIGITS = 6  # of a bound, which is given, not measured
 
@@ -31,12 +32,12 @@ def spec_blocks(run: Run) -> list[Block]:
     """Return the bounds of a run's spec, with their reasons, and a notice where the run lacks one of the metrics."""
     if run.spec is None:
         return []
-    rows, header = [[*row] for row in spec_rows(run.spec)], [*HEADER]
+    rows, header = [[*row] for row in spec_rows(run.spec)], [*COLUMNS]
     reasons = [one.bound.reason for one in run.spec.bounds]
     if any(reasons):
         rows = [[*row, reason] for row, reason in zip(rows, [*reasons, ""], strict=False)]
         header.append("reason")
-    table = Table(f"Bounds of the spec. {RULE}", header, [literals(row) for row in rows], _NUMERIC)
+    table = Table(f"Bounds of the spec. {RULE}", header, rows)
     lacking = lacking_text(run.spec, run.metrics)
     if not lacking:
         return [table]
@@ -60,17 +61,16 @@ def spec_abstract(spec: "Spec") -> str:
 def spec_of_several(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
     """Return the number of kept repetitions for each bound of the specs of several runs."""
     rows = [
-        literals([name, *row])
+        [name, *row]
         for name, run in zip(names, runs, strict=True)
         if run.spec is not None
         for row in spec_rows(run.spec)
     ]
-    numeric = tuple(column + 1 for column in _NUMERIC)
-    return [Table(f"Bounds of the specs. {RULE}", ["run", *HEADER], rows, numeric)] if rows else []
+    return [Table(f"Bounds of the specs. {RULE}", ["run", *COLUMNS], rows)] if rows else []
 
 
 def spec_rows(spec: "Spec") -> list[tuple[str, str, str, str]]:
-    """Return a row of HEADER for each bound, and one for all where there are several."""
+    """Return a row of COLUMNS for each bound, and one for all where there are several."""
     rows = [
         (bound_text(one.metric, one.bound) + late_text(one.metric, one.bound, one.history), *share_texts(one.share))
         for one in spec.bounds

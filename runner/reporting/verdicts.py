@@ -1,6 +1,14 @@
-"""Verdicts in reports, and kinds of notices: sign, colour, plural and meaning of each."""
+"""Verdicts and kinds of notices in reports: their words, signs and colours, and the counts of the first screen."""
 
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
+
+from runner.reporting.document import Block, ClaimResult, Document, Equations, Verdicts
+from runner.reporting.equation import FOLDED, SHOWN
+from runner.reporting.outline import blocks, claim_place, verdict_place
+from runner.reporting.published_claims import CONTRADICTION
 
 
 class Word(NamedTuple):
@@ -43,3 +51,84 @@ WORDS = {
     "failure": Word("", "bad"),
 }
 """Every verdict on a claim, an equation or a robot file, and every kind of notice."""
+
+
+class Square(NamedTuple):
+    """A square of the first screen.
+
+    Attributes:
+        number: The number in it.
+        verdict: The verdict that colours it.
+        place: Where it leads to.
+        words: What it says, for those who hear it.
+    """
+
+    number: str
+    verdict: str
+    place: str
+    words: str
+
+
+@dataclass(frozen=True)
+class Tally:
+    """The verdicts of one way in which the claims of a report were judged.
+
+    Attributes:
+        way: What the way is called.
+        squares: A square for each claim, or for the equations of each verdict.
+        counts: Number of each verdict, the most frequent first.
+    """
+
+    way: str
+    squares: tuple[Square, ...]
+    counts: tuple[tuple[str, int], ...]
+
+    @property
+    def words(self) -> str:
+        """The counts as a phrase, such as "12 of 16 match, 3 smaller than printed, 1: source contradicts itself"."""
+        told: list[str] = []
+        total = sum(count for _, count in self.counts)
+        for verdict, count in self.counts:
+            number = f"{count}{'' if told else f' of {total}'}{':' * (verdict == CONTRADICTION)}"
+            told.append(f"{number} {(count > 1 and WORDS[verdict].plural) or verdict}")
+        return ", ".join(told)
+
+
+def tallies(document: Document) -> list[Tally]:
+    """Return the verdicts of a report: on its claims, for each way of simulating them, and on its equations."""
+    found = []
+    for block in blocks(document):
+        if isinstance(block, Verdicts):
+            for number, way in enumerate(block.ways):
+                squares = tuple(_square(row.number, row.findings[number]) for row in block.rows)
+                found.append(Tally(way, squares, _counted(square.verdict for square in squares)))
+        if isinstance(block, Equations):
+            counts = _counted(row.verdict for row in block.rows)
+            squares = tuple(
+                Square(str(count), verdict, verdict_place(block.source, verdict), f"{count} {verdict}")
+                for verdict in (*SHOWN, *FOLDED)
+                if (count := dict(counts).get(verdict, 0))
+            )
+            found.append(Tally(block.source or "equations", squares, counts))
+    return found
+
+
+def _square(claim: str, found: ClaimResult) -> Square:
+    hangs = f"; depends on {', '.join(found.hangs)}" if found.hangs else ""
+    words = f"Claim {claim}: {found.verdict}{hangs}"
+    return Square(claim + "*" * bool(found.hangs), found.verdict, claim_place(claim), words)
+
+
+def find_conditional_claims(document_blocks: Iterable[Block]) -> str:
+    """Return the claims whose verdict depends on more than they say, and the reasons; empty without one."""
+    found: dict[str, list[str]] = {}
+    for block in document_blocks:
+        for row in block.rows if isinstance(block, Verdicts) else ():
+            for what in dict.fromkeys(what for result in row.findings for what in result.hangs):
+                found.setdefault(what, []).append(row.number)
+    told = "; ".join(f"on {what}: claim {', '.join(claims)}" for what, claims in found.items())
+    return f"* Verdicts that depend {told}." if told else ""
+
+
+def _counted(verdicts: Iterator[str]) -> tuple[tuple[str, int], ...]:
+    return tuple(Counter(verdicts).most_common())

@@ -14,6 +14,7 @@ from runner.config.judgement import THRESHOLDS
 from runner.metrics.caveats.plant_error import DEFAULT_PLANT
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.markup import literal
+from runner.reporting.table import numbers
 from runner.schema.model import StrictModel
 from runner.store import Run
 from runner.study.job import distinct
@@ -80,9 +81,9 @@ def caveats_section(runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat])
     blocks.append(
         Table(
             "Each caveat with the number of runs that have it, the worst of these, and why it was to be expected.",
-            ["caveat", "runs", "the worst of them", "why it is expected"],
+            ["caveat", *numbers("runs"), "the worst of them", "why it is expected"],
             rows,
-            (1,),
+            prose=True,
         )
         if rows
         else Text("No rule found anything at the end of the runs.")

@@ -27,10 +27,10 @@ from runner.reporting.document import (
     Text,
     Verdicts,
 )
-from runner.reporting.markup import literal, literals
+from runner.reporting.markup import literal
 from runner.reporting.outline import number_sections
 from runner.reporting.run_report import provenance
-from runner.reporting.tally import find_conditional_claims
+from runner.reporting.verdicts import find_conditional_claims
 from runner.schema.model import StrictModel
 from runner.store import Calibration, Run
 from runner.study.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
@@ -114,7 +114,9 @@ class Checklist(StrictModel):
             here=expected - len(missing),
             missing=told,
         )
-        return Section(self.title, (Text(text), Table(self.caption, [*self.columns, "state", "where"], rows)))
+        return Section(
+            self.title, (Text(text), Table(self.caption, [*self.columns, "state", "where"], rows, prose=True))
+        )
 
 
 def _filled(text: str, **values: str | int) -> str:
@@ -240,8 +242,8 @@ def parts(makers: Iterable[tuple[str, Callable[[], Section]]]) -> list[Section]:
 
 
 def _missing(missing: Mapping[str, str]) -> Section:
-    rows = [literals(item) for item in missing.items()]
-    table = Table("Not made, and so missing in this report; the same command makes them.", ["name", "why"], rows)
+    caption = "Not made, and so missing in this report; the same command makes them."
+    table = Table(caption, ["name", "why"], list(missing.items()))
     return Section("Missing results", (table,))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError, nearest
-from runner.base.quantities import above_rounding, with_powers
+from runner.base.quantities import with_powers
 from runner.reporting.document import Block, Notice
 from runner.reporting.words import in_words
 from runner.store import Run
@@ -27,11 +27,6 @@ def measured(run: Run, metric: str, name: str) -> Measured:
     """
     value = run.median(metric)
     return Measured(name, value, run.metrics[metric].unit if run.metrics else "1")
-
-
-def cell(run: Run, metric: str, digits: int = 3) -> str:
-    """Return the median of a metric for a table: "failed" for a failed run, a dash for a value that is missing."""
-    return "failed" if run.status == "failed" else above_rounding(run.median(metric), digits=digits)
 
 
 def values(runs: Iterable[Run], metric: str) -> FloatArray:

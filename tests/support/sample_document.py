@@ -30,6 +30,7 @@ from runner.reporting.document import (
     Verdicts,
 )
 from runner.reporting.markup import link_text, mark_text
+from runner.reporting.table import Column, numbers
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 40 20" width="40" height="20"><path d="M0 0h40v20z"/></svg>'
 
@@ -118,7 +119,8 @@ def document(text: str = "words") -> Document:
         maps(text, origin=origin),
         run_list(text, origin=origin),
         Picture(text, SVG, text, origin=origin),
-        Table(text, [text, text], [[text, text]] * 2, [1], origin),
+        Table(text, [text, *numbers(text)], [[text, text]] * 2, origin),
+        Table(text, [text, Column(text, "code")], [[text, text]], origin, prose=True),
         Verdicts(
             text,
             [

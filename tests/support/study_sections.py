@@ -35,7 +35,7 @@ def texts(section: Section) -> Iterator[str]:
             case Text():
                 yield block.text
             case Table():
-                yield from (block.caption, *block.header, *(cell for row in block.rows for cell in row))
+                yield from (block.caption, *(cell for line in block.lines for cell in line))
             case Curves():
                 yield block.caption
 

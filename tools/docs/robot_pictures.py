@@ -11,9 +11,9 @@ from scipy.spatial import ConvexHull
 from runner.base.arrays import FloatArray
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.reporting.bodies import playback_bodies
 from runner.reporting.charts.canvas import GREY, INK, Camera, circle, drawing, scene, write
 from runner.reporting.document import Body
+from runner.reporting.playback import playback_bodies
 
 ARMS = ("panda", "fr3", "iiwa14", "gen3", "sawyer", "ur5e", "ur10e", "xarm7", "z1", "so101")
 _SHADES = (("#e8ecf1", "#f4f6f9"), ("#9db6d3", "#b9cce2"))  # of a link's sides and ends, in turn

@@ -30,8 +30,9 @@ from runner.reporting.document import (
     Text,
 )
 from runner.reporting.formulas import faulty
-from runner.reporting.markup import literals, mark_text
+from runner.reporting.markup import mark_text
 from runner.reporting.metric_titles import capital
+from runner.reporting.table import numbers
 from runner.reporting.verdicts import WORDS
 from runner.simulation import provenance
 
@@ -81,9 +82,8 @@ def _counts(checked: Mapping[str, Sequence[CheckedEquation]]) -> Table:
     rows.append(["all", *map(str, total.values()), str(sum(total.values()))])
     return Table(
         "Equations of each source by verdict.",
-        ["source", *VERDICTS, "all"],
+        ["source", *numbers(*VERDICTS, "all")],
         rows,
-        tuple(range(1, len(VERDICTS) + 2)),
         Origin(command=COMMAND),
     )
 
@@ -112,9 +112,8 @@ def _inventory(checked: Mapping[str, Sequence[CheckedEquation]]) -> Table:
     return Table(
         "Equations printed in each place of the text, and equations audited there; the last column names those that "
         "must have stood there and are missing from the text.",
-        ["source", "place", "printed", "audited", "lost in the text"],
-        [literals(line) for line in rows],
-        (2, 3),
+        ["source", "place", *numbers("printed", "audited"), "lost in the text"],
+        rows,
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
+from runner.reporting.table import Origin
 
 POINTS = 2000
 """Most points of a drawn curve: more than a screen or a printed page can show."""
@@ -108,15 +109,6 @@ class Map:
     runs: Sequence[str] = ()
     low: FloatArray | None = None
     high: FloatArray | None = None
-
-
-@dataclass(frozen=True)
-class Origin:
-    """Origin of a figure or table: its number in the source, the command that makes it, the commit."""
-
-    number: str = ""
-    command: str = ""
-    commit: str = ""
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
 from runner.base.errors import RunnerError
+from runner.base.sanitize import few
 from runner.statistics import Comparison, subtract
 from runner.store.axes import find_axis, group_cells, number_rows
 from runner.sweeps.differing import value_text
@@ -298,14 +299,9 @@ def _explain_no_match(
     for key, both in texts.items():
         of_a, of_b = (list(dict.fromkeys(some)) for some in both)
         if not set(of_a) & set(of_b):
-            apart.append(f"{key} is {_some(of_a)} in {a.name} and {_some(of_b)} in {b.name}")
+            apart.append(f"{key} is {few(of_a, _NAMED)} in {a.name} and {few(of_b, _NAMED)} in {b.name}")
     why = "; ".join(apart) or f"no combination of {', '.join(texts)} is in both"
     return (
         f"{a.name} ({a.folder}) and {b.name} ({b.folder}) share no cell: {why}; sweep both over the same values of "
         "these, or compare the levels of one sweep: `runner compare SWEEP --by KEY`"
     )
-
-
-def _some(values: Sequence[str]) -> str:
-    more = f" and {len(values) - _NAMED} more" if len(values) > _NAMED else ""
-    return ", ".join(values[:_NAMED]) + more

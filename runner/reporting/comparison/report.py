@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from runner.base.quantities import label_with_unit, quantity
+from runner.base.sanitize import few
 from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, ask, judge, sentences
 from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.pairs import Label, Pairs, label_text
@@ -32,9 +33,10 @@ from runner.reporting.document import (
     Table,
     Text,
 )
-from runner.reporting.markup import literal, literals
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title, whole_metrics
 from runner.reporting.sweep.subject import MOST_METRICS, key_label, shorten, spans_decades
+from runner.reporting.table import numbers
 from runner.sweeps.measurements import Measurements
 
 _MOST_CHARACTERS = 36  # of the names of all cells below a panel
@@ -84,16 +86,14 @@ def _key_numbers(found: SweepComparison) -> list[tuple[str, str, str]]:
     )
     numbers = [("cells in both", str(len(found.pairs)), alone)]
     names = found.differences.names
-    more = f" and {len(names) - 1} more" if len(names) > 1 else ""
-    numbers.append((f"{a} and {b} differ in", format_count(len(names), "value", "values"), "".join([*names[:1], more])))
+    numbers.append((f"{a} and {b} differ in", format_count(len(names), "value", "values"), few(names, 1)))
     first = min(found.answers, key=lambda answer: answer.rank)
     difference, interval, n, *_ = first.cells
     return [*numbers, (f"{title(first.metric)}, {b} - {a}", difference, f"{interval}, {n} pairs: {first.word}")]
 
 
 def _sides(sides: Sequence[Measurements]) -> Section:
-    rows = [literals([side.name, side.folder.resolve().name, ", ".join(side.fixed), size_told(side)])
-            for side in sides]  # fmt: skip
+    rows = [[side.name, side.folder.resolve().name, ", ".join(side.fixed), size_told(side)] for side in sides]
     return Section("The sweeps", (Table("What is compared.", ["name", "sweep", "fixed", "cells"], rows),))
 
 
@@ -112,14 +112,14 @@ def _sections(found: SweepComparison, wanted: Sequence[str]) -> list[Section]:
 
 def _caveats(sides: Sequence[Measurements]) -> Section:
     rows = [
-        literals([side.name, rule, f"{count} of {len(side.hashes)}", text])
+        [side.name, rule, f"{count} of {len(side.hashes)}", text]
         for side in sides
         for rule, count, _, text in side.caveats_by_rule()
     ]
     if not rows:
         return Section("Caveats", (Text("No rule found anything."),))
     caption = "Why results may not be what they seem: rules, cells with that caveat, and the worst of them."
-    return Section("Caveats", (Table(caption, ["sweep", "caveat", "cells", "what was found"], rows, (2,)),))
+    return Section("Caveats", (Table(caption, ["sweep", "caveat", *numbers("cells"), "what was found"], rows),))
 
 
 def _made(sides: Sequence[Measurements]) -> Section:
@@ -144,12 +144,12 @@ def _difference_tables(found: SweepComparison) -> list[Block]:
         more = f" {left} more differ." if left > 0 else ""
         caption = f"All resolved values that differ in the cells that both have.{more}"
         rows = [
-            literals([key_label(value.key), shorten(value.a), shorten(value.b), value.cells or "all cells"])
+            [key_label(value.key), shorten(value.a), shorten(value.b), value.cells or "all cells"]
             for value in values[:_MOST_ROWS]
         ]
         blocks.append(Table(caption, ["key", a, b, "at"], rows))
     if found.differences.provenance:
-        rows = [literals([value.key, value.a, value.b]) for value in found.differences.provenance]
+        rows = [[value.key, value.a, value.b] for value in found.differences.provenance]
         blocks.append(Table("They were made by different versions.", ["made by", a, b], rows))
     return blocks
 
@@ -182,8 +182,8 @@ def _name(label: Label) -> str:
 
 
 def _cells(pairs: Pairs) -> Table:
-    rows = [literals([str(number), *label.values()]) for number, label in enumerate(pairs.labels, 1)]
-    return Table("The cells of the figure.", ["cell", *literals(pairs.keys)], rows, (0,))
+    rows = [[str(number), *label.values()] for number, label in enumerate(pairs.labels, 1)]
+    return Table("The cells of the figure.", [*numbers("cell"), *pairs.keys], rows)
 
 
 def _differences(pairs: Pairs, metric: str) -> Panel:
@@ -230,22 +230,21 @@ def table_blocks(found: SweepComparison, wanted: Sequence[str]) -> list[Block]:
             "Largest differences in one cell, in relation to the size of the metric: chosen from "
             f"{found.candidates}, at most three of a metric; not tested."
         )
-        rows = [[literal(label_text(one.at)), *_row(one), _median(one.comparison.difference, one.unit)]
-                for one in found.cells]  # fmt: skip
-        tables.append(Table(caption, ["cell", "metric", a, b, "difference"], rows, (2, 3, 4)))
+        rows = [[label_text(one.at), *_row(one), _median(one.comparison.difference, one.unit)] for one in found.cells]
+        tables.append(Table(caption, ["cell", "metric", *numbers(a, b, "difference")], rows))
     return tables
 
 
 def _table(caption: str, pairs: Pairs, some: Sequence[Answer], folded: bool = False) -> Table:
     many = len(pairs) > 1
     more = ["cells below, above 0"] if many else []
-    header = ["metric", pairs.first, pairs.second, *HEADER, literal(f"{pairs.second} is"), *more]
+    header = ["metric", *numbers(pairs.first, pairs.second, *HEADER), f"{pairs.second} is", *more]
     rows = [[*_row(one), *one.cells, *(["{}, {}".format(*counts_by_sign(one))] if many else [])] for one in some]
-    return Table(caption, header, rows, tuple(range(1, 3 + len(HEADER))), folded=folded)
+    return Table(caption, header, rows, folded=folded)
 
 
 def _row(one: Asked) -> list[str]:
-    return [literal(title(one.metric)), *(_median(median, one.unit) for median in one.comparison.medians)]
+    return [title(one.metric), *(_median(median, one.unit) for median in one.comparison.medians)]
 
 
 def _median(value: float, unit: str) -> str:

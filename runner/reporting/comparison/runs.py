@@ -12,10 +12,11 @@ from runner.reporting.comparison.pairs import match
 from runner.reporting.comparison.sweeps import compare_runs, letter
 from runner.reporting.document import Block, Document, Notice, Section, Table
 from runner.reporting.figures import overlaid
-from runner.reporting.markup import literal, literals
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title, whole_metrics
 from runner.reporting.run_report import config_blocks, provenance, run_blocks, run_name
 from runner.reporting.spec_blocks import spec_of_several
+from runner.reporting.table import numbers
 from runner.store import Run
 from runner.sweeps.measurements import measure_run
 
@@ -57,7 +58,7 @@ def _side_by_side(runs: Sequence[Run], names: Sequence[str], differences: Sequen
     rows = [[key, first, *(other.get(key, first) for other in others)] for key, first in firsts.items()]
     blocks: list[Block] = [_metrics(runs, names), *_curves(runs, names)]
     if rows:
-        blocks.append(Table("Config values that differ.", ["key", *names], [literals(row) for row in rows]))
+        blocks.append(Table("Config values that differ.", ["key", *names], rows))
     return [*blocks, *spec_of_several(runs, names)]
 
 
@@ -71,9 +72,9 @@ def _metrics(runs: Sequence[Run], names: Sequence[str]) -> Table:
         if len(runs) == 2:
             first, second = (np.nan if value is None else value for value in values)
             cells.append("–" if np.isnan(second - first) else quantity(second - first, units[name]))
-        rows.append([literal(title(name)), *cells])
-    header = ["metric", *names, *([f"{names[1]} - {names[0]}"] if len(runs) == 2 else [])]
-    return Table("Medians of the metrics.", header, rows, tuple(range(1, len(header))))
+        rows.append([title(name), *cells])
+    difference = [f"{names[1]} - {names[0]}"] if len(runs) == 2 else []
+    return Table("Medians of the metrics.", ["metric", *numbers(*names, *difference)], rows)
 
 
 def _curves(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:

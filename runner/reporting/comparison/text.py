@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from runner.base.dotted_keys import dotted, leaves
-from runner.base.quantities import plain_number
-from runner.base.sanitize import align_columns, one_line
+from runner.base.sanitize import one_line
 from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, sentences, short_table
 from runner.reporting.comparison.differences import Value, find_differences
 from runner.reporting.comparison.pairs import label_text, match
@@ -23,6 +22,7 @@ from runner.reporting.comparison.sweeps import (
     size_told,
 )
 from runner.reporting.sweep.subject import main_metrics
+from runner.reporting.table import Cell, Number, Table, numbers, terminal
 from runner.store.run import Run
 from runner.store.seal import simulated_part
 from runner.sweeps.measurements import Measurements
@@ -46,7 +46,8 @@ def level_lines(side: Measurements, axis: str, answers: Sequence[Answer], everyt
     along = [one for one in side.differences if axis in one.axes or not one.axes]
     if along:
         yield f"the levels of {axis} differ in more than {axis}; what follows may be due to any of these:"
-        yield align_columns([[one.key, "; ".join(f"{at}: {text}" for at, text in one.values)] for one in along])
+        keys = [[one.key, "; ".join(f"{at}: {text}" for at, text in one.values)] for one in along]
+        yield terminal(Table("", ["", ""], keys))
     else:
         yield f"the levels of {axis} differ only in {axis}"
     yield ""
@@ -56,11 +57,11 @@ def level_lines(side: Measurements, axis: str, answers: Sequence[Answer], everyt
     if not everything:
         yield from _short_lines(answers)
         return
-    rows = [["at", axis, "metric", "unit", *HEADER, "the second is"]]
-    for one in answers:
-        at = label_text(one.at) if one.at else "all"
-        rows.append([at, ", ".join(one.names), one.metric, one.unit, *one.plain_cells])
-    yield align_columns(rows, indent="")
+    rows: list[list[Cell]] = [
+        [label_text(one.at) if one.at else "all", ", ".join(one.names), one.metric, one.unit, *one.plain_cells]
+        for one in answers
+    ]
+    yield terminal(Table("", ["at", axis, "metric", "unit", *numbers(*HEADER), "the second is"], rows), indent="")
     yield ""
     yield EXPLAINED
 
@@ -75,10 +76,10 @@ def sweep_lines(found: SweepComparison, everything: bool) -> Iterator[str]:
     yield one_line(differences.in_words(a, b))
     values = [*differences.options, *differences.values]
     if len(values) > 1:
-        yield align_columns([["key", a, b, "at"], *map(_value, values)])
-    made_by = [["made by", a, b, ""], *map(_value, differences.provenance)]
+        yield terminal(Table("", ["key", a, b, "at"], list(map(_value, values))))
     if differences.provenance:
-        yield f"provenance differs:\n{align_columns(made_by)}"
+        made_by = Table("", ["made by", a, b, ""], list(map(_value, differences.provenance)))
+        yield f"provenance differs:\n{terminal(made_by)}"
     yield from map(one_line, found.cells_told())
     yield ""
     yield from map(one_line, sentences(found.answers))
@@ -88,15 +89,15 @@ def sweep_lines(found: SweepComparison, everything: bool) -> Iterator[str]:
         yield from _short_lines(found.answers)
         return
     yield f"every metric {'in the one cell' if len(pairs) == 1 else f'over all {len(pairs)} cells'}, on the same seeds"
-    header = ["metric", "unit", a, b, f"{b} - {a}"]
-    rows = [[*header, *HEADER[1:], f"{b} is", "cells below, above 0"]]
-    rows += [[*_head(one), *one.plain_cells, "{}, {}".format(*counts_by_sign(one))] for one in found.answers]
-    yield align_columns(rows, indent="")
+    header = ["metric", "unit", *numbers(a, b, f"{b} - {a}")]
+    rows = [[*_head(one), *one.plain_cells, "{}, {}".format(*counts_by_sign(one))] for one in found.answers]
+    columns = [*header, *numbers(*HEADER[1:]), f"{b} is", "cells below, above 0"]
+    yield terminal(Table("", columns, rows), indent="")
     if found.cells:
         yield ""
         yield f"largest differences in one cell, relative to the metric (chosen from {found.candidates}, not tested):"
-        rows = [[label_text(one.at), *_head(one), plain_number(one.comparison.difference)] for one in found.cells]
-        yield align_columns([["cell", *header], *rows])
+        rows = [[label_text(one.at), *_head(one), Number(one.comparison.difference)] for one in found.cells]
+        yield terminal(Table("", ["cell", *header], rows))
     yield ""
     yield f"{POOLED} {EXPLAINED}"
 
@@ -124,12 +125,12 @@ def run_lines(
     if answers and not everything:
         yield from _short_lines(answers)
         return
-    header = ["metric", "unit", a, b, f"{b} - {a}", f"{b} / {a}"]
-    yield align_columns([header, *_metric_rows(sides, names)], indent="")
+    header = ["metric", "unit", *numbers(a, b, f"{b} - {a}", f"{b} / {a}")]
+    yield terminal(Table("", header, list(_metric_rows(sides, names))), indent="")
     if answers:
         yield ""
-        header = ["metric", "unit", f"{b} - {a}", *HEADER[1:], f"{b} is"]
-        yield align_columns([header, *([one.metric, one.unit, *one.plain_cells] for one in answers)])
+        header = ["metric", "unit", *numbers(f"{b} - {a}", *HEADER[1:]), f"{b} is"]
+        yield terminal(Table("", header, [[one.metric, one.unit, *one.plain_cells] for one in answers]))
         yield EXPLAINED
     elif not everything:
         yield ALL
@@ -138,7 +139,7 @@ def run_lines(
 def _short_lines(answers: Sequence[Answer]) -> Iterator[str]:
     """Yield the short table, and how to print more."""
     header, rows = short_table(answers)
-    yield align_columns([header, *rows[:_MOST_ROWS]], indent="")
+    yield terminal(Table("", header, rows[:_MOST_ROWS]), indent="")
     if len(rows) > _MOST_ROWS:
         yield f"{len(rows) - _MOST_ROWS} more rows"
     yield ""
@@ -164,25 +165,25 @@ def _changed_keys(what: str, both: Sequence[Mapping[str, Any]], names: Sequence[
     """Return a table of the dotted keys in which two mappings differ, or a message that they are equal."""
     a, b = ({dotted(place): _shown(value) for place, value in leaves(one, lists=False)} for one in both)
     rows = [[key, a.get(key, "(absent)"), b.get(key, "(absent)")] for key in {**a, **b} if a.get(key) != b.get(key)]
-    return f"{what} differs:\n{align_columns([['key', *names], *rows])}" if rows else f"same {what}"
+    return f"{what} differs:\n{terminal(Table('', ['key', *names], rows))}" if rows else f"same {what}"
 
 
 def _shown(value: Any) -> str:
     return value if isinstance(value, str) else json.dumps(value)
 
 
-def _metric_rows(sides: tuple[Measurements, Measurements], names: Sequence[str]) -> Iterator[list[str]]:
+def _metric_rows(sides: tuple[Measurements, Measurements], names: Sequence[str]) -> Iterator[list[Cell]]:
     """Yield the medians of each metric in two runs, their difference and their ratio."""
     for name in dict.fromkeys(names):
         unit = next(side.units[name] for side in sides if name in side.units)
         a, b = (float(side.medians(name)[0]) if name in side.values else np.nan for side in sides)
         shown = (a, b, b - a, b / a if a and np.isfinite(a) else np.nan)
-        yield [name, unit, *(plain_number(value if np.isfinite(value) else None) for value in shown)]
+        yield [name, unit, *(Number(value if np.isfinite(value) else None) for value in shown)]
 
 
 def _value(value: Value) -> list[str]:
     return [value.key, value.a, value.b, value.cells]
 
 
-def _head(one: Asked) -> list[str]:
-    return [one.metric, one.unit, *map(plain_number, one.comparison.medians)]
+def _head(one: Asked) -> list[Cell]:
+    return [one.metric, one.unit, *map(Number, one.comparison.medians)]

@@ -1,126 +1,136 @@
-"""Number format of table columns: one unit per column, digits from the confidence interval."""
+"""Tables for papers: a unit and power of ten per column, digits by the interval; Markdown and Typst."""
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from runner.base.arrays import FloatArray
-from runner.base.quantities import ROUNDING, choose_unit, fewest_powers, smaller_units
-from runner.statistics import Interval, median_interval
+from runner.base.quantities import ROUNDING, SUPERSCRIPT, unit_text
+from runner.base.sanitize import one_line, plain
+from runner.reporting.table import Cell, Number, Table, fit_unit
+from runner.reporting.templating import quote_typst
 
 _SMALLEST, _LARGEST = 1e-2, 1e5  # outside of these the head of a column has a power of ten
-_PLAIN = 1e-4  # in a smaller unit, such as mm, plain decimals are read down to this
 _DIGITS = 3  # of a number without interval
 _MOST_DIGITS = 6
 BEYOND, MISSING = "∞", "–"
+_MARKDOWN = re.compile(r"([\\`*{}\[\]#|~$!])|(?<![^\W_])(_)|(_)(?![^\W_])")  # an underscore within a word is itself
 
 
-class Unit(str):
-    """A unit of a metric, such as "mm", "N m" or "m/s^2", with a power of ten before it.
+@dataclass(frozen=True)
+class Unit:
+    """A unit such as "mm", "N m" or "m/s^2", with a power of ten before it.
 
     Attributes:
+        name: The unit; "1" for none.
         power: The exponent; 0 for none.
     """
 
-    __slots__ = ("power",)
-    power: int
+    name: str
+    power: int = 0
 
-    def __new__(cls, text: str, power: int = 0) -> "Unit":
-        """Return a unit."""
-        unit = super().__new__(cls, text)
-        unit.power = power
-        return unit
+    def __str__(self) -> str:
+        """Return the unit as it is read, such as "10⁻⁶ N m"; an empty string for 1."""
+        power = f"10{str(self.power).translate(SUPERSCRIPT)}" if self.power else ""
+        return f"{power} {unit_text(self.name)}".strip()
 
 
 @dataclass(frozen=True)
-class Cell:
-    """A median with its interval as strings; no ends if the sample is too small for one, or all values are the same.
+class Written:
+    """A cell as text.
 
     Attributes:
-        median: The median; "∞" where it lies beyond every number, "–" without a value.
-        low: Lower end, or "".
+        text: The text; "∞" for a number beyond every number, "–" for a missing one.
+        low: Lower end of the interval, or "".
         high: Upper end, or "".
-        n: Number of values.
-        lost: How many of these lie beyond every number.
-        rounding: True if it is what rounding leaves of zero.
-        alike: True if all values are the same.
+        unit: The unit that it names, or None.
     """
 
-    median: str
-    low: str
-    high: str
-    n: int
-    lost: int
-    rounding: bool
-    alike: bool
+    text: str
+    low: str = ""
+    high: str = ""
+    unit: Unit | None = None
+
+    def __str__(self) -> str:
+        """Return the cell with its interval, such as "4.1 [3.9, 4.4]"."""
+        return f"{self.text} [{self.low}, {self.high}]" if self.low else self.text
 
 
 @dataclass(frozen=True)
-class Column:
-    """A metric in all rows.
+class PaperColumn:
+    """A column of a table for a paper.
 
     Attributes:
-        title: What it is.
-        unit: Its unit.
+        title: Its title, without unit; may be empty for numbers.
+        kind: As in Column.
         cells: One for each row.
+        unit: Unit of all of its numbers; None for other cells.
     """
 
     title: str
-    unit: Unit
-    cells: Sequence[Cell]
+    kind: str
+    cells: Sequence[Written]
+    unit: Unit | None = None
 
     @property
     def has_intervals(self) -> bool:
         """True if any of its cells has an interval."""
         return any(cell.low for cell in self.cells)
 
+    @property
+    def head(self) -> str:
+        """Title and unit, such as "error (mm)"."""
+        unit = "" if self.unit is None else str(self.unit)
+        untitled = "median [95 % interval]" if self.has_intervals else "median"
+        return f"{self.title} ({unit})" if unit else self.title or untitled
 
-def column(title: str, unit: str, samples: FloatArray) -> Column:
-    """Return a metric in all rows, in the unit that fits all of them.
 
-    Args:
-        title: What it is.
-        unit: Its SI unit.
-        samples: Its values, shape (rows, values): infinite beyond every number, NaN where there is none.
+def lay_out(table: Table) -> list[PaperColumn]:
+    """Return the columns of a table for a paper.
+
+    If a column has the unit of each row, the numbers of a row have a unit of their own, which that column shows.
     """
-    present = [row[~np.isnan(row)] for row in samples]
-    found = [median_interval(values) if len(values) else None for values in present]
-    shown = [value for each in found if each is not None for value in (each.median, each.low, each.high)
-             if value is not None and math.isfinite(value) and abs(value) >= ROUNDING]  # fmt: skip
-    largest = max(map(abs, shown), default=0.0)
-    factor, name = fewest_powers(shown, [choose_unit(largest, unit), *smaller_units(unit)], _PLAIN)
-    power = _power(factor * largest)
+    laid = []
+    units = next(([str(row[place]) for row in table.rows] for place, each in enumerate(table.columns)
+                  if each.kind == "unit"), None)  # fmt: skip
+    for place, column in enumerate(table.columns):
+        cells = [row[place] for row in table.rows]
+        if not any(isinstance(cell, Number) for cell in cells):
+            laid.append(PaperColumn(column.title, column.kind, [Written(str(cell)) for cell in cells]))
+        elif units is None:
+            unit, written = _write(cells, column.unit)
+            laid.append(PaperColumn(column.title, column.kind, written, unit))
+        else:
+            rows = [_write([cell], unit) for cell, unit in zip(cells, units, strict=True)]
+            shown = [Written(str(unit), unit=unit) for unit, _ in rows]
+            laid = [replace(each, cells=shown) if each.kind == "unit" else each for each in laid]
+            laid.append(PaperColumn(column.title, column.kind, [cell for _, (cell,) in rows], Unit("1")))
+    return laid
+
+
+def _write(cells: Sequence[Cell], unit: str) -> tuple[Unit, list[Written]]:
+    """Return the unit that fits some numbers, and these in that unit."""
+    ends = [end for cell in cells if isinstance(cell, Number) for end in (cell.value, cell.low, cell.high)]
+    known = [end for end in ends if end is not None and math.isfinite(end) and abs(end) >= ROUNDING]
+    factor, name = fit_unit(known, unit)
+    largest = factor * max(map(abs, known), default=0.0)
+    power = 0 if largest == 0.0 or _SMALLEST <= largest < _LARGEST else 3 * math.floor(math.log10(largest) / 3)
     scale = factor * 10.0**-power
-    lost = np.isinf(samples).sum(axis=1)
-    cells = [_cell(each, scale, int(count)) for each, count in zip(found, lost, strict=True)]
-    return Column(title, Unit(unit if factor == 1.0 else name, power), cells)
+    written = [_text(cell, scale) if isinstance(cell, Number) else Written(cell) for cell in cells]
+    return Unit(name, power), written
 
 
-def _power(largest: float) -> int:
-    """Return the power of ten of a column, a multiple of three; 0 where its numbers are read without."""
-    if largest == 0.0 or _SMALLEST <= largest < _LARGEST:
-        return 0
-    return 3 * math.floor(math.log10(largest) / 3)
+def _text(cell: Number, scale: float) -> Written:
+    if cell.value is None:
+        return Written(MISSING)
+    ends = [end for end in (cell.value, cell.low, cell.high) if end is not None]
+    places = decimals(*(scale * end for end in ends))
+    zeros = all(abs(end) < ROUNDING for end in ends)
+    text, low, high = [*("0" if zeros else _fixed(scale * end, places) for end in ends), "", ""][:3]
+    return Written(text, low, high)
 
 
-def _cell(found: Interval | None, scale: float, lost: int) -> Cell:
-    if found is None:
-        return Cell(MISSING, "", "", 0, 0, False, False)
-    alike = found.low is not None and found.low == found.high
-    if alike:
-        found = replace(found, low=None, high=None)
-    ends = [value for value in (found.median, found.low, found.high) if value is not None]
-    if all(abs(value) < ROUNDING for value in ends):
-        zero = "0" if found.low is not None else ""
-        return Cell("0", zero, zero, found.n, lost, any(ends), alike)
-    places = decimals(scale * found.median, *(None if end is None else scale * end for end in (found.low, found.high)))
-    low, high = ("" if end is None else _text(scale * end, places) for end in (found.low, found.high))
-    return Cell(_text(scale * found.median, places), low, high, found.n, lost, False, alike)
-
-
-def decimals(median: float, low: float | None, high: float | None) -> int:
+def decimals(median: float, low: float | None = None, high: float | None = None) -> int:
     """Return to how many decimals a median is given: to the second digit of the half width of its interval.
 
     At most six digits; three without an interval.
@@ -135,8 +145,49 @@ def decimals(median: float, low: float | None, high: float | None) -> int:
     return max(0, min(wanted, _MOST_DIGITS - 1 - leading))
 
 
-def _text(value: float, places: int) -> str:
+def _fixed(value: float, places: int) -> str:
     if math.isinf(value):
         return BEYOND if value > 0 else f"-{BEYOND}"
     text = f"{value:.{places}f}"
     return text.removeprefix("-") if float(text) == 0.0 else text
+
+
+def write_markdown(table: Table) -> str:
+    """Return a table in GitHub's Markdown."""
+    columns = lay_out(table)
+    lines = [[escape_markdown(text) for text in line] for line in _lines(columns)]
+    marks = ["---:" if each.kind == "number" else "---" for each in columns]
+    return "\n".join("| " + " | ".join(line) + " |" for line in [lines[0], marks, *lines[1:]])
+
+
+def escape_markdown(text: str) -> str:
+    """Return a string in which Markdown finds no markup."""
+    safe = plain(text).replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    return _MARKDOWN.sub(lambda found: f"\\{found[0]}", safe)
+
+
+def write_typst(table: Table, caption: str, sources: Sequence[str]) -> str:
+    """Return a table as a Typst figure, to be included, with comments on its origin."""
+    columns = lay_out(table)
+    head, *rows = [", ".join(map(quote_typst, line)) for line in _lines(columns)]
+    sides = ", ".join("right" if each.kind == "number" else "left" for each in columns)
+    return "\n".join(
+        [
+            *(f"// {one_line(source)}" for source in sources),
+            "#figure(",
+            f"  caption: {quote_typst(caption)},",
+            "  table(",
+            f"    columns: {len(columns)}, align: ({sides}), stroke: none,",
+            f"    table.hline(), table.header({head}), table.hline(stroke: 0.5pt),",
+            *(f"    {row}," for row in rows),
+            "    table.hline(),",
+            "  ),",
+            ")",
+            "",
+        ]
+    )
+
+
+def _lines(columns: Sequence[PaperColumn]) -> list[list[str]]:
+    """Return the head and the rows as strings."""
+    return [[each.head for each in columns], *map(list, zip(*(map(str, each.cells) for each in columns), strict=True))]

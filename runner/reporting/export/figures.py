@@ -1,9 +1,6 @@
 """Figures of a report as separate files: SVG and PDF at column width, points as CSV, captions without markup."""
 
-import csv
-import io
 import itertools
-import math
 import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,7 +11,7 @@ from typing import TypeVar
 import typst
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.sanitize import table_cell
+from runner.base.sanitize import csv_text
 from runner.reporting.charts import static
 from runner.reporting.charts.figure import Map, Panel, Series
 from runner.reporting.charts.sheet import Sheet
@@ -173,12 +170,7 @@ def _as_pdf(svg: str) -> bytes:
 def as_csv(figure: Figure) -> bytes | None:
     """Return all points of a figure, none left out, in the units that it shows; None for a drawing without any."""
     rows = list(_rows(figure))
-    if not rows:
-        return None
-    stream = io.StringIO(newline="")
-    writer = csv.writer(stream)
-    writer.writerows([table_cell(str(value)) for value in row] for row in rows)
-    return stream.getvalue().encode("utf-8", errors="replace")
+    return csv_text(rows).encode("utf-8", errors="replace") if rows else None
 
 
 def _rows(figure: Figure) -> Iterator[Row]:
@@ -193,12 +185,12 @@ def _rows(figure: Figure) -> Iterator[Row]:
             for each in figure.panels:
                 for y, row in zip(each.y_names, each.values.tolist(), strict=True):
                     for x, value in zip(each.x_names, row, strict=True):
-                        yield (each.title, each.x_label, x, each.y_label, y, figure.value_label, _number(value))
+                        yield (each.title, each.x_label, x, each.y_label, y, figure.value_label, value)
         case Playback():
             yield ("curve", "x (m)", "y (m)", "z (m)")
             for name, path in (("path of the tip", figure.path), ("desired path", figure.desired)):
                 for point in [] if path is None else path.tolist():
-                    yield (name, *map(_number, point))
+                    yield (name, *point)
         case Picture():
             pass
 
@@ -207,10 +199,5 @@ def _of_curve(panel: Panel, series: Series) -> Iterator[Row]:
     edges = (("", series.y), (" (lower edge of its band)", series.low), (" (upper edge of its band)", series.high))
     for what, heights in edges:
         for x, y in [] if heights is None else zip(series.x.tolist(), heights.tolist(), strict=True):
-            place = panel.x_names[int(x)] if panel.x_names and x == int(x) else _number(x)
-            yield (panel.title, f"{series.name or series.label}{what}", panel.x_label, place, panel.y_label, _number(y))
-
-
-def _number(value: float) -> object:
-    """Return a number with all its digits; nothing for one that is missing."""
-    return "" if math.isnan(value) else value
+            place = panel.x_names[int(x)] if panel.x_names and x == int(x) else x
+            yield (panel.title, f"{series.name or series.label}{what}", panel.x_label, place, panel.y_label, y)

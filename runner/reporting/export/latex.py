@@ -1,11 +1,11 @@
 """LaTeX tables with booktabs and siunitx."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from runner.base.sanitize import plain
-from runner.reporting.export.columns import BEYOND, MISSING, Cell, Column, Unit
-from runner.reporting.export.paper_table import Label, PaperTable
+from runner.reporting.export.columns import BEYOND, MISSING, PaperColumn, Unit, Written, lay_out
+from runner.reporting.table import Table
 
 _MEANT = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "^": r"\textasciicircum{}",
@@ -23,83 +23,69 @@ _FACTOR = re.compile(r"(/?)([^\s/^]+)(?:\^(\d+))?")
 _LATIN = 0x17F  # up to here pdfLaTeX has the letters
 
 
-def latex(table: PaperTable) -> str:
-    """Return the table as LaTeX: a tabular, with comments on packages, origin and how its numbers were made."""
-    counts = table.counts
-    columns = [*("l" for _ in table.heads), *map(_column, table.columns), *("r" if counts else "")]
-    body = [
-        _row([*map(_label, labels), *(part for each in table.columns for part in _numbers(each, row)),
-              *([escape_latex(counts[row])] if counts else [])])
-        for row, labels in enumerate(table.labels)
-    ]  # fmt: skip
+def write_latex(table: Table, caption: str, sources: Sequence[str]) -> str:
+    """Return a table as LaTeX: a tabular, with comments on packages, its origin and a caption."""
+    columns = lay_out(table)
     tabular = [
-        rf"\begin{{tabular}}{{{' '.join(columns)}}}",
+        rf"\begin{{tabular}}{{{' '.join(map(_alignment, columns))}}}",
         r"\toprule",
-        *_head(table),
+        *_head(columns),
         r"\midrule",
-        *body,
+        *(_row(part for each in columns for part in _parts(each, each.cells[row])) for row in range(len(table.rows))),
         r"\bottomrule",
         r"\end{tabular}",
     ]
     comments = [
         r"Needs \usepackage{booktabs} and \usepackage{siunitx}, version 3 or later.",
-        *(source for source in table.sources),
-        rf"\caption{{{escape_latex(' '.join(table.notes))}}}",
+        *sources,
+        rf"\caption{{{escape_latex(caption)}}}",
     ]
     if any(ord(letter) > _LATIN for letter in "".join(tabular)):
         comments.insert(1, "Has letters that LuaLaTeX or XeLaTeX sets, and pdfLaTeX does not.")
     return "".join(f"% {plain(line)}\n" for line in comments) + "\n".join(tabular) + "\n"
 
 
-def _column(column: Column) -> str:
-    """Return the alignment of a metric: at the decimal marker, with room for its longest numbers."""
-    numbers = [cell.median.partition(".") for cell in column.cells if _is_number(cell.median)]
+def _alignment(column: PaperColumn) -> str:
+    """Return the alignment of a column: numbers at the decimal marker, with room for the longest."""
+    if column.unit is None:
+        return "r" if column.kind == "number" else "l"
+    numbers = [cell.text.partition(".") for cell in column.cells if _is_number(cell.text)]
     whole = max((len(text.lstrip("-")) for text, _, _ in numbers), default=1)
     places = max((len(text) for _, _, text in numbers), default=0)
     sign = "-" if any(text.startswith("-") for text, _, _ in numbers) else ""
     return f"S[table-format={sign}{whole}.{places}]" + (" l" if column.has_intervals else "")
 
 
-def _head(table: PaperTable) -> list[str]:
+def _head(columns: Sequence[PaperColumn]) -> list[str]:
     """Return the rows of the head: titles with units, and below them the parts of each."""
-    titles = [_braced(_title(each)) for each in table.columns]
-    last = ["n"] if table.counts else []
-    if not any(each.has_intervals for each in table.columns):
-        parts = [title if each.title else "{median}" for title, each in zip(titles, table.columns, strict=True)]
-        return [_row([*map(escape_latex, table.heads), *parts, *last])]
-    parts = [part for each in table.columns for part in (["{median}", r"95\,\% interval"][: 1 + each.has_intervals])]
-    below = _row([*map(escape_latex, table.heads), *parts, *last])
-    if not any(each.title for each in table.columns):
-        return [below]
-    above, rules, place = ["" for _ in table.heads], [], len(table.heads) + 1
-    for title, each in zip(titles, table.columns, strict=True):
-        span = 1 + each.has_intervals
-        above.append(rf"\multicolumn{{{span}}}{{c}}{title}")
-        rules.append(rf"\cmidrule(lr){{{place}-{place + span - 1}}}")
-        place += span
-    return [_row([*above, *("" for _ in last)]), " ".join(rules), below]
+    is_split = any(each.has_intervals for each in columns)
+    above: list[str] = []
+    rules: list[str] = []
+    below: list[str] = []
+    for each in columns:
+        title, span = _title(each), 1 + each.has_intervals
+        of_number = ["{median}", r"95\,\% interval"][:span] if is_split or not each.title else [f"{{{title}}}"]
+        place = 1 + len(below)
+        below += [title] if each.unit is None else of_number
+        above.append("" if each.unit is None else rf"\multicolumn{{{span}}}{{c}}{{{title}}}")
+        rules += [] if each.unit is None else [rf"\cmidrule(lr){{{place}-{place + span - 1}}}"]
+    has_titles = any(each.title for each in columns if each.unit is not None)
+    return [_row(above), " ".join(rules), _row(below)] if is_split and has_titles else [_row(below)]
 
 
-def _title(column: Column) -> str:
-    unit = unit_macro(column.unit)
+def _title(column: PaperColumn) -> str:
+    unit = "" if column.unit is None else unit_macro(column.unit)
     return f"{escape_latex(column.title)} ({unit})" if unit else escape_latex(column.title)
 
 
-def _label(label: Label) -> str:
-    return unit_macro(label) if isinstance(label, Unit) else escape_latex(label)
-
-
-def _numbers(column: Column, row: int) -> list[str]:
-    cell = column.cells[row]
-    median = cell.median if _is_number(cell.median) else _braced(escape_latex(cell.median))
-    return [median, _interval(cell)] if column.has_intervals else [median]
-
-
-def _interval(cell: Cell) -> str:
-    if not cell.low:
-        return ""
-    low, high = (rf"\num{{{end}}}" if _is_number(end) else escape_latex(end) for end in (cell.low, cell.high))
-    return f"{{[}}{low}, {high}{{]}}"
+def _parts(column: PaperColumn, cell: Written) -> list[str]:
+    """Return what a cell fills: one place, or two in a column with intervals."""
+    text = escape_latex(cell.text) if cell.unit is None else unit_macro(cell.unit)
+    if column.unit is None:
+        return [text]
+    ends = [rf"\num{{{end}}}" if _is_number(end) else escape_latex(end) for end in (cell.low, cell.high)]
+    interval = f"{{[}}{ends[0]}, {ends[1]}{{]}}" if cell.low else ""
+    return [cell.text if _is_number(cell.text) else f"{{{text}}}", interval][: 1 + column.has_intervals]
 
 
 def _is_number(text: str) -> bool:
@@ -110,13 +96,9 @@ def _row(cells: Iterable[str]) -> str:
     return " & ".join(cells).strip() + r" \\"
 
 
-def _braced(text: str) -> str:
-    return f"{{{text}}}"
-
-
 def unit_macro(unit: Unit) -> str:
     """Return a unit as siunitx sets it, its own letters where siunitx has no name for it; nothing for 1."""
-    factors = _FACTOR.findall(str(unit))
+    factors = _FACTOR.findall(unit.name)
     known = all(name in _UNITS for _, name, _ in factors)
     macros = "".join(_factor(*factor) for factor in factors) if known else ""
     if unit.power:
@@ -125,7 +107,7 @@ def unit_macro(unit: Unit) -> str:
 
 
 def _own(unit: Unit) -> str:
-    return "" if unit == "1" else escape_latex(str(unit))
+    return "" if unit.name == "1" else escape_latex(unit.name)
 
 
 def _factor(divided: str, name: str, exponent: str) -> str:

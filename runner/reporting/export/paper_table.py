@@ -1,71 +1,71 @@
 """Tables for publications: rows, medians with intervals, and notes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
-from runner.base.quantities import ROUNDING, SUPERSCRIPT, unit_text
-from runner.reporting.export.columns import Column, Unit, column
+import numpy as np
+
+from runner.base.arrays import FloatArray
+from runner.base.quantities import ROUNDING
+from runner.reporting.export.columns import escape_markdown, write_markdown, write_typst
+from runner.reporting.export.latex import write_latex
 from runner.reporting.export.pooling import Pooled, pool
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import choose, key_label
-from runner.statistics import SMALLEST_SAMPLE
+from runner.reporting.table import Cell, Column, Number, Table, numbers
+from runner.statistics import SMALLEST_SAMPLE, median_interval
 from runner.statistics.interval import RESAMPLES
 from runner.store import Run
 from runner.sweeps.differing import in_words
 from runner.sweeps.measurements import Measurements, measure_run
 
-Label = str | Unit
 
-
-@dataclass(frozen=True)
-class PaperTable:
+class PaperTable(NamedTuple):
     """A table for a paper.
 
     Attributes:
-        heads: Titles of the first columns, such as the swept axes.
-        labels: That of each row.
-        columns: Medians with their intervals.
+        table: The table, without caption.
         notes: How the numbers were made, and what the reader must know of them, a sentence each.
         sources: Where they come from: command, commit.
     """
 
-    heads: Sequence[str]
-    labels: Sequence[Sequence[Label]]
-    columns: Sequence[Column]
+    table: Table
     notes: Sequence[str]
     sources: Sequence[str]
 
-    @property
-    def counts(self) -> Sequence[str]:
-        """The number of values in each row; nothing if it is the same everywhere, because a note has it."""
-        rows = [{each.cells[row].n for each in self.columns} for row in range(len(self.labels))]
-        if len(set().union(*rows)) <= 1:
-            return ()
-        return [", ".join(map(str, sorted(counts))) for counts in rows]
-
-    @property
-    def lines(self) -> list[list[str]]:
-        """The head and the rows as plain strings, a median with its interval as "4.1 [3.9, 4.4]"."""
-        counts = self.counts
-        lines = [[*self.heads, *map(_head, self.columns), *(["n"] if counts else [])]]
-        for row, labels in enumerate(self.labels):
-            cells = [each.cells[row] for each in self.columns]
-            numbers = [f"{cell.median} [{cell.low}, {cell.high}]" if cell.low else cell.median for cell in cells]
-            names = [unit_name(label) if isinstance(label, Unit) else label for label in labels]
-            lines.append([*names, *numbers, *([counts[row]] if counts else [])])
-        return lines
+    def written(self, form: str) -> str:
+        """Return it as "markdown", "latex" or "typst", with its notes and sources."""
+        caption = " ".join(self.notes)
+        if form == "latex":
+            return write_latex(self.table, caption, self.sources)
+        if form == "typst":
+            return write_typst(self.table, caption, self.sources)
+        below = "  \n".join(map(escape_markdown, [caption, *self.sources]))
+        return f"{write_markdown(self.table)}\n\n{below}\n"
 
 
-def _head(column: Column) -> str:
-    unit = unit_name(column.unit)
-    untitled = "median [95 % interval]" if column.has_intervals else "median"
-    return f"{column.title} ({unit})" if unit else column.title or untitled
+class Sample(NamedTuple):
+    """Values of a metric.
+
+    Attributes:
+        median: The median with its interval; without one if its ends are equal.
+        n: Number of values.
+        lost: Number of values beyond every number.
+    """
+
+    median: Number
+    n: int
+    lost: int
 
 
-def unit_name(unit: Unit) -> str:
-    """Return a unit as it is read, such as "10⁻⁶ N m"; nothing for 1."""
-    power = f"10{str(unit.power).translate(SUPERSCRIPT)}" if unit.power else ""
-    return f"{power} {unit_text(str(unit))}".strip()
+def summarize(values: FloatArray) -> Sample:
+    """Return the median of some values, shape (n,): infinite beyond every number, NaN where there is none."""
+    present = values[~np.isnan(values)]
+    if not len(present):
+        return Sample(Number(None), 0, 0)
+    found = median_interval(present)
+    ends = () if found.low == found.high else (found.low, found.high)
+    return Sample(Number(found.median, *ends), found.n, int(np.isinf(present).sum()))
 
 
 def of_sweep(
@@ -90,18 +90,24 @@ def of_sweep(
     pooled = pool(measurements, by, where)
     rows = pooled.measurements
     names = choose(rows).metrics if metrics is None else rows.named(metrics)
-    labels = [[axis.text(int(axis.level[row])) for axis in rows.axes] for row in range(len(rows.hashes))]
-    columns = [column(title(name), rows.units[name], rows.values[name]) for name in names]
-    notes = [*_of_numbers(columns, pooled.seeds), *_of_cells(measurements, pooled)]
+    samples = [[summarize(rows.values[name][row]) for name in names] for row in range(len(rows.hashes))]
+    notes = [*_of_numbers(samples, pooled.seeds), *_of_cells(measurements, pooled)]
     fixed = f"The same in all rows: {', '.join(rows.fixed)}." if rows.fixed else ""
     commits = [text for key, texts in rows.provenance.items() if key == "commit" for text in texts]
-    return PaperTable(
-        [key_label(axis.name) for axis in rows.axes],
-        labels,
-        columns,
-        [*notes, *([fixed] if fixed else [])],
-        [f"From: {command}", *(f"Commit: {commit}" for commit in commits)],
-    )
+    counts = [sorted({sample.n for sample in row}) for row in samples]
+    differ = len({n for row in counts for n in row}) > 1  # else a note has the number
+    cells: list[list[Cell]] = [
+        [*(axis.text(int(axis.level[row])) for axis in rows.axes), *(sample.median for sample in samples[row]),
+         *([", ".join(map(str, counts[row]))] if differ else [])]
+        for row in range(len(samples))
+    ]  # fmt: skip
+    header = [
+        *(key_label(axis.name) for axis in rows.axes),
+        *(Column(title(name), "number", rows.units[name]) for name in names),
+        *(numbers("n") if differ else []),
+    ]
+    sources = [f"From: {command}", *(f"Commit: {commit}" for commit in commits)]
+    return PaperTable(Table("", header, cells), [*notes, *([fixed] if fixed else [])], sources)
 
 
 def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
@@ -115,29 +121,29 @@ def of_run(run: Run, metrics: Sequence[str] | None = None) -> PaperTable:
         RunnerError: If a metric is none of the run's.
     """
     known = measure_run(run)
-    each = [column(title(name), known.units[name], known.values[name]) for name in known.named(metrics)]
-    together = Column("", Unit("1"), [own.cells[0] for own in each])
-    notes = _of_numbers([together], [1])
+    samples = {name: summarize(known.values[name][0]) for name in known.named(metrics)}
+    notes = _of_numbers([[sample] for sample in samples.values()], [1])
     if run.status != "ok":
         notes.append(f"The run {run.failure}.")
     if run.caveats:
         notes.append(f"Caveats: {', '.join(str(caveat['rule']) for caveat in run.caveats)}.")
     sources = [f"From: {run.provenance['command']}", f"Commit: {run.provenance['commit']}"]
-    return PaperTable(["metric", "unit"], [[own.title, own.unit] for own in each], [together], notes, sources)
+    cells: list[list[Cell]] = [[title(name), known.units[name], sample.median] for name, sample in samples.items()]
+    return PaperTable(Table("", ["metric", Column("unit", "unit"), *numbers("")], cells), notes, sources)
 
 
-def _of_numbers(columns: Sequence[Column], seeds: Sequence[int]) -> list[str]:
-    cells = [cell for each in columns for cell in each.cells]
+def _of_numbers(samples: Sequence[Sequence[Sample]], seeds: Sequence[int]) -> list[str]:
+    cells = [sample for row in samples for sample in row]
     counts = {cell.n for cell in cells}
     notes = []
-    if any(cell.low for cell in cells):
+    if any(cell.median.low is not None for cell in cells):
         notes.append(
             f"Median, and in brackets its 95 % interval: percentile bootstrap of {RESAMPLES} resamples, percentiles "
             "expanded for small samples."
         )
     else:
         notes.append("Medians.")
-    if any(cell.alike for cell in cells):
+    if any(cell.n >= SMALLEST_SAMPLE and cell.median.low is None for cell in cells):
         notes.append("No interval is given if its ends are the same because most repetitions gave the same value.")
     if min(counts, default=SMALLEST_SAMPLE) < SMALLEST_SAMPLE:
         notes.append(f"No interval is given if n is below {SMALLEST_SAMPLE}: so few values allow none at 95 %.")
@@ -153,7 +159,7 @@ def _of_numbers(columns: Sequence[Column], seeds: Sequence[int]) -> list[str]:
             f"{lost} of {sum(cell.n for cell in cells)} values are missing, as a repetition failed or never got "
             "there; they count as beyond every number (∞)."
         )
-    if any(cell.rounding for cell in cells):
+    if any(cell.median.is_rounding for cell in cells):
         notes.append(f"0 stands for what is below {ROUNDING:g} in SI units: rounding of the arithmetic.")
     return notes
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
-from runner.base.sanitize import table_cell
+from runner.base.sanitize import csv_text
 from runner.store.axes import Axis, find_axis, find_cells, group_cells
 from runner.sweeps.measurements import Measurements
 from runner.sweeps.table import metric_columns, with_units
@@ -138,9 +138,7 @@ def of_one(measurements: Measurements, metrics: Sequence[str] | None = None) -> 
 
 def as_csv(frame: "pd.DataFrame") -> bytes:
     """Return a table as CSV whose cells no spreadsheet reads as formulas."""
-    texts = frame.select_dtypes(exclude="number").columns
-    safe = frame.assign(**{name: frame[name].map(lambda value: table_cell(str(value))) for name in texts})
-    return safe.rename(columns=table_cell).to_csv(index=False, lineterminator="\n").encode()
+    return csv_text([frame.columns, *frame.itertuples(index=False)]).encode()
 
 
 def as_parquet(frame: "pd.DataFrame", measurements: Measurements) -> bytes:

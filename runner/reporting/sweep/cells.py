@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Notice, Origin, Section, Table, Text
-from runner.reporting.markup import literal, literals
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital
 from runner.reporting.sweep.subject import Subject, key_label, shorten
+from runner.reporting.table import numbers
 from runner.statistics import SMALLEST_SAMPLE
 from runner.store.axes import Axis
 
@@ -38,7 +39,7 @@ def axes_section(subject: Subject, command: str) -> Section:
     blocks: list[Block] = []
     cells = len(measurements.hashes)
     if rows:
-        blocks.append(Table("Swept axes.", ["axis", "number", "values"], [literals(row) for row in rows], (1,), origin))
+        blocks.append(Table("Swept axes.", ["axis", *numbers("number"), "values"], rows, origin))
     blocks += _also_differs(subject)
     grid = math.prod(len(axis.values) for axis in subject.axes)
     whole = "every combination of their values" if grid == cells else f"not all of the {grid} combinations"
@@ -87,7 +88,7 @@ def _also_differs(subject: Subject) -> list[Block]:
         "Also differs: config values that are not the same in all cells, though they were not swept. What an axis "
         f"seems to do may be done by what goes with it.{more}"
     )
-    return [Table(caption, ["key", "goes with", "values"], [literals(row) for row in rows])]
+    return [Table(caption, ["key", "goes with", "values"], rows)]
 
 
 def failures_section(subject: Subject) -> Section:
@@ -97,7 +98,7 @@ def failures_section(subject: Subject) -> Section:
     blocks = _failure_map(subject, failed)
     if subject.axes:
         rows = [row for axis in subject.axes for row in _by_level(axis, failed)]
-        blocks.append(Table("Failed runs by axis.", ["axis", "value", "failed"], [literals(row) for row in rows], (2,)))
+        blocks.append(Table("Failed runs by axis.", ["axis", "value", *numbers("failed")], rows))
     rows = [
         [measurements.hashes[cell][:8], subject.cell_name(cell), measurements.failures[cell]]
         for cell in np.flatnonzero(failed).tolist()
@@ -124,7 +125,7 @@ def _failure_map(subject: Subject, failed: NDArray[np.bool_]) -> list[Block]:
     ]
     header = [key_label(down.name), *(f"{across.name}={text}" for text in across.texts)]
     caption = literal(f"Causes of failure by {down.name} and {across.name}; none: every run finished.")
-    return [Table(caption, literals(header), [literals(row) for row in rows])]
+    return [Table(caption, header, rows)]
 
 
 def _causes(causes: NDArray[np.str_]) -> str:
@@ -140,7 +141,7 @@ def failed_table(what: str, header: Sequence[str], rows: Sequence[Sequence[str]]
     """Return the table of failed runs or trials; of many the first ones."""
     left = len(rows) - _MOST_FAILURES
     more = f" {left} more are in the list of runs and in the table of the sweep." if left > 0 else ""
-    return Table(f"Failed {what}.{more}", header, [literals(row) for row in rows[:_MOST_FAILURES]])
+    return Table(f"Failed {what}.{more}", header, rows[:_MOST_FAILURES])
 
 
 def causes_of_failure(subject: Subject) -> str:
@@ -224,12 +225,12 @@ def caveats_section(subject: Subject) -> Section:
     cells = len(measurements.hashes)
     blocks: list[Block] = []
     rows = [
-        literals([rule, f"{count} of {cells}", subject.cell_name(cell) or "the only one", text])
+        [rule, f"{count} of {cells}", subject.cell_name(cell) or "the only one", text]
         for rule, count, cell, text in measurements.caveats_by_rule()
     ]
     if rows:
         caption = "Why results may not be what they seem: rules, cells with that caveat, and the worst of them."
-        blocks.append(Table(caption, ["caveat", "cells", "worst cell", "what was found there"], rows, (1,)))
+        blocks.append(Table(caption, ["caveat", *numbers("cells"), "worst cell", "what was found there"], rows))
     if measurements.caveat_changes:
         changes = "; ".join(f"{what} ({count} of {cells} cells)" for what, count in measurements.caveat_changes.items())
         text = literal(f"Caveats were looked for by {changes}.")

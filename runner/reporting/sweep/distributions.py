@@ -13,6 +13,7 @@ from runner.reporting.figures import overlaid, playback, torque_and_error
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.sweep.subject import QUANTILE_RULE, Subject, group_levels, spans_decades
+from runner.reporting.table import numbers
 from runner.statistics import median_interval
 from runner.store import Run
 from runner.store.axes import Axis
@@ -107,19 +108,17 @@ def _medians(subject: Subject, cells: Sequence[int]) -> Table:
         unit = subject.measurements.units[name]
         rows.append(
             [
-                literal(title(name)),
+                title(name),
                 *(_with_interval(subject.measurements.of_cell(name, cell), unit) for cell in cells),
             ]
         )
-    header = ["metric", *(literal(subject.cell_name(cell)) for cell in cells)]
     return Table(
         literal(
             f"The cells with the lowest and the highest {title(subject.metrics[0])}: medians, in brackets their 95 % "
             "intervals by the bootstrap over n repetitions. Compared in pairs says which differences are shown."
         ),
-        header,
+        ["metric", *numbers(*map(subject.cell_name, cells))],
         rows,
-        tuple(range(1, len(header))),
     )
 
 

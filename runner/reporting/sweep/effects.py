@@ -9,7 +9,7 @@ from runner.base.quantities import number
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.charts.scales import EQUAL, widen_range
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
-from runner.reporting.markup import literal, literals
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, title
 from runner.reporting.sweep.subject import MOST_GROUPS, QUANTILE_RULE, Subject, key_label, spans_decades
 from runner.statistics import PERMUTATIONS, EffectAnalysis
@@ -55,12 +55,11 @@ def _table(analyses: dict[str, EffectAnalysis]) -> Table:
             tested = effect.remark if effect.p_value is None else f"p = {effect.p_value:.2g}"
             cells.append(f"{_percent(effect.share)} ({tested})")
         rows.append([" × ".join(effects[0].axes), *cells])
-    header = ["effect", *map(title, analyses)]
     return Table(
         "Share of the variation that each axis explains, and what two axes do together beyond what each does by "
         "itself.",
-        literals(header),
-        [literals(row) for row in rows],
+        ["effect", *map(title, analyses)],
+        rows,
     )
 
 

@@ -6,15 +6,17 @@ import numpy as np
 
 from runner.base.errors import RunnerError
 from runner.base.quantities import quantity
+from runner.base.sanitize import few
 from runner.reporting.answers import EXPLAINED, HEADER, Answer, ask, judge, sentences, short_table
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.difference_figure import difference_panel
 from runner.reporting.comparison.pairs import SEED, level_pairs
 from runner.reporting.comparison.sweeps import compare_levels
 from runner.reporting.document import Block, Curves, Section, Table, Text
-from runner.reporting.markup import literal, literals
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import capital, first_screen, title
 from runner.reporting.sweep.subject import Subject, key_label
+from runner.reporting.table import numbers
 from runner.statistics import SMALLEST_SAMPLE
 from runner.store.axes import Axis
 
@@ -45,10 +47,8 @@ def asked_axis(subject: Subject) -> Axis | None:
 
 def answer_blocks(answers: Sequence[Answer]) -> list[Block]:
     """Return the figure of paired differences and the short table."""
-    header, rows = short_table(answers)
-    numeric = tuple(range(len(header) - 4, len(header) - 1))
     caption = "Medians and difference of each metric, and whether the difference is shown."
-    return [_figure(answers), Table(literal(caption), literals(header), [literals(row) for row in rows], numeric)]
+    return [_figure(answers), Table(caption, *short_table(answers))]
 
 
 def _figure(answers: Sequence[Answer]) -> Curves:
@@ -82,8 +82,7 @@ def causes(subject: Subject, answers: Sequence[Answer]) -> list[str]:
     along = [found.key for found in subject.measurements.differences if axis is not None and axis.name in found.axes]
     if axis is None or not along or not any(answer.sign for answer in answers):
         return []
-    more = f" and {len(along) - _MOST_KEYS} more" if len(along) > _MOST_KEYS else ""
-    return [f"{', '.join(along[:_MOST_KEYS])}{more} vary with {axis.name} and may be the cause: see Also differs."]
+    return [f"{few(along, _MOST_KEYS)} vary with {axis.name} and may be the cause: see Also differs."]
 
 
 def in_short(subject: Subject) -> str:
@@ -153,12 +152,11 @@ def _table(
         within += ", over all seeds"
     return Table(
         literal(f"{capital(title(metric))} by {axis.name}, {within}{fewer}."),
-        ["at", literal(axis.name), *HEADER, "the second is"],
+        ["at", axis.name, *numbers(*HEADER), "the second is"],
         rows,
-        tuple(range(2, 2 + len(HEADER))),
     )
 
 
 def _row(answer: Answer) -> Sequence[str]:
     at = ", ".join(f"{name}={text}" for name, text in answer.at.items()) or "all"
-    return [*literals([at, ", ".join(answer.names)]), *answer.cells]
+    return [at, ", ".join(answer.names), *answer.cells]

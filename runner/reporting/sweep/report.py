@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import split_override
-from runner.base.sanitize import one_line
+from runner.base.sanitize import few, one_line
 from runner.reporting.answers import Answer, sentences
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.sweeps import NOISE_ALONE, noise_alone
@@ -106,9 +106,7 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
     failed = [cell for cell, status in enumerate(subject.measurements.statuses) if status != "ok"]
     count = len(subject.measurements.hashes)
     numbers = [("cells", str(count), f"repetitions in each: {subject.measurements.repetitions}")]
-    names = "; ".join(subject.cell_name(cell) for cell in failed[:_NAMED])
-    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
-    numbers.append(("failed", str(len(failed)), names + more))
+    numbers.append(("failed", str(len(failed)), few([*map(subject.cell_name, failed)], _NAMED, "; ")))
     found = range_told(subject)
     return numbers if found is None else [*numbers, (found[0], found[1], "medians of the cells")]
 

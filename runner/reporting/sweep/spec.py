@@ -203,8 +203,8 @@ def _table(subject: Subject, failing: Sequence[Failing]) -> Table:
     order = np.argsort(-np.nan_to_num(failing[-1].share), kind="stable")
     shown = [int(order[place]) for place in spaced_indices(len(order), _MOST_ROWS)]
     texts = [_texts(one) for one in failing]
-    rows = [[literal(subject.cell_name(cell)), *(literal(own[cell]) for own in texts)] for cell in shown]
+    rows = [[subject.cell_name(cell), *(own[cell] for own in texts)] for cell in shown]
     caption = "Repetitions that failed, with the probability of failing and its 95 % interval."
     if len(shown) < len(order):
         caption += f" {len(shown)} of {len(order)} cells, evenly chosen by how often they fail."
-    return Table(caption, ["cell", *(literal(one.name) for one in failing)], rows)
+    return Table(caption, ["cell", *(one.name for one in failing)], rows)

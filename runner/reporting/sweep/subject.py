@@ -94,9 +94,9 @@ class Subject:
         """Return the title of a metric with its unit, as on the axis of a figure."""
         return metric_label(metric, self.measurements.units[metric])
 
-    def cell_name(self, cell: int, separator: str = ", ") -> str:
+    def cell_name(self, cell: int) -> str:
         """Return the values of a cell on all axes, such as "noise.position=0.001, torque_limits.max=20"."""
-        return separator.join(f"{axis.name}={axis.text(int(axis.level[cell]))}" for axis in self.axes)
+        return ", ".join(f"{axis.name}={axis.text(int(axis.level[cell]))}" for axis in self.axes)
 
     def hint(self, cell: int) -> str:
         """Return the hint of a cell, the text at the pointer."""

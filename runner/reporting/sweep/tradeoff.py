@@ -8,9 +8,9 @@ from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.reporting.charts.figure import POINTS, spaced_indices
 from runner.reporting.document import Block, Curves, Panel, Section, Series, Table, Text
-from runner.reporting.markup import literal
 from runner.reporting.metric_titles import COSTS, title
 from runner.reporting.sweep.subject import Subject, spans_decades
+from runner.reporting.table import numbers
 
 _MOST_ROWS = 12
 
@@ -78,12 +78,12 @@ def _table(subject: Subject, metrics: tuple[str, str], best: Sequence[int]) -> T
     units = subject.measurements.units
     rows = [
         [
-            literal(subject.cell_name(cell)),
+            subject.cell_name(cell),
             *(quantity(float(subject.medians[name][cell]), units[name]) for name in metrics),
         ]
         for cell in chosen
     ]
-    return Table("Cells on the front.", ["cell", *map(title, metrics)], rows, (1, 2))
+    return Table("Cells on the front.", ["cell", *numbers(*map(title, metrics))], rows)
 
 
 def _finite(values: FloatArray) -> FloatArray:

@@ -18,13 +18,14 @@ from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.comparison.sweeps import compare_runs
 from runner.reporting.document import Block, Curves, Document, Notice, Origin, Panel, Section, Series, Table, Text
 from runner.reporting.figures import cover
-from runner.reporting.markup import literal, literals
+from runner.reporting.markup import literal
 from runner.reporting.metric_titles import metric_label, title
 from runner.reporting.sweep.cells import caveats_section, failed_table, has_caveats
 from runner.reporting.sweep.distributions import motion_blocks
 from runner.reporting.sweep.question import answer_blocks
 from runner.reporting.sweep.report import list_runs, made_by, run_command
 from runner.reporting.sweep.subject import Subject, key_label, main_metrics, spans_decades
+from runner.reporting.table import numbers
 from runner.store import Run, Sweep, open_run
 from runner.sweeps.measurements import Measurements, measure_run, measure_sweep
 from runner.sweeps.tuning.key import Key
@@ -216,10 +217,9 @@ def _what(trials: Trials) -> Section:
         f"Parzen estimator of Optuna), {study.at_once} of them under way at once. Of a metric the median over the "
         "repetitions counts. The same command gives the same trials, on however many processes."
     )
-    header = ["key", "low", "high", "scale", "values"]
-    origin = Origin(command=study.command)
+    header = ["key", *numbers("low", "high"), "scale", "values"]
     blocks: list[Block] = [
-        Table("Tuned keys with their ranges.", header, [literals(row) for row in rows], (1, 2), origin),
+        Table("Tuned keys with their ranges.", header, rows, Origin(command=study.command)),
         text,
     ]
     failed = len(trials.tuning.trials) - len(trials.good)
@@ -263,7 +263,7 @@ def _front(trials: Trials) -> Section:
         values = zip(objectives, found.values, strict=True)
         settings = [number(found.params[key.name]) for key in trials.keys]
         rows.append([str(place), *(quantity(value, objective.unit) for objective, value in values), *settings])
-    header = ["trial", *(title(objective.metric) for objective in objectives), *(key.name for key in trials.keys)]
+    header = numbers("trial", *(title(each.metric) for each in objectives), *(key.name for key in trials.keys))
     text = (
         f"The front has {len(front)} of {len(trials.good)} good trials: none of them gets better in one objective "
         "without another getting worse."
@@ -271,7 +271,7 @@ def _front(trials: Trials) -> Section:
     blocks: list[Block] = [
         Text("Every objective chooses the same trial." if len(front) == 1 else text),
         Curves("Good trials and the Pareto front.", panels, columns=1 if len(objectives) == 2 else 2),
-        Table("Trials on the front.", literals(header), rows, tuple(range(len(header)))),
+        Table("Trials on the front.", header, rows),
     ]
     return Section("Trade-off", blocks)
 
@@ -303,8 +303,7 @@ def _importance(trials: Trials) -> Block:
         "Importance of the keys: how far the values of each in the leading tenth of the good trials differ from those "
         "among all of them, in shares (PED-ANOVA). Where trials crowd, it says what still decides there."
     )
-    header = ["key", *(title(objective.metric) for objective in trials.objectives)]
-    return Table(caption, literals(header), [literals(row) for row in rows], tuple(range(1, len(header))))
+    return Table(caption, ["key", *numbers(*(title(objective.metric) for objective in trials.objectives))], rows)
 
 
 def _chosen(trials: Trials, runs: dict[int, Run]) -> Section:
@@ -321,17 +320,17 @@ def _chosen(trials: Trials, runs: dict[int, Run]) -> Section:
 def _trial(trials: Trials, place: int, run: Run) -> list[Block]:
     params = trials.tuning.trials[place].params
     rows = [
-        literals([key_label(key.name), number(params[key.name]), f"{number(key.low)} to {number(key.high)}"])
+        [key_label(key.name), number(params[key.name]), f"{number(key.low)} to {number(key.high)}"]
         for key in trials.keys
     ]
     goals = [objective.metric for objective in trials.objectives]
     names = dict.fromkeys([*goals, *(name for name in run.metrics if name in units())])
-    metrics = [[literal(title(name)), run.metrics[name].text] for name in names]
+    metrics = [[title(name), run.metrics[name].text] for name in names]
     told = "Medians, in brackets smallest and largest over the repetitions."
     return [
-        Table("Tuned keys.", ["key", "value", "range"], rows, (1, 2), Origin(command=trials.command(place))),
+        Table("Tuned keys.", ["key", *numbers("value", "range")], rows, Origin(command=trials.command(place))),
         *motion_blocks({"": run}),
-        Table(told, ["metric", "value"], metrics, (1,)),
+        Table(told, ["metric", *numbers("value")], metrics),
     ]
 
 

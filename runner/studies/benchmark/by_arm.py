@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from runner.reporting.document import Section, Table, Text
+from runner.reporting.table import numbers
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED
@@ -43,8 +44,8 @@ def _groups(runs: Mapping[str, Run], arm: str, question: str) -> Table:
         later = [turned(runs, arm, condition) or "none"] if question == "learned" else []
         rows.append([CONDITIONS[condition], error_words(cell.best), listed, *later])
     later = ["change in a later round"] if question == "learned" else []
-    header = ["condition", "smallest error", "groups, the first one ahead", *later]
-    return Table(f"{ARMS[arm]}, {QUESTIONS[question]}: groups of laws.", header, rows, (1,), any_origin(runs))
+    header = ["condition", *numbers("smallest error"), "groups, the first one ahead", *later]
+    return Table(f"{ARMS[arm]}, {QUESTIONS[question]}: groups of laws.", header, rows, any_origin(runs))
 
 
 def _errors(runs: Mapping[str, Run], arm: str, question: str, gains: Sequence[str], words: str) -> list[Table]:
@@ -54,7 +55,7 @@ def _errors(runs: Mapping[str, Run], arm: str, question: str, gains: Sequence[st
     for start in range(0, len(names), _WIDE):
         chosen = names[start : start + _WIDE]
         rows = [[in_words(law), *(error_words(made[name].entry(law)) for name in chosen)] for law in laws_of(runs, arm)]
-        header = ["law", *(CONDITIONS[name] for name in chosen)]
+        header = ["law", *numbers(*(CONDITIONS[name] for name in chosen))]
         caption = f"{ARMS[arm]}: errors, {words}."
-        tables.append(Table(caption, header, rows, range(1, len(header)), any_origin(runs)))
+        tables.append(Table(caption, header, rows, any_origin(runs)))
     return tables

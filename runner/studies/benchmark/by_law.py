@@ -6,6 +6,7 @@ import numpy as np
 
 from runner.base.quantities import number
 from runner.reporting.document import Block, Section, Table, Text
+from runner.reporting.table import Column, numbers
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED, tuned
@@ -64,8 +65,8 @@ def _places(runs: Mapping[str, Run], law: str) -> Table:
                 texts = ["beyond" if behind is None else number(behind, zeros=True)]
                 texts.append("" if question != "first" else "beyond" if gained is None else number(gained, zeros=True))
                 rows.append([ARMS[arm], words, CONDITIONS[name], error_words(entry), group, *texts])
-    header = ["arm", "question", "condition", "error", "group", "over the smallest", "untuned over tuned"]
-    return Table(f"{in_words(law)}: errors and groups.", header, rows, (3, 4, 5, 6), any_origin(runs), folded=True)
+    header = ["arm", "question", "condition", *numbers("error", "group", "over the smallest", "untuned over tuned")]
+    return Table(f"{in_words(law)}: errors and groups.", header, rows, any_origin(runs), folded=True)
 
 
 def _gains(runs: Mapping[str, Run], law: str) -> Table:
@@ -77,9 +78,10 @@ def _gains(runs: Mapping[str, Run], law: str) -> Table:
         differing = [key for key in by_gains[0] if len({own.get(key) for own in by_gains}) > 1]
         for key in differing or ["none"]:
             rows.append([ARMS[arm], key, *(_short(own.get(key, "")) for own in by_gains)])
-    header = ["arm", "key", "not tuned", *(f"{question}, {own}" for question, own in tunings)]
-    caption, numbers = f"{in_words(law)}: gains that were tuned, by question and tuning.", range(2, len(header))
-    return Table(caption, header, rows, numbers, any_origin(runs), (1,))
+    tuned_by = (f"{question}, {own}" for question, own in tunings)
+    header = ["arm", Column("key", "code"), *numbers("not tuned", *tuned_by)]
+    caption = f"{in_words(law)}: gains that were tuned, by question and tuning."
+    return Table(caption, header, rows, any_origin(runs))
 
 
 def keys_of(runs: Mapping[str, Run], arm: str, law: str, question: str, gains: str) -> dict[str, str]:

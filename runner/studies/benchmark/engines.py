@@ -8,6 +8,7 @@ from scipy import stats
 from runner.base.quantities import number
 from runner.reporting.document import Table
 from runner.reporting.figures import origin
+from runner.reporting.table import numbers
 from runner.reporting.words import PLANT, in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import Cell, cells
@@ -31,8 +32,8 @@ def both_orders(runs: Mapping[str, Run], caption: str) -> Table:
     for condition, (here, there) in _both(runs).items():
         orders = [", ".join(in_words(each.law) for each in cell.entries) for cell in (here, there)]
         rows.append([CONDITIONS[condition], *orders, number(_correlation(here, there), 2)])
-    header = ["condition", "Runge-Kutta", engine(runs), "rank correlation"]
-    return Table(caption, header, rows, (3,), origin(_first(runs)))
+    header = ["condition", "Runge-Kutta", engine(runs), *numbers("rank correlation")]
+    return Table(caption, header, rows, origin(_first(runs)))
 
 
 def mean_correlation(runs: Mapping[str, Run]) -> Measured:

@@ -9,6 +9,7 @@ from runner.base.quantities import number, quantity
 from runner.reporting.charts.figure import Map, Panel, Series
 from runner.reporting.document import Curves, Maps, Origin, Table, Text
 from runner.reporting.figures import origin
+from runner.reporting.table import numbers
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, Entry, Lead, tuned
@@ -35,7 +36,7 @@ def best_laws(runs: Mapping[str, Run], question: str, caption: str) -> list[Tabl
     for start in range(0, len(arms), _IN_A_TABLE):
         some = arms[start : start + _IN_A_TABLE]
         rows = [[CONDITIONS[name], *(said(runs, arm, question, name) for arm in some)] for name in made[some[0]]]
-        tables.append(Table(caption, ["condition", *(ARMS[arm] for arm in some)], rows, (), any_origin(runs)))
+        tables.append(Table(caption, ["condition", *(ARMS[arm] for arm in some)], rows, any_origin(runs)))
     return tables
 
 
@@ -96,7 +97,7 @@ def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: s
 
 def settings(runs: Mapping[str, Run], caption: str) -> Table:
     """Return a table of the settings that all laws of an arm share, and their changes by the conditions."""
-    header = ["arm", "bandwidth", "period", "masses wrong by up to", "friction", "viscous friction", "encoder noise"]
+    titles = ("bandwidth", "period", "masses wrong by up to", "friction", "viscous friction", "encoder noise")
     rows = []
     for arm in arms_of(runs):
         config = found(runs, f"first/{arm}/joint_pd/{{task}}/all/untuned")[0].run.config
@@ -112,7 +113,7 @@ def settings(runs: Mapping[str, Run], caption: str) -> Table:
                 quantity(float(np.max(config["noise"]["position"])), "rad"),
             ]
         )
-    return Table(caption, header, rows, range(1, 7), any_origin(runs))
+    return Table(caption, ["arm", *numbers(*titles)], rows, any_origin(runs))
 
 
 def spread(runs: Mapping[str, Run], question: str, caption: str) -> Table:
@@ -122,7 +123,7 @@ def spread(runs: Mapping[str, Run], question: str, caption: str) -> Table:
     for law in laws_of(runs, arms[0]):
         found_on = [all_cells(runs, arm, question)["all"].entry(law).by_tuning for arm in arms]
         rows.append([in_words(law), *(_apart(own) for own in found_on)])
-    return Table(caption, ["law", *(ARMS[arm] for arm in arms)], rows, range(1, 1 + len(arms)), any_origin(runs))
+    return Table(caption, ["law", *numbers(*(ARMS[arm] for arm in arms))], rows, any_origin(runs))
 
 
 def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> list[Measured]:
@@ -256,9 +257,8 @@ def last_periods(runs: Mapping[str, Run], caption: str) -> Table:
         error = _error(one.run)
         told = quantity(error, "m") if np.isfinite(error) else "failed"
         rows.setdefault(one.levels["law"], []).append(told)
-    header = ["law", *(f"{ARMS[arm]}, {CONDITIONS[condition]}" for arm, condition in columns)]
-    told_rows = [[in_words(law), *own] for law, own in rows.items()]
-    return Table(caption, header, told_rows, range(1, len(header)), origin(every[0].run))
+    header = ["law", *numbers(*(f"{ARMS[arm]}, {CONDITIONS[condition]}" for arm, condition in columns))]
+    return Table(caption, header, [[in_words(law), *own] for law, own in rows.items()], origin(every[0].run))
 
 
 def over_learning(runs: Mapping[str, Run], condition: str, law: str, *arms: str) -> list[Measured]:

@@ -34,7 +34,7 @@ def rounds(runs: Mapping[str, Run], caption: str) -> Table:
         [CONDITIONS[condition], *(turned(runs, arm, condition) or "stays" for arm in arms)]
         for condition in all_cells(runs, arms[0], "learned")
     ]
-    return Table(caption, ["condition", *(ARMS[arm] for arm in arms)], rows, (), any_origin(runs))
+    return Table(caption, ["condition", *(ARMS[arm] for arm in arms)], rows, any_origin(runs))
 
 
 def what_changes(runs: Mapping[str, Run], caption: str) -> Table:
@@ -45,7 +45,7 @@ def what_changes(runs: Mapping[str, Run], caption: str) -> Table:
         [words, *(f"{answer(column[words])} ({error_words(column[words].best)})" for column in columns)]
         for words in columns[0]
     ]
-    return Table(caption, ["what is otherwise", *(ARMS[arm] for arm in arms)], rows, (), any_origin(runs))
+    return Table(caption, ["what is otherwise", *(ARMS[arm] for arm in arms)], rows, any_origin(runs))
 
 
 def grown(runs: Mapping[str, Run], condition: str, *laws: str) -> Measured:

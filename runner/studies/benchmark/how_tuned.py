@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from runner.base.quantities import number
 from runner.reporting.document import Table, Text
+from runner.reporting.table import numbers
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.by_law import keys_of
@@ -19,8 +20,8 @@ def at_ends(runs: Mapping[str, Run], ranges: Mapping[str, Ranges], caption: str)
     rows = ends_of(runs, ranges)
     if not rows:
         return Text(f"{caption} Here there are none.")
-    header = ["law", "arm", "question", "tuning", "key", "value", "where"]
-    return Table(caption, header, rows, (5,), any_origin(runs))
+    header = ["law", "arm", "question", "tuning", "key", *numbers("value"), "where"]
+    return Table(caption, header, rows, any_origin(runs))
 
 
 def ends_of(runs: Mapping[str, Run], ranges: Mapping[str, Ranges]) -> list[list[str]]:

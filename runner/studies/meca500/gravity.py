@@ -10,6 +10,8 @@ from runner.calibration.orientations import check_orientations, force_matrix, mo
 from runner.calibration.procedures.gravity import even_postures
 from runner.reporting.document import Panel, Series, Table
 from runner.reporting.figures import origin
+from runner.reporting.table import Column as TableColumn
+from runner.reporting.table import Number, numbers
 from runner.robots import RobotModel
 from runner.store import Calibration
 from runner.studies.meca500.figures import Calibrations, Runs, degrees, error, flange_of, predicted, refusal, wrenches
@@ -51,8 +53,8 @@ def parameters(calibrations: Calibrations, name: str, caption: str) -> Table:
                 number(abs(factor * exact.values("errors", value)[0, 0]), 2, rounding=ROUNDING),
             ]
         )
-    header = ["value", "unit", "true", "found", "interval", "error", "predicted", "held", "without noise"]
-    return Table(caption, header, rows, (2, 3, 4, 5, 6, 7, 8), origin(done))
+    header = ["value", "unit", *numbers("true", "found", "interval", "error", "predicted", "held", "without noise")]
+    return Table(caption, header, rows, origin(done))
 
 
 def choice() -> Column:
@@ -131,9 +133,10 @@ def weighed(runs: Runs, pattern: str, caption: str) -> Table:
     done = identify_gravity(reactions, orientations, float(first.config["gravity"]), np.zeros(6), no_errors)
     tool = first.config["robot"]["tool"]
     off = np.abs(done.values - np.array([tool["mass"], 0.0, *tool["centre_of_mass"], *np.zeros(6)]))
-    header = ["mass (kg)", "$theta$ (rad)", "centre of mass (m)", "force biases (N)", "moment biases (N m)"]
-    cells = [number(float(part.max()), 2, rounding=ROUNDING) for part in np.split(off, [1, 2, 5, 8])]
-    return Table(caption, header, [cells], tuple(range(5)), origin(first))
+    titles = {"mass": "kg", "$theta$": "rad", "centre of mass": "m", "force biases": "N", "moment biases": "N m"}
+    cells = [Number(float(part.max()), digits=2) for part in np.split(off, [1, 2, 5, 8])]
+    header = [TableColumn(title, "number", unit) for title, unit in titles.items()]
+    return Table(caption, header, [cells], origin(first), prose=True)
 
 
 def misprints(calibrations: Calibrations) -> dict[str, str]:

@@ -8,6 +8,7 @@ from runner.base.quantities import number
 from runner.controllers.force.admittance_filter import AXES, discretise
 from runner.reporting.document import Series, Table
 from runner.reporting.figures import origin
+from runner.reporting.table import numbers
 from runner.sensing.force_torque import AXES as SENSOR_AXES
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.wrench import wrench_transform
@@ -71,8 +72,8 @@ def noise(runs: Runs, pattern: str) -> Table:
         f"The residual of a Mini40's readings is {min(ratios):.2f} to {max(ratios):.2f} times noise and quantisation; "
         f"{len(left)} readings, in N and N m."
     )
-    header = ["axis", "root mean square", "noise and quantisation", "ratio"]
-    return Table(caption, header, rows, (1, 2, 3), origin(at_rest[0]))
+    header = ["axis", *numbers("root mean square", "noise and quantisation", "ratio")]
+    return Table(caption, header, rows, origin(at_rest[0]), prose=True)
 
 
 def shaken(runs: Runs, name: str, caption: str) -> Table:
@@ -87,7 +88,7 @@ def shaken(runs: Runs, name: str, caption: str) -> Table:
         unit = "µm" if index < 3 else "µrad"
         moved = (f"{number(1e6 * float(value))} {unit}" for value in (tip[index], np.sqrt(variance[0, 0])))
         rows.append([axis, number(float(felt[index])), *moved])
-    return Table(caption, ["axis", "felt", "tip", "tip, predicted"], rows, (1, 2, 3), origin(run))
+    return Table(caption, ["axis", *numbers("felt", "tip", "tip, predicted")], rows, origin(run), prose=True)
 
 
 def _apart(run: Run) -> FloatArray:

@@ -7,6 +7,7 @@ import numpy as np
 from runner.base.quantities import number, quantity
 from runner.reporting.document import Curves, Panel, Series, Table
 from runner.reporting.figures import origin
+from runner.reporting.table import Column, numbers
 from runner.store import Run
 from runner.studies.precision.tried import COMPILED, PLANTS, Tried, allowed_error, by_steps, knee, order, solutions
 from runner.study.measured import Measured
@@ -47,18 +48,18 @@ def accuracy(runs: Mapping[str, Run], caption: str) -> Curves:
 
 def reference_table(runs: Mapping[str, Run], caption: str) -> Table:
     """Return a table of the differences between the ways to the solution."""
-    header = ["another method (rad)", "coarser tolerance (rad)", "energy"]
+    header = numbers("another method (rad)", "coarser tolerance (rad)", "energy")
 
     def cells(case: str, arm: str) -> list[str]:
         own = solutions(runs)[f"{case}/{arm}"]
         return [number(value, 2) for value in (own["apart"]["collocation"], own["apart"]["tolerance"], own["energy"])]
 
-    return _table(runs, caption, header, cells, (2, 3, 4))
+    return _table(runs, caption, header, cells)
 
 
 def orders_table(runs: Mapping[str, Run], caption: str) -> Table:
     """Return the order of each plant."""
-    return _by_plant(runs, caption, lambda tried, _: number(order(tried), 3, zeros=True), numeric=(2, 3, 4, 5))
+    return _by_plant(runs, caption, lambda tried, _: number(order(tried), 3, zeros=True), numeric=True)
 
 
 def errors(runs: Mapping[str, Run], caption: str) -> Table:
@@ -161,7 +162,7 @@ def _tried(runs: Mapping[str, Run], case: str, arm: str, plant: str) -> tuple[li
 
 def _by_plant(
     runs: Mapping[str, Run], caption: str, cell: Callable[[list[Tried], float], str], allowed: str = "",
-    numeric: Sequence[int] = (),
+    numeric: bool = False,
 ) -> Table:  # fmt: skip
     """Return a table with a column for each plant, behind one for the error that is allowed if it has a title."""
 
@@ -169,12 +170,12 @@ def _by_plant(
         first = [quantity(allowed_error(runs, case, arm), "m")] if allowed else []
         return [*first, *(cell(*_tried(runs, case, arm, plant)) for plant in PLANTS)]
 
-    return _table(runs, caption, [allowed, *PLANTS] if allowed else PLANTS, cells, numeric)
+    plants = numbers(*PLANTS) if numeric else PLANTS
+    return _table(runs, caption, [allowed, *plants] if allowed else plants, cells)
 
 
 def _table(
-    runs: Mapping[str, Run], caption: str, header: Sequence[str], cells: Callable[[str, str], list[str]],
-    numeric: Sequence[int] = (),
-) -> Table:  # fmt: skip
+    runs: Mapping[str, Run], caption: str, header: Sequence[str | Column], cells: Callable[[str, str], list[str]]
+) -> Table:
     rows = [[_ARMS[arm], _CASES[case], *cells(case, arm)] for case, arm in _PAIRS]
-    return Table(caption, ["arm", "moves", *header], rows, numeric, origin(next(iter(runs.values()))))
+    return Table(caption, ["arm", "moves", *header], rows, origin(next(iter(runs.values()))))

@@ -7,6 +7,7 @@ import numpy as np
 from runner.base.quantities import above_rounding, number
 from runner.reporting.document import Picture, Table
 from runner.reporting.figures import origin
+from runner.reporting.table import numbers
 from runner.robots.workspace import analyse
 from runner.store import Run
 from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
@@ -36,9 +37,9 @@ def parameters(
         rows.append([f"{name}, printed", *printed[name]])
     header = (
         *("manipulator", "link lengths (m)", "link masses (kg)", "joint limits", "joint error limit (rad)"),
-        *("sample time (ms)", "max. continuous torque (N m)"),
+        *numbers("sample time (ms)", "max. continuous torque (N m)"),
     )
-    return Table(caption, header, rows, (5, 6), origin(runs[next(iter(arms.values()))], figure))
+    return Table(caption, header, rows, origin(runs[next(iter(arms.values()))], figure), prose=True)
 
 
 def workspace(runs: Mapping[str, Run], run: str, name: str, figure: str) -> Picture:

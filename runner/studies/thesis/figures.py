@@ -10,6 +10,7 @@ from runner.base.quantities import above_rounding
 from runner.reporting.document import Picture, Table
 from runner.reporting.figures import AXES, origin
 from runner.reporting.published_claims import load_claims
+from runner.reporting.table import numbers
 from runner.store import Run
 from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
 from runner.studies.thesis.diagrams.block_diagram import block_diagram
@@ -53,7 +54,7 @@ def dh_table(
         rows.append([str(link), *(cell for pair in pairs for cell in pair)])
     ours = ("$theta_i$ (rad)", "$d_i$ (m)", "$a_i$ (m)", "$alpha_i$ (rad)")
     header = ["link", *(cell for title in ours for cell in (title, "printed")[: 2 if printed else 1])]
-    return Table(caption, header, rows, (), origin(runs[run], number))
+    return Table(caption, header, rows, origin(runs[run], number), prose=True)
 
 
 def _angle(value: float) -> str:
@@ -76,7 +77,7 @@ def printed_matrices(runs: Mapping[str, Run], run: str, caption: str, mini: bool
         [f"${symbol}$", meaning, above_rounding(differences[symbol], unit)]
         for symbol, (meaning, unit) in _MEANINGS.items()
     ]
-    return Table(caption, ["symbol", "quantity", "largest difference"], rows, (2,), origin(runs[run]))
+    return Table(caption, ["symbol", "quantity", *numbers("largest difference")], rows, origin(runs[run]), prose=True)
 
 
 def law(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture:

@@ -15,7 +15,6 @@ from runner.studies.xarm7.figures import ROWS, line_length, smallest_margin
 from runner.studies.xarm7.kinematics import random_postures
 from runner.studies.xarm7.parts.xarm7_as_printed import PrintedJacobian
 from runner.study.prose.patterns import found
-from runner.study.run_values import cell
 
 _COUNT, _SEED = 1000, 7  # of the random postures
 _ZERO = 7  # palette index of singular values that are zero except for rounding
@@ -166,12 +165,12 @@ def compare(runs: Mapping[str, Run], run: str) -> dict[str, FloatArray]:
     }
 
 
-def column_rows(compared: Mapping[str, FloatArray]) -> list[list[str]]:
+def column_rows(compared: Mapping[str, FloatArray]) -> list[list[str | float]]:
     """Return the distance of each printed column from the true one: a row for each."""
     return [_column_row(compared, k, max(k - 1, 0)) for k in range(compared["true"].shape[2])]
 
 
-def _column_row(compared: Mapping[str, FloatArray], k: int, source: int) -> list[str]:
+def _column_row(compared: Mapping[str, FloatArray], k: int, source: int) -> list[str | float]:
     off, angles, line = (
         compared[name][:, :, k] - compared[true][:, :, k]
         for name, true in (("as_printed", "true"), ("angles", "true"), ("line_printed", "line_true"))
@@ -182,16 +181,16 @@ def _column_row(compared: Mapping[str, FloatArray], k: int, source: int) -> list
         f"true column {source + 1}",
         above_rounding(float(np.abs(compared["shifted"][:, :, k] - compared["fixed"][:, :, source]).max()), digits=2),
         _largest(angles[:, :3]),
-        number(float(np.median(linear))),
-        number(float(linear.max())),
+        float(np.median(linear)),
+        float(linear.max()),
         _largest(line[:, :3]),
         _largest(off[:, 3:]),
     ]
 
 
-def _largest(difference: FloatArray) -> str:
+def _largest(difference: FloatArray) -> float:
     """Return the largest norm of some vectors, shape (N, 3)."""
-    return above_rounding(float(np.linalg.norm(difference, axis=1).max()))
+    return float(np.linalg.norm(difference, axis=1).max())
 
 
 def column_errors(runs: Mapping[str, Run], run: str, shifted: bool) -> list[Series]:
@@ -228,7 +227,7 @@ def column_values(compared: Mapping[str, FloatArray]) -> dict[str, float]:
     }
 
 
-def outcomes(runs: Mapping[str, Run]) -> list[list[str]]:
+def outcomes(runs: Mapping[str, Run]) -> list[list[str | float | None]]:
     """Return the outcome of each run with the report's errors, and of the corrected law: a row for each."""
     rows = []
     for one in found(runs, "printed/{task}/{case}"):
@@ -240,9 +239,9 @@ def outcomes(runs: Mapping[str, Run]) -> list[list[str]]:
     return rows
 
 
-def _outcome(run: Run) -> list[str]:
+def _outcome(run: Run) -> list[str | float | None]:
     if (failure := run.failure_record) is None:
-        return ["runs", *(cell(run, metric) for metric in _METRICS), smallest_margin(run)]
+        return ["runs", *map(run.median, _METRICS), smallest_margin(run)]
     return [
         f"ends at {failure['time']:.4g} s: {str(failure['reason']).lower()}",
         *["–"] * (len(_METRICS) + 1),

@@ -1,19 +1,24 @@
 """Tables over the runs of a pattern."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Literal
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.quantities import Shown, above_rounding, label_with_unit
+from runner.base.quantities import above_rounding, label_with_unit, smaller_units
+from runner.reporting import table as typed
 from runner.reporting.document import Origin, Table
 from runner.reporting.figures import origin
 from runner.reporting.metric_titles import title
+from runner.reporting.table import Cell, Number
 from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.prose.patterns import Found, axes_of, called, found, other
-from runner.study.run_values import Signal, cell
+from runner.study.run_values import Signal
 
-_DASH, _NEVER = "–", "never"
+_NEVER = "never"
+_NUMBER = re.compile(r"[-−]?\d")
 
 
 @dataclass(frozen=True)
@@ -22,18 +27,18 @@ class Column:
 
     Attributes:
         title: Its header.
-        cell: Gives its text for a run, from the study's runs and the run.
+        cell: Returns its cell for a run, from the study's runs and the run.
         metric: The metric that it shows, whose unit its title takes.
         levels: Axes that it is about, with the levels that it names of them.
     """
 
     title: str
-    cell: Callable[[Mapping[str, Run], Found], str]
+    cell: Callable[[Mapping[str, Run], Found], Cell]
     metric: str = ""
     levels: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
 
-def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, missing: str = _DASH) -> Column:
+def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, missing: str = "–") -> Column:
     """Return a column with the level of an axis.
 
     Args:
@@ -70,14 +75,14 @@ def column(
         though_failed: Whether what a function reads of a run until it failed is shown.
     """
 
-    def text(runs: Mapping[str, Run], row: Found) -> str:
+    def found_cell(runs: Mapping[str, Run], row: Found) -> Cell:
         if any(row.levels.get(axis) not in own for axis, own in chosen.items()):
-            return _DASH
+            return Number(None)
         of = [other(runs, name, row.levels) for name in others] or [row.run]
-        return _text(what, of, digits, though_failed)
+        return _number(what, of, digits, though_failed)
 
     chosen = {axis: [own] if isinstance(own, str) else own for axis, own in (only or {}).items()}
-    return Column(title, text, what if isinstance(what, str) else "", chosen)
+    return Column(title, found_cell, what if isinstance(what, str) else "", chosen)
 
 
 def table(
@@ -104,7 +109,7 @@ def table(
         _check_levels(each, rows)
     cells = [[each.cell(runs, row) for each in columns] for row in rows]
     header = [_header(each, rows) for each in columns]
-    return Table(caption, header, cells, _numeric(cells), origin(rows[0].run, number))
+    return _table(caption, header, cells, origin(rows[0].run, number))
 
 
 def _check_levels(given: Column, rows: Sequence[Found]) -> None:
@@ -134,7 +139,7 @@ def comparison(
     shown = found(runs, pattern)
     rows = [[title(metric), *(_with_unit(metric, each.run) for each in shown)] for metric in metrics]
     header = ["metric", *(called(f"{{{axes_of(pattern)[0]}}}", each.levels, words or {}) for each in shown)]
-    return Table(caption, header, rows, (), origin(shown[0].run, number))
+    return Table(caption, header, rows, origin(shown[0].run, number), prose=True)
 
 
 def listing(
@@ -146,28 +151,46 @@ def listing(
     number: str = "",
 ) -> Table:
     """Return a table whose cells are written in the chapter, with the command of a run if one is named."""
-    cells = [[_told(cell, 3) for cell in row] for row in rows]
-    return Table(caption, header, cells, _numeric(cells), origin(runs[run], number) if run else Origin(number))
+    cells = [[_cell(cell) for cell in row] for row in rows]
+    return _table(caption, header, cells, origin(runs[run], number) if run else Origin(number))
 
 
-def _text(what: Signal, runs: Sequence[Run], digits: int, though_failed: bool = False) -> str:
+def _table(caption: str, header: Sequence[str], cells: Sequence[Sequence[Cell]], origin: Origin) -> Table:
+    """Return a table; a length or time at the end of a title, "(m)" or "(s)", is the unit of the column's numbers."""
+    columns = []
+    for index, head in enumerate(header):
+        kind: Literal["number", "text"] = "number" if _are_numbers([row[index] for row in cells]) else "text"
+        name, _, unit = head.removesuffix(")").rpartition(" (")
+        has_unit = head.endswith(")") and smaller_units(unit)
+        columns.append(typed.Column(name, kind, unit) if has_unit else typed.Column(head, kind))
+    return Table(caption, columns, cells, origin, prose=True)
+
+
+def _are_numbers(cells: Sequence[Cell]) -> bool:
+    """Return True if some cell is a number, no cell is another string, and the others are missing."""
+    texts = [cell for cell in cells if cell not in ("–", _NEVER, "failed")]
+    known = [cell for cell in texts if isinstance(cell, str) or cell.value is not None]
+    return bool(known) and all(isinstance(cell, Number) or _NUMBER.match(cell) for cell in known)
+
+
+def _number(what: Signal, runs: Sequence[Run], digits: int, though_failed: bool = False) -> Cell:
     if not though_failed and any(run.status == "failed" for run in runs):
         return "failed"
-    if isinstance(what, str):
-        never = what.startswith("settling_time") and runs[0].median(what) is None
-        return _NEVER if never else cell(runs[0], what, digits)
-    return _told(what(*runs), digits)
-
-
-def _told(value: str | float | Measured | None, digits: int) -> str:
-    if isinstance(value, str):
-        return value
-    return above_rounding(value.value if isinstance(value, Measured) else value, digits=digits)
+    if not isinstance(what, str):
+        return _cell(what(*runs), digits)
+    never = what.startswith("settling_time") and runs[0].median(what) is None
+    return _NEVER if never else Number(runs[0].median(what), digits=digits)
 
 
 def _with_unit(metric: str, run: Run) -> str:
-    text = _text(metric, [run], 3)
-    return above_rounding(run.median(metric), _unit(run, metric)) if isinstance(text, Shown) else text
+    cell = _number(metric, [run], 3)
+    return cell if isinstance(cell, str) else above_rounding(cell.value, _unit(run, metric))
+
+
+def _cell(value: str | float | Measured | None, digits: int = 3) -> Cell:
+    if isinstance(value, str):
+        return value
+    return Number(value.value if isinstance(value, Measured) else value, digits=digits)
 
 
 def _header(given: Column, rows: Sequence[Found]) -> str:
@@ -178,13 +201,3 @@ def _header(given: Column, rows: Sequence[Found]) -> str:
 
 def _unit(run: Run, metric: str) -> str:
     return run.metrics[metric].unit if metric in run.metrics else "1"
-
-
-def _numeric(cells: Sequence[Sequence[str]]) -> tuple[int, ...]:
-    """Return the indices of the numeric columns: some cell is a number and no cell is another string."""
-    return tuple(index for index, column in enumerate(zip(*cells, strict=True)) if _numbers(column))
-
-
-def _numbers(cells: Sequence[str]) -> bool:
-    told = [text for text in cells if text not in (_DASH, _NEVER, "failed")]
-    return bool(told) and all(text[0].isdigit() or (text[0] in "-−" and text[1:2].isdigit()) for text in told)

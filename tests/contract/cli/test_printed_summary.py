@@ -3,7 +3,7 @@
 from fixtures.stored import RUNS
 from support.engines import ASKED
 
-from runner.reporting.key_metrics import key_metrics
+from runner.reporting.metric_titles import key_metrics
 from runner.reporting.run_report import run_document
 
 SHORT = ("robot=macro", ASKED, "trajectory=quintic", "trajectory.duration=0.5", "duration=1.2")

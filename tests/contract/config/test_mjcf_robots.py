@@ -9,7 +9,7 @@ from runner.base.errors import ConfigError
 from runner.base.paths import robots_dir
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.reporting.bodies import playback_bodies
+from runner.reporting.playback import playback_bodies
 from runner.robots.model import RobotModel
 
 ROBOT = """\

@@ -10,8 +10,7 @@ from runner.audit.verdict import VERDICTS
 from runner.reporting import formulas, html, outline
 from runner.reporting.audit.report import audit_document
 from runner.reporting.document import Curves, Equations, Table
-from runner.reporting.tally import tallies
-from runner.reporting.verdicts import WORDS
+from runner.reporting.verdicts import WORDS, tallies
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +43,7 @@ def test_the_counts_add_up(document, checked):
     counts = tables(document, Table)[0]
     total = [int(cell) for cell in counts.rows[-1][1:]]
     assert sum(total[:-1]) == total[-1] == sum(map(len, checked.values()))
-    assert counts.header[1:-1] == list(VERDICTS)
+    assert counts.lines[0][1:-1] == list(VERDICTS)
 
 
 def test_each_place_has_as_many_equations_as_are_printed(document):

@@ -64,7 +64,7 @@ def test_the_differing_values_stand_in_a_table_with_units(document):
 
 
 def test_every_metric_stands_in_a_table_and_parts_of_it_folded(document):
-    whole, parts_ = (block for block in parts(document.sections, Table) if "cells below, above 0" in block.header)
+    whole, parts_ = (block for block in parts(document.sections, Table) if "cells below, above 0" in block.lines[0])
     assert [row[0] for row in whole.rows] == ["rms tracking error"]
     assert whole.rows[0][-2:] == ["larger", "0, 4"]
     assert parts_.folded
@@ -115,7 +115,7 @@ def test_caveats_of_both_and_the_commands_are_shown():
     one, other = pair()
     caveat = {"rule": "exact_velocity", "text": "velocities are exact", "value": 1.0}
     document = comparison_document([one, replace(other, caveats=[[caveat], [], [], [caveat]])])
-    table = next(block for block in parts(document.sections, Table) if "caveat" in block.header)
+    table = next(block for block in parts(document.sections, Table) if "caveat" in block.lines[0])
     assert [list(row) for row in table.rows] == [["B", "exact_velocity", "2 of 4", "velocities are exact"]]
     assert [block.text for block in parts(document.sections, Code)] == ["runner -m A", "runner -m B"]
 

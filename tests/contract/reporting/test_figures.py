@@ -39,18 +39,13 @@ def test_joint_signals_leave_out_signals_with_the_same_beginning(stored):
 
 
 def test_torque_and_error_are_the_trace(stored):
-    figure = torque_and_error(stored, "caption", "figure 3.9")
+    figure = torque_and_error(stored, "caption")
     torque, error = figure.panels
     assert [series.name for series in torque.series] == ["q1", "q2", "q3"]
     assert [series.name for series in error.series] == ["x", "y", "z"]
     assert (torque.y_label, error.y_label) == ("torque (N m)", "tip error (m)")
     assert np.array_equal(torque.series[1].y, stored.trace()["tau2"])
     assert np.array_equal(error.series[2].y, stored.trace()["desired_z"] - stored.trace()["tip_z"])
-
-
-def test_a_figure_ends_where_it_is_told_to(stored):
-    figure = torque_and_error(stored, "caption", until=0.5)
-    assert figure.panels[0].series[0].x[-1] == pytest.approx(0.5)
 
 
 def test_desired_motion_ends_with_the_motion_and_keeps_the_colour_of_its_axis(stored):

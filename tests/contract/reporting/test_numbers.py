@@ -55,7 +55,7 @@ def test_what_a_failed_run_gave_is_shown_where_asked_for(runs):
         column("p", period),
         column("p", period, though_failed=True),
     )
-    assert [list(row) for row in told.rows] == [["3", "0.01", "0.01"], ["3.5", "failed", "5·10⁻³"]]
+    assert [list(row) for row in told.lines[1:]] == [["3", "0.01", "0.01"], ["3.5", "failed", "5·10⁻³"]]
     (hidden,), (shown,) = (
         over(runs, "step/{case}/slow", "case", period, x=setting("controller.period", 1000.0), though_failed=asked)
         for asked in (False, True)

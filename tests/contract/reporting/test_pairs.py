@@ -21,7 +21,7 @@ def robots(repetitions=8):
 
 def tables(section, metric=0):
     """Return the tables of one of the metrics by the axis that each is about."""
-    return {block.header[1]: block for block in section.sections[metric].blocks if isinstance(block, Table)}
+    return {block.lines[0][1]: block for block in section.sections[metric].blocks if isinstance(block, Table)}
 
 
 def test_laws_are_compared_within_each_robot():

@@ -10,6 +10,7 @@ from support.sample_document import HOSTILE, document
 
 from runner.reporting import pdf
 from runner.reporting.document import Block, Curves, Document, Panel, Section, Series, Table, Text
+from runner.reporting.table import numbers
 from runner.reporting.templating import quote_typst, typst_environment, typst_value
 
 
@@ -49,7 +50,7 @@ def test_the_date_is_that_of_the_document():
 
 def test_long_tables_break_over_pages(monkeypatch):
     rows = [[f"{number}", "x" * 300] for number in range(120)]
-    made = Document("T", "", "", [Section("S", [Table("Long.", ["n", "word"], rows, [0])])], "2026-11-21")
+    made = Document("T", "", "", [Section("S", [Table("Long.", [*numbers("n"), "word"], rows)])], "2026-11-21")
     compile_typst = pdf.typst.compile
     monkeypatch.setattr(
         pdf.typst, "compile", lambda *given, **named: compile_typst(*given, **named | {"format": "svg"})

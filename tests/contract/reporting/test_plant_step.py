@@ -63,7 +63,7 @@ def test_the_report_of_a_run_has_a_column_for_it(compared, outputs):
             for block in section.blocks
             if getattr(block, "caption", "").startswith("Metrics of")
         ]
-        return table.header[-1], {row[1]: row[-1] for row in table.rows}
+        return table.lines[0][-1], {row[1]: row[-1] for row in table.rows}
 
     name, cells = head(compared)
     assert name == "the plant's step"

@@ -115,7 +115,7 @@ def test_runs_stand_side_by_side(finished, diverged, tmp_path):
     assert document.abstract.startswith(f"C {diverged.failure}.")
     assert "A and B: not compared in pairs: seed 0 and seed 1 share no noise." in document.abstract
     metrics, differing = blocks_of(document, Table)[:2]
-    assert metrics.header == ["metric", "A", "B", "C"]
+    assert metrics.lines[0] == ["metric", "A", "B", "C"]
     rows = {name: values for name, *values in metrics.rows}
     errors = [quantity(one.metrics["max_tracking_error"].median, "m") for one in (finished, other)]
     assert rows["largest tracking error"] == [*errors, "–"]
@@ -132,7 +132,7 @@ def test_two_runs_show_their_difference_and_the_answer(tmp_path):
     document = runs_document(runs)
     assert "A and B differ only in controller.damping_ratio: 1 against 0.5." in document.abstract
     assert "(6 pairs" in document.abstract or ", 6 pairs)" in document.abstract
-    assert blocks_of(document, Table)[0].header == ["metric", "A", "B", "B - A"]
+    assert blocks_of(document, Table)[0].lines[0] == ["metric", "A", "B", "B - A"]
 
 
 def test_every_kind_of_report_is_written_as_html_and_pdf(finished, diverged, tmp_path):

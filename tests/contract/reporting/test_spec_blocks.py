@@ -9,7 +9,7 @@ from runner.reporting.document import Notice, Table
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
 from runner.reporting.run_report import run_document
-from runner.reporting.spec_blocks import HEADER, bound_text
+from runner.reporting.spec_blocks import COLUMNS, bound_text
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +31,7 @@ def specs(document):
 def test_the_report_on_a_run_has_its_bounds_with_reasons(made, tmp_path):
     document = run_document(made[0])
     (table,) = specs(document)
-    assert list(table.header) == [*HEADER, "reason"]
+    assert table.header == [*COLUMNS, "reason"]
     assert [row[1] for row in table.rows] == ["0 of 40", "40 of 40", "0 of 40"]
     assert table.rows[0][2:4] == ["1", "0.912 to 1"]
     assert "0 of 40 repetitions keep all 2 bounds of the spec: the probability of failing is 1" in document.abstract

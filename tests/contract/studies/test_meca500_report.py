@@ -25,13 +25,13 @@ def table(document, caption):
 
 
 def test_the_checklist_finds_a_place_for_everything(document):
-    rows = table(document, "Tables and formulas of the report").rows
+    rows = table(document, "Tables and formulas of the report").lines[1:]
     assert len(rows) == 12
     assert all(re.fullmatch(r"§\d+(\.\d+)?", where) and state != "missing" for *_, state, where in rows)
 
 
 def test_the_lost_turns_of_table_1_are_needed(document):
-    rows = {row[0]: row[1:] for row in table(document, "Frame 6 by the modified D-H table").rows}
+    rows = {row[0]: row[1:] for row in table(document, "Frame 6 by the modified D-H table").lines[1:]}
     assert float(rows["as printed, without both"][0]) > 100.0
     assert rows["without 180° of joint 6"][2] == "180"
     assert set(rows["with both turns"]) <= {"0", "0 (rounding)"}
@@ -39,20 +39,20 @@ def test_the_lost_turns_of_table_1_are_needed(document):
 
 def test_every_element_of_transform_and_jacobians_has_a_verdict(document):
     transform = table(document, "Elements of the transform")
-    assert [len(row) for row in transform.rows] == [5, 5, 5]
-    frame_6 = {row[0]: row[1:] for row in table(document, "Elements of the Jacobian in frame 6").rows}
+    assert [len(row) for row in transform.lines[1:]] == [5, 5, 5]
+    frame_6 = {row[0]: row[1:] for row in table(document, "Elements of the Jacobian in frame 6").lines[1:]}
     assert frame_6["2"][0].startswith("wrong by up to 2")  # the root, at most 28.4 mm/rad
     assert frame_6["2"][1:] == ["right"] * 5
     assert all(cell.startswith("wrong") for cell in frame_6["3"][:5])
 
 
 def test_the_two_sets_of_inertials_differ_by_a_third(document):
-    rows = {row[0]: row for row in table(document, "The two sets of masses").rows}
+    rows = {row[0]: row for row in table(document, "The two sets of masses").lines[1:]}
     assert rows["link5"][1:] == ["0.488", "0.358", "1.36", "CAD"]
 
 
 def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):
-    rows = table(document, f"{DEFAULT_PLANT} by its step").rows
+    rows = table(document, f"{DEFAULT_PLANT} by its step").lines[1:]
     coarse, middle, fine = (float(row[1].replace("·10⁻⁵", "e-5").replace("·10⁻⁶", "e-6")) for row in rows)
     assert middle / coarse == pytest.approx(0.5, rel=0.1)  # first order
     assert fine / middle == pytest.approx(0.5, rel=0.1)

@@ -10,7 +10,7 @@ from runner.reporting.document import Curves, Picture, Table, Verdicts
 from runner.reporting.formulas import faulty
 from runner.reporting.outline import Places
 from runner.reporting.render import write_report
-from runner.reporting.tally import tallies
+from runner.reporting.verdicts import tallies
 from runner.reporting.words import PRESET
 from runner.study.job import PRESETS
 

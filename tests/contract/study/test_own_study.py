@@ -112,8 +112,8 @@ def test_its_chapters_read_its_runs(tmp_path, made):
     study, (chapter,) = read(a_study(tmp_path / "paper"), made)
     (table, finding) = chapter.blocks
     assert isinstance(table, Table)
-    assert table.header == ["preset", "error (m)"]
-    assert [row[0] for row in table.rows] == ["slow", "slow", "fast", "fast"]
+    assert table.lines[0] == ["preset", "error (mm)"]
+    assert [row[0] for row in table.lines[1:]] == ["slow", "slow", "fast", "fast"]
     assert finding.holds
     assert [*problems(study, made, {})] == []
 

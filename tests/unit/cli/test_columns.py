@@ -2,29 +2,18 @@
 
 import numpy as np
 
-from runner.base.sanitize import align_columns
 from runner.reporting.answers import HEADER, Asked, judge
 from runner.reporting.comparison.sweeps import letter
+from runner.reporting.table import Number
 from runner.statistics import compare_paired
-
-
-def test_columns_are_aligned():
-    assert align_columns([["a", "long"], ["longer", "b"]]) == "  a       long\n  longer  b"
-
-
-def test_no_cell_speaks_to_the_terminal():
-    assert (
-        align_columns([["robot.name", "\x1b]0;title\x07", "two\nlines"]])
-        == r"  robot.name  \x1b]0;title\x07  two\nlines"
-    )
 
 
 def test_an_answer_fills_its_columns():
     samples = (np.arange(6.0), np.arange(6.0) + 2.0), (np.zeros(2), np.ones(2))
     shifted, few = (judge([Asked("energy", "J", compare_paired(*each))], ["energy"])[0].plain_cells for each in samples)
-    assert shifted == ["2", "2 to 2", "6", "1.00", "0.031", "larger"]
+    assert shifted == [Number(2.0), Number(None, 2.0, 2.0), "6", "1.00", "0.031", "larger"]
     assert len(shifted) == len(HEADER) + 1
-    assert few == ["1", "-", "2", "1.00", "-", "too few pairs to say (2 of 6)"]
+    assert few == [Number(1.0), Number(None), "2", "1.00", "-", "too few pairs to say (2 of 6)"]
 
 
 def test_folders_are_called_by_letters():

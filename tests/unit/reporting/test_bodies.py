@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from runner.reporting.bodies import playback_bodies
+from runner.reporting.playback import playback_bodies
 from runner.robots import RobotModel, find_urdf, read_urdf
 
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'

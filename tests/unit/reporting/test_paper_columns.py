@@ -3,8 +3,15 @@
 import numpy as np
 import pytest
 
-from runner.reporting.export.columns import column, decimals
+from runner.reporting.export.columns import Unit, decimals, lay_out
+from runner.reporting.export.paper_table import summarize
+from runner.reporting.table import Column, Number, Table, numbers
 from runner.statistics import median_interval
+
+
+def column(unit, rows):
+    samples = [summarize(row) for row in rows]
+    return lay_out(Table("", [Column("error", "number", unit)], [[each.median] for each in samples]))[0], samples
 
 
 @pytest.mark.parametrize(
@@ -28,36 +35,51 @@ def test_an_interval_decides_about_the_digits(median, low, high, expected):
 
 def test_one_unit_serves_a_column():
     samples = np.array([[0.00485, 0.00487, 0.00483], [0.0614, 0.0620, 0.0612]])
-    found = column("error", "m", samples)
-    assert (found.unit, found.unit.power) == ("mm", 0)
-    assert [cell.median for cell in found.cells] == ["4.85", "61.4"]
+    found, _ = column("m", samples)
+    assert found.unit == Unit("mm")
+    assert [cell.text for cell in found.cells] == ["4.85", "61.4"]
 
 
 @pytest.mark.parametrize(("scale", "power", "median"), [(1e-7, -9, "500"), (2e6, 6, "10.0"), (1.0, 0, "5.00")])
 def test_a_power_of_ten_stands_in_the_head(scale, power, median):
-    found = column("cost", "N^2 m^2 s", scale * np.array([[4.0, 5.0, 6.0]]))
-    assert (found.unit, found.unit.power) == ("N^2 m^2 s", power)
-    assert found.cells[0].median == median
+    found, _ = column("N^2 m^2 s", scale * np.array([[4.0, 5.0, 6.0]]))
+    assert found.unit == Unit("N^2 m^2 s", power)
+    assert found.cells[0].text == median
 
 
 def test_the_interval_is_that_of_the_statistics():
     values = np.random.default_rng(5).normal(5.0, 0.1, size=20)
-    cell, expected = column("torque", "N m", values[None, :]).cells[0], median_interval(values)
-    assert [float(text) for text in (cell.low, cell.median, cell.high)] == pytest.approx(
+    (found, (sample,)), expected = column("N m", values[None, :]), median_interval(values)
+    (cell,) = found.cells
+    assert [float(text) for text in (cell.low, cell.text, cell.high)] == pytest.approx(
         [expected.low, expected.median, expected.high], abs=6e-4
     )
-    assert cell.n == 20
+    assert sample.n == 20
 
 
 def test_what_is_missing_is_told():
     inf, nan = np.inf, np.nan
     rows = np.array([[1.0, 2.0, inf, inf, inf, inf, inf], [nan] * 7, [3.0] * 7, [1e-15] * 6 + [2e-15]])
-    lost, none, alike, rounding = column("settling time", "s", rows).cells
-    assert (lost.median, lost.high, lost.lost) == ("∞", "∞", 5)
-    assert (none.median, none.low, none.n) == ("–", "", 0)
-    assert (alike.low, alike.alike, alike.median) == ("", True, "3.00")
-    assert (rounding.median, rounding.rounding) == ("0", True)
+    found, samples = column("s", rows)
+    lost, none, alike, rounding = found.cells
+    assert (lost.text, lost.high, samples[0].lost) == ("∞", "∞", 5)
+    assert (none.text, none.low, samples[1].n) == ("–", "", 0)
+    assert (alike.low, alike.text) == ("", "3.00")
+    assert (rounding.text, samples[3].median.is_rounding) == ("0", True)
 
 
 def test_a_zero_has_no_sign():
-    assert column("error", "1", np.array([[-0.004, -0.004, -0.004, 1.0, 1.0, 1.0, 1.0]])).cells[0].low == "0.00"
+    found, _ = column("1", np.array([[-0.004, -0.004, -0.004, 1.0, 1.0, 1.0, 1.0]]))
+    assert found.cells[0].low == "0.00"
+
+
+def test_numbers_of_rows_with_units_have_a_unit_and_power_each():
+    rows = [["error", "m", Number(2e-3)], ["cost", "N^2 m^2 s", Number(5e6)], ["ratio", "1", Number(0.5)]]
+    _, units, found = lay_out(Table("", ["metric", Column("unit", "unit"), *numbers("")], rows))
+    assert [(cell.text, cell.unit) for cell in units.cells] == [
+        ("mm", Unit("mm")),
+        ("10⁶ N² m² s", Unit("N^2 m^2 s", 6)),
+        ("", Unit("1")),
+    ]
+    assert [cell.text for cell in found.cells] == ["2.00", "5.00", "0.500"]
+    assert found.head == "median"

@@ -9,10 +9,9 @@ from support.paper_sweep import by_hand
 
 from runner.base.errors import RunnerError
 from runner.reporting.export.columns import Unit
+from runner.reporting.export.columns import escape_markdown as markdown_escaped
 from runner.reporting.export.latex import escape_latex as latex_escaped
-from runner.reporting.export.latex import latex, unit_macro
-from runner.reporting.export.markdown import escape_markdown as markdown_escaped
-from runner.reporting.export.markdown import markdown
+from runner.reporting.export.latex import unit_macro
 from runner.reporting.export.paper_table import of_sweep
 from runner.statistics import median_interval
 from runner.store.axes import Axis
@@ -25,6 +24,14 @@ PACKAGES = ("begin", "end", "toprule", "midrule", "bottomrule", "cmidrule", "mul
 
 def table(sweep=None, metrics=NAMES, **options):
     return of_sweep(sweep or by_hand(), COMMAND, metrics, **options)
+
+
+def markdown(made):
+    return made.written("markdown")
+
+
+def latex(made):
+    return made.written("latex")
 
 
 def markdown_rows(text):
@@ -182,11 +189,8 @@ def test_missing_numbers_stand_in_braces():
 
 
 def test_metrics_are_those_of_the_report_where_none_is_named():
-    assert [column.title for column in table(metrics=None).columns] == [
-        "largest torque",
-        "rms tracking error",
-        "own cost",
-    ]
+    titles = [column.title for column in table(metrics=None).table.columns]
+    assert titles[2:] == ["largest torque", "rms tracking error", "own cost"]
 
 
 def test_unknown_metrics_are_refused():

@@ -8,7 +8,7 @@ import pytest
 from support.sample_document import HOSTILE, run_list
 
 from runner.reporting.markup import spans
-from runner.reporting.run_list import ON_PAPER, run_list_spec, table_header, table_rows
+from runner.reporting.run_list import ON_PAPER, first_runs, run_list_spec
 
 
 def test_columns_keep_their_order():
@@ -22,19 +22,20 @@ def test_columns_keep_their_order():
 
 def test_paper_lists_axes_status_and_metrics():
     block = run_list("a")
-    assert table_header(block) == ["run", "a", "status", "a (m)", "peak"]
-    assert table_rows(block) == [["abababab", "a", "ok", "1", "–"], ["cdcdcdcd", "1", "failed", "2·10⁻⁵", "3"]]
+    header, *rows = first_runs(block).lines
+    assert header == ["run", "a", "status", "a (m)", "peak"]
+    assert rows == [["abababab", "a", "ok", "1", "–"], ["cdcdcdcd", "1", "failed", "2·10⁻⁵", "3"]]
 
 
 def test_paper_lists_the_first_runs_only():
     many = run_list(levels=np.zeros((50, 1), dtype=int), values=np.zeros((50, 2)), hashes=["ab"] * 50,
                     failures=[""] * 50)  # fmt: skip
-    assert len(table_rows(many)) == ON_PAPER
+    assert len(first_runs(many).rows) == ON_PAPER
 
 
 @pytest.mark.parametrize("text", HOSTILE)
 def test_no_text_becomes_mathematics_and_all_is_json(text):
     block = run_list(text)
-    cells = [*table_header(block), *(cell for row in table_rows(block) for cell in row)]
+    cells = [cell for line in first_runs(block).lines for cell in line]
     assert not any(span.math for cell in cells for span in spans(cell))
     json.dumps(run_list_spec(block), allow_nan=False).encode()

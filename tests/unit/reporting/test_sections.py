@@ -203,7 +203,10 @@ def test_cells_stand_in_order():
 
 def test_failed_runs_are_listed_with_where_they_lie():
     by_cause, by_axis, runs = cells.failures_section(two_axes(failed=[0, 4])).blocks
-    assert by_cause.header == ["torque_limits.max (N m)", *(f"noise.position={n}" for n in ("0.0001", "0.001", "0.01"))]
+    assert by_cause.lines[0] == [
+        "torque_limits.max (N m)",
+        *(f"noise.position={n}" for n in ("0.0001", "0.001", "0.01")),
+    ]
     assert by_cause.rows == [
         ["20", "diverged, at once", "diverged, at once", "none"],
         *([limit, "none", "none", "none"] for limit in ("40", "60", "80")),

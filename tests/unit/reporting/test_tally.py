@@ -3,7 +3,7 @@
 from support.sample_document import equations
 
 from runner.reporting.document import Claim, ClaimResult, Document, Section, Verdicts
-from runner.reporting.tally import find_conditional_claims, tallies
+from runner.reporting.verdicts import find_conditional_claims, tallies
 
 
 def claim(number, *verdicts):

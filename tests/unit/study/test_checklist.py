@@ -41,21 +41,21 @@ def figure(number):
 def test_items_are_found_by_title_at_any_depth():
     text, table = checklist().section([BELOW, Section("The arm")]).blocks
     assert text.text == "Its images are lost. All is here."
-    assert table.header == ["what it is", "chapter", "state", "where"]
-    assert table.rows == [["Mass", "1", "checked", "§1.1"], ["Sketch", "2", "drawn", "§2"]]
+    assert table.lines[0] == ["what it is", "chapter", "state", "where"]
+    assert table.lines[1:] == [["Mass", "1", "checked", "§1.1"], ["Sketch", "2", "drawn", "§2"]]
 
 
 def test_what_is_missing_is_named():
     text, table = checklist().section([BELOW]).blocks
     assert text.text == "Its images are lost. Missing here: Sketch."
-    assert table.rows[1] == ["Sketch", "2", "missing", "–"]
+    assert table.lines[2] == ["Sketch", "2", "missing", "–"]
 
 
 def test_items_without_a_section_are_found_by_their_number_where_it_stands_first():
     sections = [BELOW, Section("Motion", (figure("figure 1.2"),)), Section("Again", (figure("figure 1.2"),))]
     text, table = checklist(NUMBERED).section(sections).blocks
     assert text.text == "2 figures, 1 table, 1 of 2: Missing here: Table 1.1."
-    assert table.rows == [
+    assert table.lines[1:] == [
         ["Figure 1.1", "A bridge", "of others: a photograph", "–"],
         ["Figure 1.2", "Torques", "reproduced", "§2"],
         ["Table 1.1", "Masses", "missing", "–"],
@@ -64,7 +64,7 @@ def test_items_without_a_section_are_found_by_their_number_where_it_stands_first
 
 def test_what_was_not_to_be_expected_and_is_there_is_drawn_anew():
     _, table = checklist(NUMBERED).section([Section("Motion", (figure("figure 1.1"),))]).blocks
-    assert table.rows[0] == ["Figure 1.1", "A bridge", "drawn anew", "§1"]
+    assert table.lines[1] == ["Figure 1.1", "A bridge", "drawn anew", "§1"]
 
 
 @pytest.mark.parametrize("study", studies_with("checklist.yaml"))

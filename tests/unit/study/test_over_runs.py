@@ -67,33 +67,34 @@ def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
         by=["preset"],
         number="table 1",
     )
-    assert made.header == ["preset", "gain", "error (m)", "settles (s)", "of the full equations"]
-    assert [row[:2] for row in made.rows][:4] == [
+    assert made.lines[0] == ["preset", "gain", "error (m)", "settles (s)", "of the full equations"]
+    assert [row[:2] for row in made.lines[1:]][:4] == [
         ["by the printed equations", "1"],
         ["by the printed equations", "ten"],
         ["by the printed equations", "5"],
         ["as fitted", "1"],
     ]
-    assert [row[2] for row in made.rows] == ["1", "10", "5", "2", "20", "10", "7"]
-    assert {row[3] for row in made.rows} == {"never"}
-    assert [row[4] for row in made.rows] == ["–", "–", "5", "–", "–", "5", "–"]
-    assert made.rows[-1][:2] == ["held", "–"]
-    assert made.numeric == (2, 4)
+    assert [row[2] for row in made.lines[1:]] == ["1", "10", "5", "2", "20", "10", "7"]
+    assert {row[3] for row in made.lines[1:]} == {"never"}
+    assert [row[4] for row in made.lines[1:]] == ["–", "–", "5", "–", "–", "5", "–"]
+    assert made.lines[-1][:2] == ["held", "–"]
+    assert [column.kind for column in made.columns] == ["text", "text", "number", "text", "number"]
+    assert [column.unit for column in made.columns] == ["1", "1", "m", "s", "1"]
     assert (made.origin.number, made.origin.command) == ("table 1", "runner 1.0")
 
 
 def test_a_failed_run_says_so():
     runs = {**RUNS, "gain/10/full_equations": run_of(0.0, failed=True)}
     made = tables.table(runs, "Errors.", "gain/{gain}/full_equations", tables.column("error", "error"))
-    assert [row[0] for row in made.rows] == ["1", "failed", "5"]
+    assert [row[0] for row in made.lines[1:]] == ["1", "failed", "5"]
     (series,) = plots.over(runs, "gain/{gain}/full_equations", "gain", "error")
     assert np.isnan(series.y[1])
 
 
 def test_a_comparison_has_a_row_for_each_metric_and_a_column_for_each_level():
     made = tables.comparison(RUNS, "Both.", "gain/5/{preset}", "error", "settling_time")
-    assert made.header == ["metric", "by the printed equations", "as fitted"]
-    assert made.rows == [["error", "5 m", "10 m"], ["settling time", "never", "never"]]
+    assert made.lines[0] == ["metric", "by the printed equations", "as fitted"]
+    assert made.lines[1:] == [["error", "5 m", "10 m"], ["settling time", "never", "never"]]
     with pytest.raises(RunnerError, match="a comparison goes over one axis"):
         tables.comparison(RUNS, "Both.", "gain/{gain}/{preset}", "error")
 
