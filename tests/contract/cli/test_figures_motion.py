@@ -32,6 +32,18 @@ def test_a_motion_lasts_as_long_as_the_run_and_rests_for_a_second(tmp_path):
 
 
 @pytest.mark.costs(3)
+def test_the_picture_has_the_speed_unless_it_is_that_of_the_run(tmp_path):
+    """The letters behind the time make the first line longer."""
+    shares = []
+    for last in (2.0, 120.0):
+        motion = playback(30, times=np.linspace(0.0, last, 30), desired=None)
+        picture = pictures(write_motion(motion, tmp_path / "m.gif", SMALL))[0][1]
+        shares.append(np.flatnonzero((picture[:12].max(axis=2) < 160).any(axis=0)).max() / picture.shape[1])
+    assert shares[0] < 0.2
+    assert shares[1] > 0.3
+
+
+@pytest.mark.costs(3)
 def test_a_run_that_failed_stops_where_it_did_and_the_picture_says_so(tmp_path):
     """The arm and its ghost are alike, but the arm ends at half of the time."""
     early = replace(playback(), ends="failed at 1 s", name="A", desired=None)

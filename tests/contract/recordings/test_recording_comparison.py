@@ -5,6 +5,7 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.recordings.compare import compare_recording
+from runner.recordings.words import aligned_text
 from runner.sweeps.job import run
 
 JOINTS = "a1: {joint: q1, unit: rad}, a2: {joint: q2, unit: rad}, a3: {joint: q3, unit: rad}"
@@ -26,7 +27,7 @@ def stored(tmp_path_factory):
 def compared(stored, tmp_path):
     """Return a function that compares a run with its own signals, from the columns of a map."""
 
-    def compare(columns, rows=slice(None), shift=0.0, change=lambda frame: frame):
+    def compare(columns, rows=slice(None), shift=0.0, change=lambda frame: frame, **options):
         trace = stored.trace().iloc[rows].copy()
         trace["t"] += shift
         names = {f"q{j}": f"a{j}" for j in (1, 2, 3)} | {f"tau{j}": f"c{j}" for j in (1, 2, 3)}
@@ -34,7 +35,7 @@ def compared(stored, tmp_path):
             tmp_path / "recording.csv", index=False
         )
         (tmp_path / "map.yaml").write_text(f"time: {{column: t, unit: s}}\ncolumns: {{{columns}}}\n")
-        return compare_recording(stored, tmp_path / "recording.csv", tmp_path / "map.yaml")
+        return compare_recording(stored, tmp_path / "recording.csv", tmp_path / "map.yaml", **options)
 
     return compare
 
@@ -67,6 +68,13 @@ def test_what_is_not_recorded_is_in_no_metric(compared):
     of_some = compared("a1: {joint: q1, unit: rad}, c1: {torque: q1, unit: N m}")
     assert of_some.metrics == {}
     assert of_some.no_friction == "no position of q2, q3 is recorded"
+
+
+def test_the_words_have_the_filled_gaps(compared):
+    gone = [*range(100, 105), *range(300, 303)]
+    found = compared(JOINTS, change=lambda frame: frame.drop(frame.index[gone]), fill_gaps=0.02)
+    assert aligned_text(found).endswith("; 2 gaps of up to 12 ms are filled")
+    assert "filled" not in aligned_text(compared(JOINTS))
 
 
 def test_a_part_of_a_run(compared):

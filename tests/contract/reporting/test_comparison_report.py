@@ -7,7 +7,7 @@ import pytest
 from support.sample_sides import LAWS, side
 
 from runner.reporting.comparison.report import comparison_document
-from runner.reporting.document import Code, Curves, Notice, Table, Text
+from runner.reporting.document import Code, Curves, Notice, Provenance, Table, Text
 from runner.reporting.render import write_report
 
 
@@ -126,3 +126,13 @@ def test_a_comparison_escapes_what_comes_from_a_config(tmp_path):
     html, pdf = write_report(comparison_document([one, other]), tmp_path)
     assert "<script>1" not in html.read_text()
     assert pdf.stat().st_size > 0
+
+
+def test_what_is_the_same_in_both_is_one_row_of_the_provenance():
+    one, other = (replace(each, provenance={**each.provenance, "seed": ["1"]}) for each in pair())
+    other = replace(other, provenance={**other.provenance, "commit": ["b"]})
+    one = replace(one, provenance={**one.provenance, "commit": ["a"]})
+    (found,) = parts(comparison_document([one, other]).sections, Provenance)
+    assert ("seed", "1") in found.rows
+    assert {("commit, A", "a"), ("commit, B", "b")} <= set(found.rows)
+    assert not {"seed, A", "commit"} & {name for name, _ in found.rows}

@@ -11,6 +11,7 @@ from fixtures.studies import Made
 pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
 from runner.cli.reproduce import _chosen
+from runner.plants.compiled_motion import CompiledStep
 from runner.store import Run
 from runner.studies.engines import contact, same_arm, side_by_side
 
@@ -50,6 +51,15 @@ def test_a_changed_arm_is_found_to_be_another(runs: Mapping[str, Run]) -> None:
     assert min(off.mass, off.acceleration, off.torque) > 1e-5
     own = side_by_side.difference(run.model, side_by_side.mujoco_of(run))
     assert max(own.mass, own.acceleration, own.torque) < 1e-12
+
+
+def test_the_compiled_step_is_compared_with_the_classical_step(runs: Mapping[str, Run]) -> None:
+    """They agree to rounding; with another step of the compiled code they do not."""
+    model = runs["open/planar/MuJoCo Euler/0.001"].model
+    compiled, longer = (CompiledStep(model, step) for step in (same_arm.STEP, 1.01 * same_arm.STEP))
+    for state in side_by_side.random_states(model)[:5]:
+        assert same_arm._step_difference(model, compiled, *state) < 1e-12
+        assert same_arm._step_difference(model, longer, *state) > 1e-4
 
 
 def test_the_closed_form_of_the_impact_is_the_solution_of_its_equation(runs: Mapping[str, Run]) -> None:
