@@ -1,7 +1,6 @@
 """Chapters of a study, from Markdown or Python files."""
 
 import shlex
-from collections import ChainMap
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from inspect import signature
@@ -21,13 +20,13 @@ from runner.store import Calibration, Run
 from runner.study.claims import judged_claims, legend
 from runner.study.code import Code, public_functions
 from runner.study.grids import Grids
-from runner.study.job import Results
 from runner.study.manifest import Manifest, Part
 from runner.study.measured import Finding, Measured
 from runner.study.prose import blocks, plots, read_chapter, signals, tables
 from runner.study.prose.compared import compare
 from runner.study.prose.reader import Reading
 from runner.study.report import parts
+from runner.study.results import Results, Runs
 
 SHARED = (blocks, signals, tables, plots)
 """The modules whose functions every chapter may call."""
@@ -55,8 +54,8 @@ class Chapters:
         code: Code,
         grids: Grids,
         command: str,
-        runs: Mapping[str, Run],
-        calibrations: Mapping[str, Calibration],
+        runs: Runs,
+        calibrations: Results[Calibration],
     ) -> None:
         self._folder, self._manifest, self._code, self._grids = folder, manifest, code, grids
         self._command = shlex.join(["runner", "reproduce", command])
@@ -125,10 +124,9 @@ class Chapters:
 
     def _stored(self) -> Results[Run | Calibration]:
         """Return runs and calibrations in one."""
-        made = [each for each in (self._runs, self._calibrations) if isinstance(each, Results)]
-        missing = ChainMap(*(each.missing for each in made))
-        dropped = ChainMap(*(each.dropped for each in made))
-        return Results({**self._runs, **self._calibrations}, missing, dropped)
+        runs, calibrations = self._runs, self._calibrations
+        missing = {**runs.missing, **calibrations.missing}
+        return Results({**runs, **calibrations}, missing, runs.dropped, runs.parts)
 
     def _claims(self) -> list[Claim]:
         return judged_claims(self._published(), self._runs, self._manifest.presets)

@@ -11,21 +11,21 @@ from runner.base.expressions.insertions import insertions
 from runner.base.paths import STUDY_FILE
 from runner.reporting.document import Document
 from runner.reporting.formulas import faulty
-from runner.store import Calibration, Run
+from runner.store import Calibration
 from runner.study.chapters import Chapters, chapter_text
 from runner.study.conclusions import list_failed_findings
 from runner.study.expected_caveats import unexpected_caveats
-from runner.study.job import LeftOutError, MissingError
 from runner.study.measured import Measured
 from runner.study.prose.expressions import Values
 from runner.study.prose.reader import Reading, Stated, conditions_of
+from runner.study.results import LeftOutError, MissingError, Parts, Results, Runs
 from runner.study.study import Study
 
 
 def problems(
     study: Study,
-    runs: Mapping[str, Run],
-    calibrations: Mapping[str, Calibration],
+    runs: Runs,
+    calibrations: Results[Calibration],
     chapters: Chapters | None = None,
     document: Document | None = None,
 ) -> Iterator[str]:
@@ -40,7 +40,7 @@ def problems(
         chapters: Its chapters, if they have been read.
         document: Its report, if it exists.
     """
-    levels, chapters, readable = levels_in([*runs, *calibrations]), chapters or study.chapters(runs, calibrations), True
+    levels, chapters, readable = levels_in(study.parts().values()), chapters or study.chapters(runs, calibrations), True
     for file in study.manifest.files():
         try:
             yield from _of_chapter(study, file, chapters, levels)
@@ -78,7 +78,7 @@ def _of_chapter(study: Study, file: str, chapters: Chapters, levels: set[str]) -
     yield from typed_numbers(name, chapter_text(path), levels)
 
 
-def _unused(study: Study, runs: Mapping[str, Run]) -> Iterator[str]:
+def _unused(study: Study, runs: Runs) -> Iterator[str]:
     patterns, names = dict.fromkeys(each.runs for each in study.expected), (*runs, *study.dropped())
     yield from (pattern for pattern in patterns if not any(fnmatchcase(name, pattern) for name in names))
 
@@ -86,7 +86,6 @@ def _unused(study: Study, runs: Mapping[str, Run]) -> Iterator[str]:
 _BOX = re.compile(r"^::: \w+ (.*?)^:::$", re.MULTILINE | re.DOTALL)
 _MATHEMATICS = re.compile(r"\$[^$]*\$")
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?: [a-zA-Z%]+)?")
-_PARTS = re.compile(r"[/,] ?")
 # Names that hold a digit: parts of the source, of the arm, and of what the studies number.
 _NAMED = re.compile(
     r"\b(?:[Ff]igures?|[Ss]ections?|[Tt]ables?|[Cc]laims?|[Cc]hapters?|[Ee]quations?|[Mm]ethods?|[Jj]oints?|[Ll]inks?|"
@@ -111,9 +110,9 @@ def typed_numbers(file: str, text: str, levels: Set[str]) -> Iterator[str]:
             yield f"{file}:{line}: {number}: a number typed in a finding goes stale; insert {{{{ metric(...) }}}}"
 
 
-def levels_in(names: Iterable[str]) -> set[str]:
-    """Return the levels of axes that the names of runs have."""
-    return {part for name in names for part in _PARTS.split(name)}
+def levels_in(names: Iterable[Parts]) -> set[str]:
+    """Return the levels of axes in the parts of names, and what commas separate in them, as "16.7 ms"."""
+    return {text for parts in names for axis, level in parts if axis for text in level.split(", ")}
 
 
 def typed_in(words: str, levels: Set[str]) -> set[str]:

@@ -29,7 +29,7 @@ from runner.statistics.spec.history import merge_histories, set_after, today
 from runner.store import Run
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json
-from runner.study.job import MissingError
+from runner.study.results import MissingError
 from runner.study.study import Study
 
 _DIGITS = 4  # at least as many as a source prints

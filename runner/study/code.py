@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 from runner.base.errors import RunnerError
 from runner.plugins.discovery import entry_point, named_part
 from runner.plugins.folder_code import folder_module
-from runner.study.job import MissingError
+from runner.study.results import MissingError
 
 
 class Code:

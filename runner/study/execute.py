@@ -13,7 +13,7 @@ from runner.simulation.provenance import portable_overrides
 from runner.store import Calibration, Run
 from runner.study.estimate import counted, estimate_all, planned, told
 from runner.study.items import Way, listed, make_items
-from runner.study.job import Results
+from runner.study.results import Results
 from runner.study.study import Study
 from runner.study.tune import find_gains
 from runner.study.tunings import Tuning
@@ -57,10 +57,9 @@ def make_all(
         for name in calibrations
         if name not in missing
     }
-    return (
-        Results(runs, {name: why for name, why in missing.items() if name in jobs}, study.dropped()),
-        Results(found, {name: why for name, why in missing.items() if name in calibrations}, study.dropped()),
-    )
+    not_run = {name: why for name, why in missing.items() if name in jobs}
+    not_found = {name: why for name, why in missing.items() if name in calibrations}
+    return study.results(runs, not_run), study.results(found, not_found)
 
 
 def _tell_estimate(study: Study, tunings: Sequence[Tuning], way: Way) -> None:

@@ -17,7 +17,7 @@ from runner.reporting.markup import literal
 from runner.reporting.table import numbers
 from runner.schema.model import StrictModel
 from runner.store import Run
-from runner.study.job import distinct
+from runner.study.results import distinct
 
 _TOLD = 20  # unexpected caveats that the report names one by one
 

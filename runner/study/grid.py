@@ -16,12 +16,14 @@ from runner.base.limits import GRID
 from runner.base.sanitize import quoted
 from runner.schema.model import StrictModel
 from runner.study.code import UserPlugin
+from runner.study.results import Parts
 
 Level = str | int | float
 """Value of a name: a number or a string."""
 
 _LONGEST = 2000  # characters of a string with expressions
 _OPERATIONS = 1000
+_SLASH = re.compile(r"/(?![^{}]*\}\})")  # between two parts of a name, not within an expression
 
 
 def fill(text: str, scope: Mapping[str, Level]) -> str:
@@ -153,8 +155,8 @@ class Grid(StrictModel):
         """Return the grid with one level of an axis."""
         return self.model_copy(update={"over": {**self.over, axis: {level: self.over[axis][level]}}})
 
-    def runs(self, key: str, values: Mapping[str, float]) -> Iterator[tuple[str, Overrides]]:
-        """Yield name and overrides of each run.
+    def runs(self, key: str, values: Mapping[str, float]) -> Iterator[tuple[Parts, Overrides]]:
+        """Yield the parts of the name and the overrides of each run.
 
         Args:
             key: The grid's key.
@@ -163,13 +165,14 @@ class Grid(StrictModel):
         items = [*self.with_, *(f"{{{{ {axis} }}}}" for axis in self.over if not self._is_placed(axis))]
         if excess := GRID.excess(math.prod(map(len, self.over.values()))):
             raise RunnerError(excess)
-        begin = self.name or key
-        rest = [axis for axis in self.over if axis not in names_in(begin)]
+        named = [(alone(text) or "", text) for text in _SLASH.split(self.name or key)]
+        rest = [axis for axis in self.over if not any(axis in names_in(text) for _, text in named)]
         for levels in itertools.product(*self.over.values()):
             chosen = dict(zip(self.over, levels, strict=True))
             scope = {**values, **self.values, **chosen}
-            name = "/".join([fill(begin, scope), *(str(chosen[axis]) for axis in rest)])
-            yield name, tuple(text for item in items for text in self._expand(item, chosen, scope, ()))
+            begin = ((axis if axis in chosen else "", fill(text, scope)) for axis, text in named)
+            overrides = tuple(text for item in items for text in self._expand(item, chosen, scope, ()))
+            yield (*begin, *((axis, str(chosen[axis])) for axis in rest)), overrides
 
     def _is_placed(self, axis: str) -> bool:
         texts = [*self.with_, *(text for levels in self.over.values() for own in levels.values() for text in own or ())]

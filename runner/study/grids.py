@@ -39,6 +39,7 @@ from runner.schema.model import StrictModel
 from runner.study.code import UserPlugin
 from runner.study.grid import Grid, Level, Overrides
 from runner.study.manifest import Profile
+from runner.study.results import Parts, name_of
 from runner.study.tunings import TunedGrid, Tuning, all_tunings, check_named
 
 FILE = "runs.yaml"
@@ -61,6 +62,7 @@ class Grids:
     Attributes:
         runs: Overrides of every run by name.
         calibrations: Overrides of every calibration by name.
+        parts: The parts of each of these names.
         tunings: Every tuning by name.
 
     Raises:
@@ -93,7 +95,8 @@ class Grids:
             if key not in keys:
                 problems.append(f"{key}: unknown key{nearest(key, keys)}; keys: {', '.join(keys)}")
         self._grids = {**roots["grids"], **roots["calibrations"]}
-        self.runs, self.calibrations = (_expanded(roots[root], self._values, root, problems) for root in roots)
+        self.parts: dict[str, Parts] = {}
+        self.runs, self.calibrations = (self._expanded(roots[root], root, problems) for root in roots)
         self.tunings: dict[str, Tuning] = {}
         try:
             self.tunings = all_tunings(tuned, self._values)
@@ -111,6 +114,18 @@ class Grids:
         if problems:
             raise RunnerError("\n".join(f"{path}: {problem}" for problem in problems))
 
+    def _expanded(self, grids: Mapping[str, Grid], root: str, problems: list[str]) -> dict[str, Overrides]:
+        runs: dict[str, Overrides] = {}
+        for key, grid in grids.items():
+            try:
+                for parts, overrides in grid.runs(key, self._values):
+                    if (name := name_of(parts)) in runs:
+                        raise RunnerError(f"the name '{name}' is that of another run")
+                    runs[name], self.parts[name] = overrides, parts
+            except RunnerError as error:
+                problems.append(f"{root}.{key}: {error}")
+        return runs
+
     @property
     def plugins(self) -> frozenset[str]:
         """The groups of the user-supplied parts that its axes take."""
@@ -122,8 +137,8 @@ class Grids:
             for axis in (axis for axis, group in grid.plugins.items() if group == part.group):
                 ours = next(iter(grid.over[axis]))
                 pairs = (grid.only(axis, level).runs(key, self._values) for level in (part.name, ours))
-                for (name, own), (_, other) in zip(*pairs, strict=True):
-                    yield name, own, other
+                for (parts, own), (_, other) in zip(*pairs, strict=True):
+                    yield name_of(parts), own, other
 
     def grid(self, key: str) -> Grid:
         """Return a grid.
@@ -191,18 +206,3 @@ def _with_parts(root: str, grids: Mapping[str, G], parts: Sequence[UserPlugin], 
         except RunnerError as error:
             problems.append(f"{root}.{key}: {error}")
     return found
-
-
-def _expanded(
-    grids: Mapping[str, Grid], values: Mapping[str, float], root: str, problems: list[str]
-) -> dict[str, Overrides]:
-    runs: dict[str, Overrides] = {}
-    for key, grid in grids.items():
-        try:
-            for name, overrides in grid.runs(key, values):
-                if name in runs:
-                    raise RunnerError(f"the name '{name}' is that of another run")
-                runs[name] = overrides
-        except RunnerError as error:
-            problems.append(f"{root}.{key}: {error}")
-    return runs

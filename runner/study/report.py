@@ -34,7 +34,7 @@ from runner.reporting.verdicts import find_conditional_claims
 from runner.schema.model import StrictModel
 from runner.store import Calibration, Run
 from runner.study.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
-from runner.study.job import LeftOutError, MissingError, Results, distinct
+from runner.study.results import LeftOutError, MissingError, Runs, distinct
 
 _FILE = "checklist.yaml"
 _MISSING, _NOWHERE = "missing", "–"
@@ -161,7 +161,7 @@ def study_document(
     subtitle: str,
     abstract: str,
     chapters: Sequence[Section],
-    runs: Mapping[str, Run],
+    runs: Runs,
     calibrations: Mapping[str, Calibration],
     expected: Sequence[ExpectedCaveat],
     checklist: Checklist | None,
@@ -186,7 +186,7 @@ def study_document(
         bibtex: BibTeX entry of the source; empty where there is none.
         profile: Sections on the profile; empty for the whole study.
     """
-    missing = [_missing(runs.missing)] if isinstance(runs, Results) and runs.missing else []
+    missing = [_missing(runs.missing)] if runs.missing else []
     first = 1 if chapters and chapters[0].answers else 0  # the answers come before what is said of the runs
     made = [*chapters[:first], *profile, *missing, *chapters[first:]]
     sections = [*made, caveats_section(runs, expected), _where_from(runs, calibrations, code)]

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,15 +11,15 @@ from runner.base.errors import RunnerError, nearest
 from runner.base.paths import check_inside, ships
 from runner.plugins.discovery import use_plugins
 from runner.reporting.published_claims import CLAIMS, load_claims
-from runner.store import Calibration, Run
+from runner.store import Calibration
 from runner.study.code import Code, UserPlugin
 from runner.study.expected_caveats import ExpectedCaveat, read_expected
 from runner.study.grid import Overrides
 from runner.study.grids import FILE as RUNS
 from runner.study.grids import Grids
-from runner.study.job import distinct
 from runner.study.manifest import Profile, read_manifest
 from runner.study.names import Location, find_study
+from runner.study.results import Parts, Results, Runs, Thing, distinct, name_of
 from runner.study.tunings import Gains, Tuning, named, put_in, read_gains
 
 if TYPE_CHECKING:  # drawing comes with these
@@ -101,11 +102,20 @@ class Study:
 
     def jobs(self) -> dict[str, Overrides]:
         """Return the overrides of the runs that it needs, by name: of runs.yaml and `plan.py`."""
-        more: dict[str, Overrides] = self._planned("computed_runs", dict)
+        more = {name_of(parts): overrides for parts, overrides in self._computed.items()}
         if self._profile is not None:
             more = {name: self._profile.repeated(overrides) for name, overrides in more.items()}
         own = {name: put_in(overrides, self._gains) for name, overrides in self._grids.runs.items()}
         return {**own, **more}
+
+    def parts(self) -> dict[str, Parts]:
+        """Return the parts of the name of each run and calibration, also of those that its profile does without."""
+        own = {**self._grids.parts, **{name_of(parts): parts for parts in self._computed}}
+        return own | self._whole.parts if self.profile else own
+
+    def results(self, found: Mapping[str, Thing], missing: Mapping[str, str] | None = None) -> Results[Thing]:
+        """Return stored runs or calibrations by name as results of the study, with why the others were not made."""
+        return Results(found, missing, self.dropped(), self.parts())
 
     def untuned(self) -> list[Tuning]:
         """Return the tunings whose gains its runs take and that are not known, each as many times as they ask for."""
@@ -134,19 +144,19 @@ class Study:
         """Return the runs and calibrations of the whole study that its profile does without, each with why."""
         if not self.profile:
             return {}
-        whole, kept = Grids(self.folder / RUNS), {**self._grids.runs, **self._grids.calibrations}
-        return {
-            name: f"the profile {self.profile} has no such run"
-            for name in (*whole.runs, *whole.calibrations)
-            if name not in kept
-        }
+        dropped = (name for name in self._whole.parts if name not in self._grids.parts)
+        return dict.fromkeys(dropped, f"the profile {self.profile} has no such run")
+
+    @cached_property
+    def _whole(self) -> Grids:
+        return Grids(self.folder / RUNS)
 
     def calibrations(self) -> Calibrations:
         """Return the calibrations that it needs, by name, as `plan.py` changes those of runs.yaml."""
         changed: Calibrations = self._planned("calibrations", lambda given: given, self._grids.calibrations)
         return changed
 
-    def chapters(self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]) -> "Chapters":
+    def chapters(self, runs: Runs, calibrations: Results[Calibration]) -> "Chapters":
         """Return its chapters, made from its stored runs and calibrations by name."""
         from runner.study.chapters import Chapters
 
@@ -176,7 +186,7 @@ class Study:
             function(outputs)
 
     def document(
-        self, runs: Mapping[str, Run], calibrations: Mapping[str, Calibration], chapters: "Chapters | None" = None
+        self, runs: Runs, calibrations: Results[Calibration], chapters: "Chapters | None" = None
     ) -> "Document":
         """Return its report.
 
@@ -202,7 +212,7 @@ class Study:
             profile=list(self._by_profile(runs)),
         )
 
-    def _by_profile(self, runs: Mapping[str, Run]) -> "Iterator[Section]":
+    def _by_profile(self, runs: Runs) -> "Iterator[Section]":
         """Yield what the profile makes otherwise than the whole study; nothing where that is nothing."""
         from runner.reporting.document import Section, Text
 
@@ -214,7 +224,7 @@ class Study:
         text = f"The profile {self.profile} takes {len(distinct(runs)):,} runs{less}.{each}"
         yield Section("Made with a profile", (Text(text),))
 
-    def _cover(self, runs: Mapping[str, Run]) -> "Cover | None":
+    def _cover(self, runs: Runs) -> "Cover | None":
         """Return the picture of the first screen; None where there is none, or its run was not made."""
         from runner.reporting.figures import cover
 
@@ -237,6 +247,11 @@ class Study:
                     f"{self.name}: --plugin {part.override}: none of its runs takes a {part.group} of yours; a grid of "
                     f"{RUNS} that does names the axis, as in plugins: {{law: controller}}"
                 )
+
+    @property
+    def _computed(self) -> dict[Parts, Overrides]:
+        computed: dict[Parts, Overrides] = self._planned("computed_runs", dict)
+        return computed
 
     def _planned(self, name: str, otherwise: Callable[..., Any], *given: Any) -> Any:
         return self._code.functions(_PLAN).get(name, otherwise)(*given)

@@ -40,6 +40,7 @@ from runner.plugins.metric_units import unit_of, units
 from runner.store.atomic import write_atomically
 from runner.study.code import UserPlugin
 from runner.study.grid import FlatOverrides, Grid, Level, Overrides
+from runner.study.results import name_of
 from runner.sweeps.tuning.key import Key
 
 Factor = Annotated[float, Field(gt=0.0)]
@@ -126,9 +127,9 @@ class TunedGrid(Grid):
             budget = self.trials if ranges else 1, self.times
             grid = self.only(axis, level)
             grids = [grid, *(grid.model_copy(update={"with_": each}) for each in self.longer)]
-            for (name, overrides), *longer in zip(*(each.runs(key, values) for each in grids), strict=True):
+            for (parts, overrides), *longer in zip(*(each.runs(key, values) for each in grids), strict=True):
                 runs = [own for _, own in longer]
-                yield Tuning(name, *law, overrides, ranges, self.minimize, self.bounds, *budget, runs)
+                yield Tuning(name_of(parts), *law, overrides, ranges, self.minimize, self.bounds, *budget, runs)
 
     @property
     def _axis(self) -> str:

@@ -1,20 +1,19 @@
 """The words of findings unchanged in the source, for a lint on numbers that are typed in them."""
 
 import ast
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Set
 from pathlib import Path
 
-from runner.study.check import levels_in, typed_in
+from runner.study.check import typed_in
 
 
-def typed_in_module(path: Path, names: Iterable[str]) -> Iterator[str]:
+def typed_in_module(path: Path, levels: Set[str]) -> Iterator[str]:
     """Yield each number that is typed in a finding's title or text in a module, with its line and the words.
 
     Args:
         path: The module.
-        names: Names of the study's runs; a number with its unit that is in one is a level of an axis.
+        levels: Levels of axes, which may be typed.
     """
-    levels = levels_in(names)
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
         assigned = {

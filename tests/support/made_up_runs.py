@@ -9,6 +9,7 @@ import pandas as pd
 import pyarrow
 
 from runner.store import Run
+from runner.study.results import Parts, Results
 
 FAILURE = {"reason": "diverged", "time": 0.5, "joint": None, "repetition": 0}
 
@@ -39,3 +40,14 @@ def made_up_run(
     run = Run(Path("run"), config or {}, record)
     run.__dict__["_table"] = pyarrow.Table.from_pandas(pd.DataFrame(trace or {}, dtype=float), preserve_index=False)
     return run
+
+
+def planned(pattern: str, runs: Mapping[str, Any], missing: Mapping[str, str] | None = None) -> Results[Any]:
+    """Return runs as a plan names them, whose axes are those in braces in a pattern with as many parts as a name."""
+    axes = [word[1:-1] if word.startswith("{") else "" for word in pattern.split("/")]
+
+    def parts(name: str) -> Parts:
+        texts = name.split("/")
+        return tuple(zip(axes if len(texts) == len(axes) else [""] * len(texts), texts, strict=True))
+
+    return Results(runs, missing, parts={name: parts(name) for name in (*runs, *(missing or ()))})

@@ -1,19 +1,19 @@
 """Benchmark chapter by arm: groups of controllers under each condition, and all errors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from runner.reporting.document import Section, Table, Text
 from runner.reporting.table import numbers
 from runner.reporting.words import in_words
-from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED
 from runner.studies.benchmark.figures import any_origin, error_words
 from runner.studies.benchmark.made import ARMS, CONDITIONS, QUESTIONS, all_cells, arms_of, laws_of, turned
+from runner.study.results import Runs
 
 _WIDE = 6  # conditions in one table
 
 
-def section(runs: Mapping[str, Run]) -> Section:
+def section(runs: Runs) -> Section:
     """Return the chapter."""
     text = (
         "A law is ahead of another if its error is smaller by more than 2 % on the same seeds, with whichever tuning "
@@ -27,7 +27,7 @@ def section(runs: Mapping[str, Run]) -> Section:
     return Section("Arm by arm", (Text(text),), [_arm(runs, arm) for arm in arms_of(runs)])
 
 
-def _arm(runs: Mapping[str, Run], arm: str) -> Section:
+def _arm(runs: Runs, arm: str) -> Section:
     title = ARMS[arm].replace("planar", "Planar")
     blocks = [_groups(runs, arm, question) for question in QUESTIONS]
     for question in QUESTIONS:
@@ -36,7 +36,7 @@ def _arm(runs: Mapping[str, Run], arm: str) -> Section:
     return Section(title, blocks)
 
 
-def _groups(runs: Mapping[str, Run], arm: str, question: str) -> Table:
+def _groups(runs: Runs, arm: str, question: str) -> Table:
     rows = []
     for condition, cell in all_cells(runs, arm, question).items():
         groups = [", ".join(map(in_words, own)) for own in cell.groups]
@@ -48,7 +48,7 @@ def _groups(runs: Mapping[str, Run], arm: str, question: str) -> Table:
     return Table(f"{ARMS[arm]}, {QUESTIONS[question]}: groups of laws.", header, rows, any_origin(runs))
 
 
-def _errors(runs: Mapping[str, Run], arm: str, question: str, gains: Sequence[str], words: str) -> list[Table]:
+def _errors(runs: Runs, arm: str, question: str, gains: Sequence[str], words: str) -> list[Table]:
     made = all_cells(runs, arm, question, gains)
     names = list(made)
     tables = []

@@ -1,6 +1,6 @@
 """Benchmark chapter by controller: required model data, gains, rank and computing time."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -8,18 +8,17 @@ from runner.base.quantities import number
 from runner.reporting.document import Block, Section, Table, Text
 from runner.reporting.table import Column, numbers
 from runner.reporting.words import in_words
-from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin, error_words, ratio
 from runner.studies.benchmark.made import ARMS, CONDITIONS, LAWS, QUESTIONS, all_cells, arms_of, laws_of
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 from runner.sweeps.differing import entries
 
 _UNKNOWN = "not known here"
 _LAW_KEYS = ("controller.", "disturbance_observer.")
 
 
-def section(runs: Mapping[str, Run]) -> Section:
+def section(runs: Runs) -> Section:
     """Return the chapter."""
     text = (
         "All laws read positions and velocities of the joints; none of them reads torque sensors. Untuned gains follow "
@@ -30,7 +29,7 @@ def section(runs: Mapping[str, Run]) -> Section:
     return Section("Law by law", (Text(text), _knowledge(runs, laws)), [_law(runs, law) for law in laws])
 
 
-def _knowledge(runs: Mapping[str, Run], laws: Sequence[str]) -> Table:
+def _knowledge(runs: Runs, laws: Sequence[str]) -> Table:
     """Return a table of the inputs of each law; iterative learning has a separate chapter."""
     rows = []
     for law in (*laws, "iterative_learning"):
@@ -40,7 +39,7 @@ def _knowledge(runs: Mapping[str, Run], laws: Sequence[str]) -> Table:
     return Table("Inputs of each law, besides the joints' positions and velocities.", header, rows)
 
 
-def _law(runs: Mapping[str, Run], law: str) -> Section:
+def _law(runs: Runs, law: str) -> Section:
     words = in_words(law)
     blocks: list[Block] = [
         Text(LAWS[law][0] if law in LAWS else "A law from outside."),
@@ -51,7 +50,7 @@ def _law(runs: Mapping[str, Run], law: str) -> Section:
     return Section(words[0].upper() + words[1:], [*blocks, Text(cost)] if cost else blocks)
 
 
-def _places(runs: Mapping[str, Run], law: str) -> Table:
+def _places(runs: Runs, law: str) -> Table:
     """Return its error and group under each condition on each arm, and how much of the error tuning took away."""
     rows = []
     for arm in arms_of(runs):
@@ -69,7 +68,7 @@ def _places(runs: Mapping[str, Run], law: str) -> Table:
     return Table(f"{in_words(law)}: errors and groups.", header, rows, any_origin(runs), folded=True)
 
 
-def _gains(runs: Mapping[str, Run], law: str) -> Table:
+def _gains(runs: Runs, law: str) -> Table:
     """Return the gains of each arm: of its bandwidth, and of each tuning."""
     rows = []
     tunings = [(question, own) for question in QUESTIONS for own in tuned(runs)]
@@ -84,7 +83,7 @@ def _gains(runs: Mapping[str, Run], law: str) -> Table:
     return Table(caption, header, rows, any_origin(runs))
 
 
-def keys_of(runs: Mapping[str, Run], arm: str, law: str, question: str, gains: str) -> dict[str, str]:
+def keys_of(runs: Runs, arm: str, law: str, question: str, gains: str) -> dict[str, str]:
     """Return the keys of a law and its observer with their values, as strings, of a tuning."""
     config = found(runs, f"{question}/{arm}/{law}/{{task}}/exact/{gains}")[0].run.config
     own = {group: config[group] for group in ("controller", "disturbance_observer") if group in config}
@@ -98,7 +97,7 @@ def _short(value: str) -> str:
         return value
 
 
-def _cost(runs: Mapping[str, Run], law: str) -> str:
+def _cost(runs: Runs, law: str) -> str:
     """Return a sentence on the time of one tick on the engine's Macro; empty if no clock was read."""
     timed = [one.run.record["timing"].get("tick_time_median")
              for one in found(runs, f"engine/{{arm}}/{law}/{{task}}/exact/{{gains}}")]  # fmt: skip

@@ -13,8 +13,7 @@ from runner.reporting.answers import ALPHA, SHARE
 from runner.statistics import Comparison, compare_paired, holm, holm_levels
 from runner.store import Run
 from runner.study.fit import difference, setting
-from runner.study.job import Results
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 
 _LEAST = 1.0 / (1.0 - SHARE)  # ratio of errors, above which a law leads
 
@@ -168,15 +167,13 @@ class Cell:
         return next(each for each in self.entries if each.law == law)
 
 
-def tuned(runs: Mapping[str, Run]) -> tuple[str, ...]:
+def tuned(runs: Runs) -> tuple[str, ...]:
     """Return the gains of the tunings that the runs are to have, in order: "1", "2" and so on."""
-    names = [*runs, *(runs.missing if isinstance(runs, Results) else ())]
-    last = {name.rpartition("/")[2] for name in names if name.startswith("first/")}
-    return tuple(sorted(own for own in last if own.isdecimal()))
+    return tuple(sorted(own for own in runs.levels("first", "gains") if own.isdecimal()))
 
 
 def cells(
-    runs: Mapping[str, Run],
+    runs: Runs,
     arm: str,
     grid: str = "first",
     seeds: slice = ALL_SEEDS,
@@ -201,10 +198,11 @@ def cells(
         MissingError: if a run was not made.
     """
     task = f"{{task={'|'.join(tasks)}}}" if tasks else "{task}"
+    condition = "change" if grid == "changed" else "condition"
     gains = gains or (_ONE if grid == "changed" else tuned(runs))
     last = "" if grid == "changed" else f"/{{gains={'|'.join(gains)}}}"
     metric = f"{_OF_ALL}_period_{after}" if grid in _REPEATING else _OF_ALL
-    errors = _errors(runs, f"{grid}/{arm}/{{law}}/{task}/{{condition}}{last}", gains, metric)
+    errors = _errors(runs, f"{grid}/{arm}/{{law}}/{task}/{{{condition}}}{last}", condition, gains, metric)
     ranked = {name: _ranked(by_law, seeds) for name, by_law in errors.items()}
     ahead = leads(ranked)
     return {name: Cell(entered, ahead[name]) for name, entered in ranked.items()}
@@ -224,14 +222,12 @@ def _ranked(by_law: Mapping[str, FloatArray], seeds: slice) -> list[Entry]:
     return sorted(entered, key=lambda each: each.score)
 
 
-def _errors(
-    runs: Mapping[str, Run], pattern: str, gains: Sequence[str], metric: str
-) -> dict[str, dict[str, FloatArray]]:
+def _errors(runs: Runs, pattern: str, axis: str, gains: Sequence[str], metric: str) -> dict[str, dict[str, FloatArray]]:
     """Return the errors of each law under each condition, shape (tunings, paths, n), of the runs of a pattern."""
     grouped: dict[str, dict[str, dict[str, dict[str, FloatArray]]]] = {}
     alike: dict[tuple[str, str], tuple[str, dict[str, str]]] = {}
     for one in found(runs, pattern):
-        law, task, condition = (one.levels[axis] for axis in ("law", "task", "condition"))
+        law, task, condition = (one.levels[each] for each in ("law", "task", axis))
         own = setting(one.run.config)
         first = alike.setdefault((task, condition), (law, own))
         if unlike := difference(first, (law, own)):

@@ -1,7 +1,5 @@
 """Rank order and leads of the controllers on a second plant."""
 
-from collections.abc import Mapping
-
 import numpy as np
 from scipy import stats
 
@@ -14,19 +12,19 @@ from runner.store import Run
 from runner.studies.benchmark.cells import Cell, cells
 from runner.studies.benchmark.made import CONDITIONS
 from runner.study.measured import Measured
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 
 _ARM = "macro"
 _ENGINE = "engine"
 _GAINS = ("1",)  # of the first tuning
 
 
-def engine(runs: Mapping[str, Run]) -> str:
+def engine(runs: Runs) -> str:
     """Return the other engine's name."""
     return PLANT[_first(runs).config["plant"]["kind"]]
 
 
-def both_orders(runs: Mapping[str, Run], caption: str) -> Table:
+def both_orders(runs: Runs, caption: str) -> Table:
     """Return the order of the laws under each condition on both plants, and the rank correlation of their errors."""
     rows = []
     for condition, (here, there) in _both(runs).items():
@@ -36,13 +34,13 @@ def both_orders(runs: Mapping[str, Run], caption: str) -> Table:
     return Table(caption, header, rows, origin(_first(runs)))
 
 
-def mean_correlation(runs: Mapping[str, Run]) -> Measured:
+def mean_correlation(runs: Runs) -> Measured:
     """Return the mean of the rank correlations over the conditions."""
     told = [_correlation(here, there) for here, there in _both(runs).values()]
     return Measured("mean rank correlation", None if None in told else float(np.mean(np.array(told, dtype=float))))
 
 
-def against(runs: Mapping[str, Run]) -> Measured:
+def against(runs: Runs) -> Measured:
     """Return the number of leads shown on one plant that the other plant shows reversed."""
     turned = 0
     for here, there in _both(runs).values():
@@ -51,12 +49,12 @@ def against(runs: Mapping[str, Run]) -> Measured:
     return Measured("leads that the other engine turns round", float(turned))
 
 
-def leads(runs: Mapping[str, Run]) -> Measured:
+def leads(runs: Runs) -> Measured:
     """Return the number of leads shown on Runge-Kutta."""
     return Measured("leads", float(sum(lead.shown for here, _ in _both(runs).values() for lead in here.leads.values())))
 
 
-def _both(runs: Mapping[str, Run]) -> dict[str, tuple[Cell, Cell]]:
+def _both(runs: Runs) -> dict[str, tuple[Cell, Cell]]:
     """Return each condition on both plants, along the same paths, on the same seeds, with the same gains."""
     seeds = slice(_first(runs).config["repetitions"])
     there = cells(runs, _ARM, _ENGINE, gains=_GAINS)
@@ -73,5 +71,5 @@ def _correlation(here: Cell, there: Cell) -> float | None:
     return float(stats.spearmanr(*scores).statistic)
 
 
-def _first(runs: Mapping[str, Run]) -> Run:
+def _first(runs: Runs) -> Run:
     return found(runs, f"{_ENGINE}/{_ARM}/joint_pd/{{task}}/all/1")[0].run

@@ -1,6 +1,6 @@
 """Tables, maps and numbers of the benchmark over arms, controllers and conditions."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -15,14 +15,14 @@ from runner.store import Run
 from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, Entry, Lead, tuned
 from runner.studies.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell, turned
 from runner.study.measured import Measured
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 
 _IN_A_TABLE = 4  # arms
 _NAMED = 5  # tied laws that are named
 _FAR = 1.1  # ratio of errors that three digits distinguish from one
 
 
-def best_laws(runs: Mapping[str, Run], question: str, caption: str) -> list[Table]:
+def best_laws(runs: Runs, question: str, caption: str) -> list[Table]:
     """Return the laws that none is shown to be ahead of, on each arm under each condition, and who is next.
 
     Args:
@@ -40,7 +40,7 @@ def best_laws(runs: Mapping[str, Run], question: str, caption: str) -> list[Tabl
     return tables
 
 
-def behind_the_best(runs: Mapping[str, Run], question: str, caption: str) -> Maps:
+def behind_the_best(runs: Runs, question: str, caption: str) -> Maps:
     """Return the error of every law over the smallest one as maps, an arm each; runs that failed are marked."""
     panels = []
     for arm in arms_of(runs):
@@ -54,7 +54,7 @@ def behind_the_best(runs: Mapping[str, Run], question: str, caption: str) -> Map
     return Maps(caption, "error over the smallest", panels, True, 1, any_origin(runs))
 
 
-def troubles(runs: Mapping[str, Run], question: str, gains: str, caption: str) -> Maps | Text:
+def troubles(runs: Runs, question: str, gains: str, caption: str) -> Maps | Text:
     """Return the failed repetitions of each law, in per cent, as one map for each arm; a sentence if none failed.
 
     Args:
@@ -74,7 +74,7 @@ def troubles(runs: Mapping[str, Run], question: str, gains: str, caption: str) -
     return Maps(caption, "repetitions that failed (%)", panels, False, 1, any_origin(runs))
 
 
-def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: str, caption: str) -> Curves:
+def error_against(runs: Runs, metric: str, label: str, condition: str, caption: str) -> Curves:
     """Return the error of each law in the first round against what another metric says of its torques, by arm.
 
     Args:
@@ -95,7 +95,7 @@ def error_against(runs: Mapping[str, Run], metric: str, label: str, condition: s
     return Curves(caption, panels, 2, any_origin(runs))
 
 
-def settings(runs: Mapping[str, Run], caption: str) -> Table:
+def settings(runs: Runs, caption: str) -> Table:
     """Return a table of the settings that all laws of an arm share, and their changes by the conditions."""
     titles = ("bandwidth", "period", "masses wrong by up to", "friction", "viscous friction", "encoder noise")
     rows = []
@@ -116,7 +116,7 @@ def settings(runs: Mapping[str, Run], caption: str) -> Table:
     return Table(caption, ["arm", *numbers(*titles)], rows, any_origin(runs))
 
 
-def spread(runs: Mapping[str, Run], question: str, caption: str) -> Table:
+def spread(runs: Runs, question: str, caption: str) -> Table:
     """Return a table of the spread of errors over tunings, by law and arm, with all wrong at once."""
     arms = arms_of(runs)
     rows = []
@@ -126,7 +126,7 @@ def spread(runs: Mapping[str, Run], question: str, caption: str) -> Table:
     return Table(caption, ["law", *numbers(*(ARMS[arm] for arm in arms))], rows, any_origin(runs))
 
 
-def failed(runs: Mapping[str, Run], gains: str, condition: str, *arms: str) -> list[Measured]:
+def failed(runs: Runs, gains: str, condition: str, *arms: str) -> list[Measured]:
     """Return the failed repetitions of each law under a condition, in per cent.
 
     Args:
@@ -166,12 +166,12 @@ def _chosen(gains: str) -> Sequence[str]:
     return () if gains == "tuned" else UNTUNED
 
 
-def any_origin(runs: Mapping[str, Run]) -> Origin:
+def any_origin(runs: Runs) -> Origin:
     """Return the origin of a table over several arms: the command of one of the runs."""
     return origin(found(runs, f"first/{{arm={arms_of(runs)[0]}}}/{{law}}/{{task}}/{{condition}}/{{gains}}")[0].run)
 
 
-def said(runs: Mapping[str, Run], arm: str, question: str, condition: str) -> str:
+def said(runs: Runs, arm: str, question: str, condition: str) -> str:
     """Return the answer to a question on an arm; where a later round changes it, that it does."""
     cell = all_cells(runs, arm, question)[condition]
     passed = turned(runs, arm, condition) if question == "learned" else ""
@@ -203,7 +203,7 @@ def _listed(value: object) -> str:
     return low if low == high else f"{low} to {high}"
 
 
-def typical(runs: Mapping[str, Run], arm: str, law: str, condition: str, gains: str, metric: str) -> float:
+def typical(runs: Runs, arm: str, law: str, condition: str, gains: str, metric: str) -> float:
     """Return the mean over the paths of the median of a metric; NaN where a run has none."""
     own = [one.run for one in found(runs, f"first/{arm}/{law}/{{task}}/{condition}/{gains}")]
     return float(np.mean([_median(run, metric) for run in own]))
@@ -214,18 +214,18 @@ def _median(run: Run, metric: str) -> float:
     return np.nan if median is None else float(median)
 
 
-def said_again(runs: Mapping[str, Run]) -> Measured:
+def said_again(runs: Runs) -> Measured:
     """Return of the leads that one half shows the share that the other half shows, too, in per cent."""
     said, again, _ = halves(runs)
     return Measured("leads that the other half shows, too", 100.0 * again / said if said else None, "%")
 
 
-def said_otherwise(runs: Mapping[str, Run]) -> Measured:
+def said_otherwise(runs: Runs) -> Measured:
     """Return the number of leads of one half that the other half shows reversed."""
     return Measured("leads that the other half turns round", float(halves(runs)[2]))
 
 
-def halves(runs: Mapping[str, Run]) -> tuple[int, int, int]:
+def halves(runs: Runs) -> tuple[int, int, int]:
     """Return the numbers of drawn leads: in both halves together, confirmed and reversed by the other half.
 
     They are those of the first question, which has seeds enough for two halves.
@@ -235,7 +235,7 @@ def halves(runs: Mapping[str, Run]) -> tuple[int, int, int]:
     return len(a) + len(b), 2 * len(a & b), 2 * len(turned)
 
 
-def _shown(runs: Mapping[str, Run], seeds: slice) -> set[tuple[str, str, tuple[str, str]]]:
+def _shown(runs: Runs, seeds: slice) -> set[tuple[str, str, tuple[str, str]]]:
     return {
         (arm, name, key)
         for arm in arms_of(runs)
@@ -248,7 +248,7 @@ def _shown(runs: Mapping[str, Run], seeds: slice) -> set[tuple[str, str, tuple[s
 _METRIC = "rms_tracking_error_last_period"
 
 
-def last_periods(runs: Mapping[str, Run], caption: str) -> Table:
+def last_periods(runs: Runs, caption: str) -> Table:
     """Return the error of each law in the last period, by arm and condition."""
     every = found(runs, "repeated/{arm}/{law}/{condition}")
     columns = dict.fromkeys((one.levels["arm"], one.levels["condition"]) for one in every)
@@ -261,7 +261,7 @@ def last_periods(runs: Mapping[str, Run], caption: str) -> Table:
     return Table(caption, header, [[in_words(law), *own] for law, own in rows.items()], origin(every[0].run))
 
 
-def over_learning(runs: Mapping[str, Run], condition: str, law: str, *arms: str) -> list[Measured]:
+def over_learning(runs: Runs, condition: str, law: str, *arms: str) -> list[Measured]:
     """Return the error of a law in the last period over that of iterative learning, on some arms, or on each."""
     told = []
     arm = f"{{arm={'|'.join(arms)}}}" if arms else "{arm}"

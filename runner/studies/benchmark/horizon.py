@@ -1,33 +1,31 @@
 """Sensitivity of the benchmark's result to later rounds, another speed and less tuning."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from runner.reporting.document import Table
 from runner.reporting.words import in_words
-from runner.store import Run
 from runner.studies.benchmark.cells import ROUND, Cell
 from runner.studies.benchmark.figures import answer, any_origin, error_words
 from runner.studies.benchmark.made import ARMS, CHANGES, CONDITIONS, LATER, all_cells, arms_of, turned
 from runner.study.measured import Measured
+from runner.study.results import Runs
 
 _FIRST_TUNING = ("1",)
 
 
-def settled(runs: Mapping[str, Run], condition: str) -> Measured:
+def settled(runs: Runs, condition: str) -> Measured:
     """Return on how many arms the order of the first three laws stays to the last round, under a condition."""
     stays = sum(not turned(runs, arm, condition) for arm in arms_of(runs))
     return Measured(f"arms on which the order stays, {CONDITIONS[condition]}", float(stays))
 
 
-def passed_by(runs: Mapping[str, Run], condition: str, law: str) -> Measured:
+def passed_by(runs: Runs, condition: str, law: str) -> Measured:
     """Return on how many arms a law is the first to pass one of the first three in a later round."""
     passes = sum(turned(runs, arm, condition).startswith(f"{in_words(law)} passes ") for arm in arms_of(runs))
     return Measured(f"arms on which {in_words(law)} passes another law, {CONDITIONS[condition]}", float(passes))
 
 
-def rounds(runs: Mapping[str, Run], caption: str) -> Table:
+def rounds(runs: Runs, caption: str) -> Table:
     """Return a table of changes in the order of the first three laws between rounds, conditions by arms."""
     arms = arms_of(runs)
     rows = [
@@ -37,7 +35,7 @@ def rounds(runs: Mapping[str, Run], caption: str) -> Table:
     return Table(caption, ["condition", *(ARMS[arm] for arm in arms)], rows, any_origin(runs))
 
 
-def what_changes(runs: Mapping[str, Run], caption: str) -> Table:
+def what_changes(runs: Runs, caption: str) -> Table:
     """Return a table of the leading law with all wrong at once, for the judged case and each single change."""
     arms = arms_of(runs)
     columns = [_column(runs, arm) for arm in arms]
@@ -48,7 +46,7 @@ def what_changes(runs: Mapping[str, Run], caption: str) -> Table:
     return Table(caption, ["what is otherwise", *(ARMS[arm] for arm in arms)], rows, any_origin(runs))
 
 
-def grown(runs: Mapping[str, Run], condition: str, *laws: str) -> Measured:
+def grown(runs: Runs, condition: str, *laws: str) -> Measured:
     """Return the largest error in the last round over that in the round that is judged, of some laws, or of any."""
     after = LATER[-1]
     shares = [
@@ -66,7 +64,7 @@ def grown(runs: Mapping[str, Run], condition: str, *laws: str) -> Measured:
     return Measured(words, most if np.isfinite(most) else None)
 
 
-def _column(runs: Mapping[str, Run], arm: str) -> dict[str, Cell]:
+def _column(runs: Runs, arm: str) -> dict[str, Cell]:
     def of(question: str, after: int = ROUND) -> Cell:
         return all_cells(runs, arm, question, _FIRST_TUNING, after=after)["all"]
 

@@ -7,15 +7,15 @@ from runner.base.quantities import number
 from runner.reporting.document import Table, Text
 from runner.reporting.table import numbers
 from runner.reporting.words import in_words
-from runner.store import Run
 from runner.studies.benchmark.by_law import keys_of
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin
 from runner.studies.benchmark.made import ARMS, QUESTIONS, arms_of, laws_of
+from runner.study.results import Runs
 from runner.study.tunings import Ranges, key_of
 
 
-def at_ends(runs: Mapping[str, Run], ranges: Mapping[str, Ranges], caption: str) -> Table | Text:
+def at_ends(runs: Runs, ranges: Mapping[str, Ranges], caption: str) -> Table | Text:
     """Return the tuned values near an end of their range as a table; a sentence where there are none; see ends_of."""
     rows = ends_of(runs, ranges)
     if not rows:
@@ -24,7 +24,7 @@ def at_ends(runs: Mapping[str, Run], ranges: Mapping[str, Ranges], caption: str)
     return Table(caption, header, rows, any_origin(runs))
 
 
-def ends_of(runs: Mapping[str, Run], ranges: Mapping[str, Ranges]) -> list[list[str]]:
+def ends_of(runs: Runs, ranges: Mapping[str, Ranges]) -> list[list[str]]:
     """Return a row for each tuned value near an end of its range: law, arm, question, tuning, key, value, end.
 
     Args:

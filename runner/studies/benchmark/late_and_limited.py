@@ -1,7 +1,5 @@
 """Effects of delay and torque limits in the benchmark."""
 
-from collections.abc import Mapping
-
 import numpy as np
 from scipy.optimize import brentq
 
@@ -13,12 +11,12 @@ from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin, ratio, typical
 from runner.studies.benchmark.made import ARMS, CONDITIONS, arms_of, laws_of, one_cell
 from runner.study.measured import Measured
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 
 _LIMITED = {"limits_150": 1.5, "limits_110": 1.1, "limits_80": 0.8}
 
 
-def over_condition(runs: Mapping[str, Run], condition: str, other: str, law: str) -> list[Measured]:
+def over_condition(runs: Runs, condition: str, other: str, law: str) -> list[Measured]:
     """Return the error of a law under a condition over that under another one, on all arms."""
     return [
         Measured(
@@ -29,7 +27,7 @@ def over_condition(runs: Mapping[str, Run], condition: str, other: str, law: str
     ]
 
 
-def frequency_times_period(runs: Mapping[str, Run], arm: str) -> Measured:
+def frequency_times_period(runs: Runs, arm: str) -> Measured:
     """Return the natural frequency of an arm's untuned gains times its period."""
     one_cell(runs, arm, "delay_2")  # tells where there is none
     (run, *_) = (one.run for one in found(runs, f"first/{arm}/computed_torque/{{task}}/delay_2/{UNTUNED[0]}"))
@@ -62,7 +60,7 @@ def bearable(ticks: int) -> Measured:
     return Measured(f"stable with {ticks} ticks of delay", float(brentq(beyond, 0.1, 1.5)))
 
 
-def limits_over_need(runs: Mapping[str, Run]) -> list[Measured]:
+def limits_over_need(runs: Runs) -> list[Measured]:
     """Return each joint's torque limit over the share that it is to be of what the motions need, on all arms."""
     told = []
     for arm in arms_of(runs):
@@ -79,7 +77,7 @@ def limits_over_need(runs: Mapping[str, Run]) -> list[Measured]:
     return told
 
 
-def saturated(runs: Mapping[str, Run], caption: str) -> Maps:
+def saturated(runs: Runs, caption: str) -> Maps:
     """Return the ticks with a joint at its torque limit, in per cent, as one map for each arm."""
     panels = []
     for arm in arms_of(runs):
@@ -98,5 +96,5 @@ def _peaks(run: Run) -> list[float]:
     return [peak for peak in found if peak is not None]
 
 
-def _at_limit(runs: Mapping[str, Run], arm: str, law: str, condition: str) -> float:
+def _at_limit(runs: Runs, arm: str, law: str, condition: str) -> float:
     return float(np.mean([typical(runs, arm, law, condition, own, "saturation_fraction") for own in tuned(runs)]))

@@ -1,16 +1,14 @@
 """Benchmark results by arm, controller and condition."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from runner.base.data_file import read_data
 from runner.reporting.answers import SHARE
 from runner.reporting.words import in_words
-from runner.store import Run
 from runner.studies.benchmark.cells import ALL_SEEDS, ROUND, Cell, cells
-from runner.study.job import LeftOutError, Results
-from runner.study.prose.patterns import found
+from runner.study.results import LeftOutError, Runs, found
 
 _WORDS = read_data(Path(__file__).with_name("words.yaml"), dict[str, dict[str, Any]])
 ARMS, QUESTIONS, CONDITIONS, CHANGES, LAWS = (
@@ -24,7 +22,7 @@ _FIRST = 3  # laws whose order is to stay
 
 
 def all_cells(
-    runs: Mapping[str, Run],
+    runs: Runs,
     arm: str,
     question: str = "first",
     gains: Sequence[str] = (),
@@ -33,16 +31,14 @@ def all_cells(
 ) -> dict[str, Cell]:
     """Return each law's results on an arm, by condition, in one order; see cells. `question` is one of QUESTIONS."""
     key = (arm, question, tuple(gains), seeds.start, seeds.step, after)
-    kept: dict[object, dict[str, Cell]] = runs.derived if isinstance(runs, Results) else {}
+    kept: dict[object, dict[str, Cell]] = runs.derived
     if key not in kept:
         made = cells(runs, arm, question, seeds, gains, after=after)
         kept[key] = {condition: made[condition] for condition in (*CONDITIONS, *CHANGES) if condition in made}
     return kept[key]
 
 
-def one_cell(
-    runs: Mapping[str, Run], arm: str, condition: str, question: str = "first", gains: Sequence[str] = ()
-) -> Cell:
+def one_cell(runs: Runs, arm: str, condition: str, question: str = "first", gains: Sequence[str] = ()) -> Cell:
     """Return the results of the laws on an arm under a condition; see all_cells.
 
     Raises:
@@ -54,7 +50,7 @@ def one_cell(
     return found_there[condition]
 
 
-def turned(runs: Mapping[str, Run], arm: str, condition: str) -> str:
+def turned(runs: Runs, arm: str, condition: str) -> str:
     """Return a sentence on the first later round in which one of the first three laws is passed; empty if none is.
 
     One law passes another where it is behind by more than 2 % in the round that is judged, and ahead by more later.
@@ -70,13 +66,12 @@ def turned(runs: Mapping[str, Run], arm: str, condition: str) -> str:
     return ""
 
 
-def arms_of(runs: Mapping[str, Run]) -> list[str]:
+def arms_of(runs: Runs) -> list[str]:
     """Return the arms of the runs, in one order."""
-    names = [*runs, *(runs.missing if isinstance(runs, Results) else ())]
-    there = {name.split("/")[1] for name in names if name.startswith("first/")}
+    there = runs.levels("first", "arm")
     return [arm for arm in ARMS if arm in there]
 
 
-def laws_of(runs: Mapping[str, Run], arm: str) -> list[str]:
+def laws_of(runs: Runs, arm: str) -> list[str]:
     """Return the laws that were run on an arm, in the order of the plan."""
     return list(dict.fromkeys(one.levels["law"] for one in found(runs, f"first/{arm}/{{law}}/{{task}}/exact/untuned")))

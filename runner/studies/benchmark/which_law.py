@@ -1,16 +1,14 @@
 """Error ratios between controllers, and the effect of tuning, on all arms."""
 
-from collections.abc import Mapping
-
 from runner.reporting.words import in_words
-from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED
 from runner.studies.benchmark.figures import ratio
 from runner.studies.benchmark.made import ARMS, CONDITIONS, QUESTIONS, arms_of, one_cell
 from runner.study.measured import Measured
+from runner.study.results import Runs
 
 
-def times(runs: Mapping[str, Run], question: str, condition: str, law: str, other: str, *arms: str) -> list[Measured]:
+def times(runs: Runs, question: str, condition: str, law: str, other: str, *arms: str) -> list[Measured]:
     """Return the error of a law over that of another one on some arms, of all where none is named."""
     return [
         Measured(
@@ -22,9 +20,7 @@ def times(runs: Mapping[str, Run], question: str, condition: str, law: str, othe
     ]
 
 
-def sure_leads(
-    runs: Mapping[str, Run], question: str, condition: str, law: str, other: str, *arms: str
-) -> list[Measured]:
+def sure_leads(runs: Runs, question: str, condition: str, law: str, other: str, *arms: str) -> list[Measured]:
     """Return the lower end of the interval of another law's error over that of a law, on some arms, or on all.
 
     A law that is not behind has none.
@@ -38,13 +34,13 @@ def sure_leads(
     return told
 
 
-def in_front(runs: Mapping[str, Run], question: str, condition: str, law: str) -> Measured:
+def in_front(runs: Runs, question: str, condition: str, law: str) -> Measured:
     """Return on how many arms no law is shown to be ahead of a law."""
     there = sum(law in one_cell(runs, arm, condition, question).groups[0] for arm in arms_of(runs))
     return Measured(f"arms on which none is ahead of {in_words(law)}, {_asked(question, condition)}", float(there))
 
 
-def untuned_over_tuned(runs: Mapping[str, Run], condition: str, law: str) -> list[Measured]:
+def untuned_over_tuned(runs: Runs, condition: str, law: str) -> list[Measured]:
     """Return the error of a law with the gains of the arm's bandwidth over that with tuned ones, on all arms."""
     told = []
     for arm in arms_of(runs):

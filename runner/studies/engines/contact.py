@@ -1,12 +1,13 @@
 """Impact compared with its closed form, and contact of a tool with walls, on every plant."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.store import Run
+from runner.study.results import Runs
 
 _ALONG = 1  # the hammer's joint that hits, counted from 0
 
@@ -52,7 +53,7 @@ def closed_form_peak(run: Run) -> float:
     return drive + math.sqrt(drive**2 + 2.0 * float(wall["stiffness"]) * drive * float(wall["distance"]))
 
 
-def damped_by_step(runs: Mapping[str, Run]) -> Callable[[float], float]:
+def damped_by_step(runs: Runs) -> Callable[[float], float]:
     """Return the closed form of the restitution on a spring that is solved at the end of each step, to first order.
 
     It loses what a damper of k h loses: of an impact of half a period at w = sqrt(k / m), pi w h / 2.
@@ -60,7 +61,7 @@ def damped_by_step(runs: Mapping[str, Run]) -> Callable[[float], float]:
     return lambda h: 1.0 - 0.5 * math.pi * _frequency(runs["impact/PyBullet/0.001"]) * h
 
 
-def driven_by_step(runs: Mapping[str, Run]) -> Callable[[float], float]:
+def driven_by_step(runs: Runs) -> Callable[[float], float]:
     """Return that of a spring whose force is held for each step, on average half a step late: a gain of pi w h / 4."""
     return lambda h: 1.0 + 0.25 * math.pi * _frequency(runs["impact/PyBullet/0.001"]) * h
 

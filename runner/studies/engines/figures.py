@@ -1,7 +1,7 @@
 """Arm names and unrounded numbers for the chapters of the engines study."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
@@ -10,8 +10,8 @@ from runner.store import Run
 from runner.studies.engines.side_by_side import difference, mujoco_of
 from runner.study.measured import Measured
 from runner.study.prose.blocks import of_run
-from runner.study.prose.patterns import found
 from runner.study.prose.signals import distance
+from runner.study.results import Runs, found
 
 Told = Callable[..., float | None]
 
@@ -41,7 +41,7 @@ def order(coarse: Run, fine: Run, reference: Run) -> float:
     return math.log2(tip_distance(coarse, reference) / tip_distance(fine, reference))
 
 
-def orders(runs: Mapping[str, Run], coarse: str, fine: str, *plants: str) -> list[Measured]:
+def orders(runs: Runs, coarse: str, fine: str, *plants: str) -> list[Measured]:
     """Return the order of some plants on each arm, from one step to half of it."""
     return [
         of_run(runs, f"order of {plant}, {arm}", order, "1", f"{own}/{coarse}", f"{own}/{fine}", reference)
@@ -51,7 +51,7 @@ def orders(runs: Mapping[str, Run], coarse: str, fine: str, *plants: str) -> lis
     ]
 
 
-def apart_as_share(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
+def apart_as_share(runs: Runs, plant: str, other: str) -> list[Measured]:
     """Return the distance of a plant from another one at 1 ms on each arm, relative to its error."""
     return [
         of_run(runs, f"{plant} from {other}, {arm}", share_of, "1", *names, reference)
@@ -60,12 +60,12 @@ def apart_as_share(runs: Mapping[str, Run], plant: str, other: str) -> list[Meas
     ]
 
 
-def _arms(runs: Mapping[str, Run]) -> list[tuple[str, str]]:
+def _arms(runs: Runs) -> list[tuple[str, str]]:
     """Return the name of each arm in the runs, and that of its reference."""
     return [(one.levels["arm"], one.name) for one in found(runs, "reference/{arm}/rk4/5e-05")]
 
 
-def tracking_error_apart(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
+def tracking_error_apart(runs: Runs, plant: str, other: str) -> list[Measured]:
     """Return the relative difference of the largest axis errors on two plants, on each arm."""
     return [
         Measured(f"{plant} from {other}, {arm}", _apart(one.run, runs[f"closed/{arm}/{other}"]))
@@ -74,7 +74,7 @@ def tracking_error_apart(runs: Mapping[str, Run], plant: str, other: str) -> lis
     ]
 
 
-def distances(runs: Mapping[str, Run], plant: str, other: str) -> list[Measured]:
+def distances(runs: Runs, plant: str, other: str) -> list[Measured]:
     """Return the largest distance of the tips on two plants on each arm, in m."""
     return [
         of_run(runs, f"{plant} from {other}, {arm}", tip_distance, "m", one.name, f"closed/{arm}/{other}")

@@ -21,7 +21,7 @@ from runner.studies.engines.side_by_side import (
     share,
 )
 from runner.study.measured import Measured
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 
 _TEXTBOOK = "planar"
 _LENGTH, _MASS, _RADIUS = 1.0, 1.0, 0.03  # of each of its links, in m and kg
@@ -48,7 +48,7 @@ class Compared:
     compiled: float
 
 
-def comparisons(runs: Mapping[str, Run], words: Mapping[str, str]) -> list[Compared]:
+def comparisons(runs: Runs, words: Mapping[str, str]) -> list[Compared]:
     """Return every arm that is moved by held torques, at random states, by all code bases; words name the arms."""
     return [_compare(words[one.levels["arm"]], one.run) for one in found(runs, "open/{arm}/MuJoCo Euler/0.001")]
 
@@ -86,7 +86,7 @@ def worst(compared: list[Compared]) -> dict[str, Measured]:
     }
 
 
-def textbook(runs: Mapping[str, Run]) -> Measured:
+def textbook(runs: Runs) -> Measured:
     """Return the largest relative difference of the engines' mass matrices of the two links from the textbook's."""
     run = runs[f"open/{_TEXTBOOK}/MuJoCo Euler/0.001"]
     model, bullet, mujoco = run.model, bullet_of(run), mujoco_of(run)

@@ -22,9 +22,9 @@ from runner.studies.meca500.plan import law_in
 from runner.study.claims import judged_statements
 from runner.study.measured import ROUNDING, Measured
 from runner.study.prose.tables import Column
+from runner.study.results import Found, Results, Runs
 
-Calibrations = Mapping[str, Any]  # of Calibration
-Runs = Mapping[str, Run]
+Calibrations = Results[Any]  # of Calibration
 once = lru_cache(maxsize=256)  # of functions of a run, which several chapters call
 _STILL = 1e-4  # N, below which a force that swings is rounding
 
@@ -147,13 +147,18 @@ def nees_of(done: Calibration) -> dict[str, str]:
 
 
 def varied(words: Mapping[str, str]) -> Column:
-    """Return a column with the varied quantity of KIND/VARIATION/LEVEL, as text."""
-    return Column("varied", lambda _, row: words[row.name.split("/")[1]])
+    """Return a column with words for the axis that a row is about."""
+    return Column("varied", lambda _, row: words[next(iter(row.levels))])
 
 
 def amount(factors: Mapping[str, float]) -> Column:
-    """Return a column with the level in KIND/VARIATION/LEVEL, so many times by what is varied."""
-    return Column("value", lambda _, row: number(factors.get(row.name.split("/")[1], 1.0) * float(row.levels["level"])))
+    """Return a column with the level of the axis that a row is about, multiplied by the factor of this axis."""
+
+    def text(_: Runs, row: Found) -> str:
+        ((axis, level),) = row.levels.items()
+        return number(factors.get(axis, 1.0) * float(level))
+
+    return Column("value", text)
 
 
 def consistency(calibrations: Calibrations, kind: str) -> dict[str, Measured]:

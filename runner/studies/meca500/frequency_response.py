@@ -9,8 +9,9 @@ from runner.base.arrays import FloatArray
 from runner.controllers.force.admittance_filter import AXES, Admittance, discretise
 from runner.reporting.document import Panel, Series
 from runner.store import Run
-from runner.studies.meca500.figures import Runs, displacement, law_of, loads_of, once, servo_compliance
+from runner.studies.meca500.figures import displacement, law_of, loads_of, once, servo_compliance
 from runner.studies.meca500.plan import FREQUENCIES, REPORTED, SINE_CASES
+from runner.study.results import Runs
 
 ComplexArray = NDArray[np.complex128]
 

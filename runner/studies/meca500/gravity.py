@@ -14,10 +14,10 @@ from runner.reporting.table import Column as TableColumn
 from runner.reporting.table import Number, numbers
 from runner.robots import RobotModel
 from runner.store import Calibration
-from runner.studies.meca500.figures import Calibrations, Runs, degrees, error, flange_of, predicted, refusal, wrenches
+from runner.studies.meca500.figures import Calibrations, degrees, error, flange_of, predicted, refusal, wrenches
 from runner.study.measured import ROUNDING
-from runner.study.prose.patterns import Found, found
 from runner.study.prose.tables import Column
+from runner.study.results import Found, Runs, found
 
 _EXACT = "gravity/noise/0"
 _ORIENTATIONS = 300
@@ -58,12 +58,13 @@ def parameters(calibrations: Calibrations, name: str, caption: str) -> Table:
 
 
 def choice() -> Column:
-    """Return a column with how the orientations of gravity/CHOICE/LEVEL are chosen."""
+    """Return a column with how the orientations of a calibration are chosen."""
     words = {"best": "by conditioning", "first": "evenly over the joints"}
 
     def text(_: Runs, row: Found) -> str:
-        kind, level = row.name.split("/")[1:]
-        return words.get(kind, f"within {degrees(float(level)):.0f}° of home" if kind == "spread" else "")
+        if "spread" in row.levels:
+            return f"within {degrees(float(row.levels['spread'])):.0f}° of home"
+        return words[row.run.config["calibration"]["choice"]]
 
     return Column("orientations", text)
 

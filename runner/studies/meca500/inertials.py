@@ -8,8 +8,8 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.store import Run
-from runner.studies.meca500.figures import Runs
 from runner.study.measured import ROUNDING
+from runner.study.results import Runs
 
 _COUNT = 1000
 _LIGHT = 0.1  # kg and N m, below which a share means little

@@ -15,9 +15,9 @@ from runner.base.quantities import number
 from runner.reporting.document import Table
 from runner.robots.model import RobotModel
 from runner.studies.meca500.equations.derivations.meca500 import TABLE
-from runner.studies.meca500.figures import Runs
 from runner.studies.meca500.modified_denavit_hartenberg import modified_frames
 from runner.study.measured import Measured
+from runner.study.results import Runs
 
 _COUNT, _SAMPLES = 1000, 200
 _MILLIMETRES = 1000.0

@@ -13,6 +13,7 @@ from runner.controllers.stability import stiffest_wall
 from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.study.grid import Overrides
 from runner.study.grids import FILE, Grids
+from runner.study.results import Parts, parts_of
 
 GRIDS = Grids(Path(__file__).with_name(FILE))
 REPORTED = GRIDS.value("step", "reported")  # s, between two reports of the real controller
@@ -34,8 +35,8 @@ def law_in(config: Mapping[str, Any]) -> Admittance:
     return Admittance(*(np.array(config["controller"][key]) for key in ("mass", "damping", "stiffness")))
 
 
-def computed_runs() -> dict[str, Overrides]:
-    """Return the runs whose overrides are computed, by name."""
+def computed_runs() -> dict[Parts, Overrides]:
+    """Return the runs whose overrides are computed, by the parts of their names."""
     return {**_map(), **_rests()}
 
 
@@ -48,21 +49,22 @@ def calibrations(given: Mapping[str, Overrides]) -> dict[str, Overrides]:
     jobs: dict[str, Overrides] = {}
     seeds = 0
     for name, overrides in given.items():
-        grid, _, level = name.rpartition("/")
-        if level != "base" and GRIDS.grid(grid).values.get("base") == float(level):
-            jobs[name] = jobs[f"{grid.partition('/')[0]}/base"]
+        (_, procedure), (_, varied), *axes = GRIDS.parts[name]
+        base = GRIDS.grid(f"{procedure}/{varied}").values.get("base") if axes else None
+        if base is not None and base == float(axes[0][1]):
+            jobs[name] = jobs[f"{procedure}/base"]
         else:
             jobs[name] = (*overrides, f"seed={seeds}")
             seeds += 1
     return jobs
 
 
-def _map() -> dict[str, Overrides]:
+def _map() -> dict[Parts, Overrides]:
     """Return the law of the stability map on ideal joints at walls about their bound, by period and share."""
     own_law, base, shares = law(), GRIDS.grid(_WALLS).with_, GRIDS.levels(_WALLS, "share", float)
     bounds = {period: stiffest_wall(own_law, period, 0, 0.0, 0) for period in _PERIODS}
     return {
-        f"map/kinematic/{period}/{share}": (
+        parts_of("map/kinematic/{period}/{share}", {"period": period, "share": share}): (
             *base,
             f"controller.period={period}",
             f"environment.stiffness={share * bound:.5g}",
@@ -72,13 +74,15 @@ def _map() -> dict[str, Overrides]:
     }
 
 
-def _rests() -> dict[str, Overrides]:
+def _rests() -> dict[Parts, Overrides]:
     """Return the tool weighed at rest in postures inside the joint limits, turned by half a turn at most."""
     model = RobotModel(read_urdf(find_urdf("meca500.urdf"), {}), "flange")
     low, high = np.clip(model.position_limits, -np.pi, np.pi)
     homes = np.random.default_rng(0).uniform(low, high, (ORIENTATIONS, 6))
-    jobs: dict[str, Overrides] = {}
+    jobs: dict[Parts, Overrides] = {}
     for number, home in enumerate(homes):
         posture = f"robot.home={home.round(6).tolist()}".replace(" ", "")
-        jobs[f"rest/{number}"] = ("experiment=meca500/weighing", posture, "wrist_sensor=mini40", f"seed={number}")
+        seed = f"seed={number}"
+        rest = parts_of("rest/{posture}", {"posture": number})
+        jobs[rest] = ("experiment=meca500/weighing", posture, "wrist_sensor=mini40", seed)
     return jobs

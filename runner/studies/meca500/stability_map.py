@@ -15,9 +15,9 @@ from runner.metrics.caveats.contact_stability import servo_contact
 from runner.plants.servo_contact_stability import ServoContact, contact_radius, stiffest_servo_wall
 from runner.reporting.document import Panel, Series
 from runner.store import Run
-from runner.studies.meca500.figures import Runs, bounces, law_of, once
+from runner.studies.meca500.figures import bounces, law_of, once
 from runner.studies.meca500.plan import law
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 
 
 @once

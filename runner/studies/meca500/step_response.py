@@ -10,8 +10,9 @@ from runner.base.quantities import quantity
 from runner.controllers.force.admittance_filter import AXES
 from runner.reporting.document import Panel, Series
 from runner.store import Run
-from runner.studies.meca500.figures import Runs, added_inertia, displacement, law_of, loads_of, once, servo_compliance
+from runner.studies.meca500.figures import added_inertia, displacement, law_of, loads_of, once, servo_compliance
 from runner.studies.meca500.frequency_response import step_response
+from runner.study.results import Runs
 
 _SHOWN = ("kinematic, 1 ms", "kinematic, 16.7 ms", "servo, 1 ms", "servo, 16.7 ms")
 

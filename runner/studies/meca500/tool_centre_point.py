@@ -10,7 +10,7 @@ from runner.sensing.wrench import cross_matrix
 from runner.store import Calibration
 from runner.studies.meca500.figures import Calibrations, fit, flange_of, predicted, refusal
 from runner.study.measured import Measured
-from runner.study.prose.patterns import found
+from runner.study.results import found
 
 _KIND = "tool_centre_point"
 
@@ -23,8 +23,8 @@ def deviation(done: Calibration) -> float:
 
 def power_of_spread(calibrations: Calibrations) -> Measured:
     """Return the power of the spread with which the predicted error goes."""
-    done = found(calibrations, f"{_KIND}/spread/{{level}}")
-    spreads = np.array([float(each.levels["level"]) for each in done])
+    done = found(calibrations, f"{_KIND}/spread/{{spread}}")
+    spreads = np.array([float(each.levels["spread"]) for each in done])
     errors = np.array([predicted()(calibrations[each.name]) for each in done])
     return Measured("power of the spread in the predicted error", fit(spreads, errors))
 

@@ -13,9 +13,9 @@ from runner.sensing.force_torque import AXES as SENSOR_AXES
 from runner.sensing.force_torque import ForceTorqueConfig
 from runner.sensing.wrench import wrench_transform
 from runner.store import Run
-from runner.studies.meca500.figures import Runs, displacement, fit, law_of, wrenches
+from runner.studies.meca500.figures import displacement, fit, law_of, wrenches
 from runner.study.measured import Measured
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 from runner.study.run_values import values
 
 

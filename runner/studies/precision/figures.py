@@ -1,6 +1,6 @@
 """Figure, tables and numbers of the precision study."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -8,9 +8,9 @@ from runner.base.quantities import number, quantity
 from runner.reporting.document import Curves, Panel, Series, Table
 from runner.reporting.figures import origin
 from runner.reporting.table import Column, numbers
-from runner.store import Run
 from runner.studies.precision.tried import COMPILED, PLANTS, Tried, allowed_error, by_steps, knee, order, solutions
 from runner.study.measured import Measured
+from runner.study.results import Runs
 
 _ARMS = {"macro": "Macro", "combined": "Mini on Macro", "xarm7": "xArm7"}
 _CASES = {"free": "free", "control": "under control"}
@@ -24,7 +24,7 @@ def plants(first: int, last: int) -> tuple[str, ...]:
     return PLANTS[first:last]
 
 
-def accuracy(runs: Mapping[str, Run], caption: str) -> Curves:
+def accuracy(runs: Runs, caption: str) -> Curves:
     """Return the tip's error over the computing time, a panel for each arm and case, a line for each plant."""
     panels = []
     for case, arm in _PAIRS:
@@ -46,7 +46,7 @@ def accuracy(runs: Mapping[str, Run], caption: str) -> Curves:
     return Curves(caption, panels, 2, origin(next(iter(runs.values()))))
 
 
-def reference_table(runs: Mapping[str, Run], caption: str) -> Table:
+def reference_table(runs: Runs, caption: str) -> Table:
     """Return a table of the differences between the ways to the solution."""
     header = numbers("another method (rad)", "coarser tolerance (rad)", "energy")
 
@@ -57,12 +57,12 @@ def reference_table(runs: Mapping[str, Run], caption: str) -> Table:
     return _table(runs, caption, header, cells)
 
 
-def orders_table(runs: Mapping[str, Run], caption: str) -> Table:
+def orders_table(runs: Runs, caption: str) -> Table:
     """Return the order of each plant."""
     return _by_plant(runs, caption, lambda tried, _: number(order(tried), 3, zeros=True), numeric=True)
 
 
-def errors(runs: Mapping[str, Run], caption: str) -> Table:
+def errors(runs: Runs, caption: str) -> Table:
     """Return the largest joint error of each plant by its largest and its smallest step."""
     header = [f"{plant} (rad)" for plant in PLANTS[:3]]
 
@@ -73,7 +73,7 @@ def errors(runs: Mapping[str, Run], caption: str) -> Table:
     return _table(runs, caption, header, cells)
 
 
-def knees(runs: Mapping[str, Run], caption: str) -> Table:
+def knees(runs: Runs, caption: str) -> Table:
     """Return the step of each plant below which a smaller one does not pay, and the joint error left there."""
 
     def cell(tried: list[Tried], _: float) -> str:
@@ -83,7 +83,7 @@ def knees(runs: Mapping[str, Run], caption: str) -> Table:
     return _by_plant(runs, caption, cell)
 
 
-def recommended(runs: Mapping[str, Run], caption: str) -> Table:
+def recommended(runs: Runs, caption: str) -> Table:
     """Return the largest step of each plant whose error is small enough, and its computing time."""
 
     def cell(tried: list[Tried], allowed: float) -> str:
@@ -93,28 +93,28 @@ def recommended(runs: Mapping[str, Run], caption: str) -> Table:
     return _by_plant(runs, caption, cell, "error allowed")
 
 
-def of_solutions(runs: Mapping[str, Run], words: str, key: str, way: str = "", unit: str = "1") -> list[Measured]:
+def of_solutions(runs: Runs, words: str, key: str, way: str = "", unit: str = "1") -> list[Measured]:
     """Return a number of the solution of each case and arm that has it, such as its distance from another way to it."""
     known = {name: own[key][way] if way else own[key] for name, own in solutions(runs).items()}
     return [Measured(f"{words}: {name}", float(own), unit) for name, own in known.items() if own is not None]
 
 
-def orders(runs: Mapping[str, Run], words: str, *plants: str) -> list[Measured]:
+def orders(runs: Runs, words: str, *plants: str) -> list[Measured]:
     """Return the order of some plants on each arm and case."""
     return _each(runs, words, "1", lambda tried, _: order(tried), *plants)
 
 
-def left_at_finest(runs: Mapping[str, Run], words: str, *plants: str) -> list[Measured]:
+def left_at_finest(runs: Runs, words: str, *plants: str) -> list[Measured]:
     """Return the joint error of some plants on each arm and case by their smallest step, in rad."""
     return _each(runs, words, "rad", lambda tried, _: tried[-1].joints, *plants)
 
 
-def by_whole_periods(runs: Mapping[str, Run], words: str) -> list[Measured]:
+def by_whole_periods(runs: Runs, words: str) -> list[Measured]:
     """Return the tip's error over that allowed, of Runge-Kutta by its largest step."""
     return _each(runs, words, "1", lambda tried, allowed: tried[0].tip / allowed, COMPILED)
 
 
-def compiled_apart(runs: Mapping[str, Run], words: str) -> list[Measured]:
+def compiled_apart(runs: Runs, words: str) -> list[Measured]:
     """Return the largest difference between the errors of Runge-Kutta, compiled and by Pinocchio, in rad."""
 
     def apart(case: str, arm: str) -> float:
@@ -124,12 +124,12 @@ def compiled_apart(runs: Mapping[str, Run], words: str) -> list[Measured]:
     return [Measured(f"{words}: {_ARMS[arm]}, {_CASES[case]}", apart(case, arm), "rad") for case, arm in _PAIRS]
 
 
-def without_knee(runs: Mapping[str, Run], words: str, *plants: str) -> Measured:
+def without_knee(runs: Runs, words: str, *plants: str) -> Measured:
     """Return the number of arms and cases in which some plants gain by every smaller step that was tried."""
     return _count(runs, words, lambda tried, _: knee(tried), *plants)
 
 
-def without_step(runs: Mapping[str, Run], words: str, *plants: str) -> Measured:
+def without_step(runs: Runs, words: str, *plants: str) -> Measured:
     """Return the number of arms and cases in which no step of some plants leaves an error that is small enough."""
     return _count(runs, words, large_enough, *plants)
 
@@ -140,7 +140,7 @@ def large_enough(tried: list[Tried], allowed: float) -> Tried | None:
 
 
 def _each(
-    runs: Mapping[str, Run], words: str, unit: str, of: Callable[[list[Tried], float], float | None], *plants: str
+    runs: Runs, words: str, unit: str, of: Callable[[list[Tried], float], float | None], *plants: str
 ) -> list[Measured]:
     return [
         Measured(f"{words}: {plant}, {_ARMS[arm]}, {_CASES[case]}", of(*_tried(runs, case, arm, plant)), unit)
@@ -149,19 +149,17 @@ def _each(
     ]
 
 
-def _count(
-    runs: Mapping[str, Run], words: str, of: Callable[[list[Tried], float], Tried | None], *plants: str
-) -> Measured:
+def _count(runs: Runs, words: str, of: Callable[[list[Tried], float], Tried | None], *plants: str) -> Measured:
     found = [of(*_tried(runs, case, arm, plant)) for plant in plants for case, arm in _PAIRS]
     return Measured(words, found.count(None))
 
 
-def _tried(runs: Mapping[str, Run], case: str, arm: str, plant: str) -> tuple[list[Tried], float]:
+def _tried(runs: Runs, case: str, arm: str, plant: str) -> tuple[list[Tried], float]:
     return by_steps(runs, case, arm, plant), allowed_error(runs, case, arm)
 
 
 def _by_plant(
-    runs: Mapping[str, Run], caption: str, cell: Callable[[list[Tried], float], str], allowed: str = "",
+    runs: Runs, caption: str, cell: Callable[[list[Tried], float], str], allowed: str = "",
     numeric: bool = False,
 ) -> Table:  # fmt: skip
     """Return a table with a column for each plant, behind one for the error that is allowed if it has a title."""
@@ -174,8 +172,6 @@ def _by_plant(
     return _table(runs, caption, [allowed, *plants] if allowed else plants, cells)
 
 
-def _table(
-    runs: Mapping[str, Run], caption: str, header: Sequence[str | Column], cells: Callable[[str, str], list[str]]
-) -> Table:
+def _table(runs: Runs, caption: str, header: Sequence[str | Column], cells: Callable[[str, str], list[str]]) -> Table:
     rows = [[_ARMS[arm], _CASES[case], *cells(case, arm)] for case, arm in _PAIRS]
     return Table(caption, ["arm", "moves", *header], rows, origin(next(iter(runs.values()))))

@@ -56,8 +56,9 @@ def measure(outputs: Path) -> None:
     """
     path = outputs / FILE
     cases: dict[str, dict[str, RunConfig]] = {}
-    for name, overrides in Grids(Path(__file__).parent / RUNS).runs.items():
-        case, arm, plant, step = name.split("/")
+    grids = Grids(Path(__file__).parent / RUNS)
+    for name, overrides in grids.runs.items():
+        case, arm, plant, step = (text for _, text in grids.parts[name])
         if plant == PLANT:
             cases.setdefault(f"{case}/{arm}", {})[step] = validate(compose(overrides))
     hashes = {

@@ -11,8 +11,7 @@ import numpy as np
 
 from runner.store import Run
 from runner.studies.precision.measure import FILE, PLANT, load
-from runner.study.job import MissingError
-from runner.study.prose.patterns import found
+from runner.study.results import MissingError, Runs, found
 
 BY_PINOCCHIO, COMPILED = "Runge-Kutta, Pinocchio", "Runge-Kutta, compiled"
 PLANTS = ("PyBullet", "MuJoCo", COMPILED, BY_PINOCCHIO)
@@ -37,7 +36,7 @@ class Tried:
     seconds: float
 
 
-def by_steps(runs: Mapping[str, Run], case: str, arm: str, plant: str) -> list[Tried]:
+def by_steps(runs: Runs, case: str, arm: str, plant: str) -> list[Tried]:
     """Return a plant by its steps, the largest first."""
     kept = solutions(runs)[f"{case}/{arm}"]
     if plant == BY_PINOCCHIO:
@@ -71,13 +70,13 @@ def knee(tried: list[Tried]) -> Tried | None:
     return None
 
 
-def allowed_error(runs: Mapping[str, Run], case: str, arm: str) -> float:
+def allowed_error(runs: Runs, case: str, arm: str) -> float:
     """Return the error of the tip that is taken as small enough, in m."""
     run = found(runs, f"{case}/{arm}/{{plant={PLANT}}}/{{step}}")[0].run
     return _BAND * float(run.config["robot"]["settling_band"])
 
 
-def solutions(runs: Mapping[str, Run]) -> Mapping[str, Any]:
+def solutions(runs: Runs) -> Mapping[str, Any]:
     """Return the solution of each case and arm, stored next to the runs, with the additions of measure.py.
 
     Raises:

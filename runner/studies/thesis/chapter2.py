@@ -9,15 +9,15 @@ from runner.reporting.document import Picture, Table
 from runner.reporting.figures import origin
 from runner.reporting.table import numbers
 from runner.robots.workspace import analyse
-from runner.store import Run
 from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
 from runner.studies.thesis.diagrams.workspace import workspace_sphere
+from runner.study.results import Runs
 
 _SAMPLES = 4000
 
 
 def parameters(
-    runs: Mapping[str, Run], caption: str, figure: str, arms: Mapping[str, str], printed: Mapping[str, Sequence[str]]
+    runs: Runs, caption: str, figure: str, arms: Mapping[str, str], printed: Mapping[str, Sequence[str]]
 ) -> Table:
     """Return the parameters of some arms, by name, each with a run of it, and the printed ones below."""
     rows = []
@@ -42,7 +42,7 @@ def parameters(
     return Table(caption, header, rows, origin(runs[next(iter(arms.values()))], figure), prose=True)
 
 
-def workspace(runs: Mapping[str, Run], run: str, name: str, figure: str) -> Picture:
+def workspace(runs: Runs, run: str, name: str, figure: str) -> Picture:
     """Return the sphere of reach of an arm with sampled tip positions, and a cross-section by manipulability."""
     found = analyse(runs[run].model, _SAMPLES, np.random.default_rng(0))
     return Picture(

@@ -1,17 +1,17 @@
 """Controllers of the combined arm as executed, and its metrics compared with those of the Macro."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 from runner.reporting.document import Curves, Panel, Picture, Series
 from runner.reporting.figures import origin, rows_until
+from runner.reporting.words import PRESET
 from runner.store import Run
 from runner.studies.thesis.diagrams.block_diagram import block_diagram
 from runner.studies.thesis.diagrams.control_steps import control_steps
 from runner.studies.thesis.diagrams.macro_mini import macro_mini_graph
 from runner.studies.thesis.diagrams.whole_body import whole_body_graph
 from runner.studies.thesis.folding import singular_value
-from runner.study.job import PRESETS
+from runner.study.results import Runs
 
 _OF_COUPLED_LAWS = (
     *("coupling", "macro_target", "mini_reference_velocity", "wrist_rotation", "gravity_compensation", "feedforward"),
@@ -33,7 +33,7 @@ _DOES = {
 }
 
 
-def whole_body_law(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture:
+def whole_body_law(runs: Runs, run: str, caption: str, number: str) -> Picture:
     """Return the block diagram of the law for the whole arm that a run executed."""
     controller = runs[run].config["controller"]
     graph = whole_body_graph(
@@ -47,7 +47,7 @@ def whole_body_law(runs: Mapping[str, Run], run: str, caption: str, number: str)
     return Picture(caption, block_diagram(graph), _WHOLE_BODY, 0.68, origin(runs[run], number))
 
 
-def coupled_laws(runs: Mapping[str, Run], run: str, caption: str, number: str = "") -> Picture:
+def coupled_laws(runs: Runs, run: str, caption: str, number: str = "") -> Picture:
     """Return the block diagram of the two laws that a run executed."""
     config = runs[run].config
     controller = config["controller"]
@@ -62,13 +62,13 @@ def coupled_laws(runs: Mapping[str, Run], run: str, caption: str, number: str = 
     return Picture(caption, block_diagram(graph), words, 0.68, origin(runs[run], number))
 
 
-def steps(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture:
+def steps(runs: Runs, run: str, caption: str, number: str) -> Picture:
     """Return the flow chart of the control steps of method 3."""
     drawing = control_steps("both", "hold")
     return Picture(caption, drawing, "Flow chart of the control steps", 0.45, origin(runs[run], number))
 
 
-def shares(runs: Mapping[str, Run], caption: str, number: str, *names: str) -> Curves:
+def shares(runs: Runs, caption: str, number: str, *names: str) -> Curves:
     """Return curves of the ways of Macro and Mini to the desired tip, in x direction, a row for each run."""
     figures = [macro_mini_targets(runs[name], number, caption) for name in names]
     return replace(figures[0], panels=[panel for figure in figures for panel in figure.panels])
@@ -84,9 +84,9 @@ def folded(run: Run) -> float:
     return float(singular_value(run)[run.t >= run.t[-1] - 0.5].max())
 
 
-def spreads(runs: Mapping[str, Run], title: str, name: str, *metrics: str) -> list[str]:
+def spreads(runs: Runs, title: str, name: str, *metrics: str) -> list[str]:
     """Return the metrics of an experiment under each preset behind its title, as a row of a table."""
-    return [title, *(runs[f"{name}/{preset}"].metrics[metric].text for preset in PRESETS for metric in metrics)]
+    return [title, *(runs[f"{name}/{preset}"].metrics[metric].text for preset in PRESET for metric in metrics)]
 
 
 def macro_mini_targets(

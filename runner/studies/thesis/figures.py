@@ -1,7 +1,7 @@
 """Drawings and numbers of the chapters of the thesis study."""
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -18,8 +18,8 @@ from runner.studies.thesis.diagrams.frames import frame_assignment
 from runner.studies.thesis.diagrams.operational_space import operational_space_graph
 from runner.studies.thesis.equations.derivations.thesis_printed import compare
 from runner.study.measured import Measured
-from runner.study.prose.patterns import found
 from runner.study.prose.signals import norm, vector
+from runner.study.results import Runs, found
 from runner.study.run_values import values
 
 way_left = norm(vector("desired") - vector("macro_tip"))
@@ -34,17 +34,13 @@ _MEANINGS = {
 _BROKEN = 10.0  # times the tip error of the thesis' own Mini
 
 
-def frames(
-    runs: Mapping[str, Run], run: str, caption: str, arm: str, width: float, number: str, first: int, tip: str
-) -> Picture:
+def frames(runs: Runs, run: str, caption: str, arm: str, width: float, number: str, first: int, tip: str) -> Picture:
     """Return the joint axes and Denavit-Hartenberg frames of an arm at home, from its frame 0 by number to the tip."""
     words = f"{arm} at home with its joint axes and Denavit-Hartenberg frames"
     return Picture(caption, frame_assignment(runs[run].model, first, tip), words, width, origin(runs[run], number))
 
 
-def dh_table(
-    runs: Mapping[str, Run], run: str, caption: str, number: str, first: int, *printed: Sequence[str]
-) -> Table:
+def dh_table(runs: Runs, run: str, caption: str, number: str, first: int, *printed: Sequence[str]) -> Table:
     """Return the Denavit-Hartenberg table of an arm whose frame 0 has a number, with the printed row of each link."""
     rows = []
     for link, row in enumerate(denavit_hartenberg(runs[run].model), start=first + 1):
@@ -70,7 +66,7 @@ def _angle(value: float) -> str:
     return f"{head}$" if bottom == 1 else f"{head} slash {bottom}$"
 
 
-def printed_matrices(runs: Mapping[str, Run], run: str, caption: str, mini: bool, samples: int) -> Table:
+def printed_matrices(runs: Runs, run: str, caption: str, mini: bool, samples: int) -> Table:
     """Return a table of the largest differences between the thesis' corrected matrices and an arm's model."""
     differences = compare(runs[run].model, mini, samples, np.random.default_rng(0))
     rows = [
@@ -80,7 +76,7 @@ def printed_matrices(runs: Mapping[str, Run], run: str, caption: str, mini: bool
     return Table(caption, ["symbol", "quantity", *numbers("largest difference")], rows, origin(runs[run]), prose=True)
 
 
-def law(runs: Mapping[str, Run], run: str, caption: str, number: str) -> Picture:
+def law(runs: Runs, run: str, caption: str, number: str) -> Picture:
     """Return the block diagram of the law of one arm that a run executed."""
     controller, limited = runs[run].config["controller"], runs[run].config["torque_limits"]["max"] is not None
     goal = runs[run].config["trajectory"]["kind"] == "goal"
@@ -135,13 +131,13 @@ def lost_from(run: Run) -> float | None:
     return float(run.t[inside[-1] + 1 if len(inside) else 0]) if beyond[-1] else None
 
 
-def mass_of(runs: Mapping[str, Run], name: str, words: str = "mass of the Mini") -> Measured:
+def mass_of(runs: Runs, name: str, words: str = "mass of the Mini") -> Measured:
     """Return the mass of a run's Mini."""
     masses = runs[name].config["robot"]["stages"]["mini"]["masses"]
     return Measured(words, float(sum(masses.values())), "kg")
 
 
-def around_the_break(runs: Mapping[str, Run], payload: str) -> tuple[str, str]:
+def around_the_break(runs: Runs, payload: str) -> tuple[str, str]:
     """Return the runs of the heaviest Mini with which one-way control works without noise, and of the next one.
 
     It is broken if the tip's error is above ten times that of the thesis' Mini. Where none works, or none
@@ -155,7 +151,7 @@ def around_the_break(runs: Mapping[str, Run], payload: str) -> tuple[str, str]:
     return names[max(first - 1, 0)], names[min(first, len(names) - 1)]
 
 
-def fastest(runs: Mapping[str, Run], pattern: str) -> str:
+def fastest(runs: Runs, pattern: str) -> str:
     """Return the name of the run that settles first among those of a pattern; the first one where none settles."""
     times = {one.name: one.run.median("settling_time") for one in found(runs, pattern)}
     return min(times, key=lambda name: math.inf if times[name] is None else float(times[name] or 0.0))
@@ -169,11 +165,11 @@ def sag(run: Run) -> float:
     return float(np.linalg.norm(fall / run.config["controller"]["natural_frequency"] ** 2))
 
 
-def duration_of(runs: Mapping[str, Run], pattern: str, error: Measured, words: str) -> Measured:
+def duration_of(runs: Runs, pattern: str, error: Measured, words: str) -> Measured:
     """Return at which duration, between those of a pattern's runs, the largest axis error is that given."""
     tried = found(runs, pattern)
     errors = values((one.run for one in tried), "max_axis_error")
-    times = [float(one.levels["t_f"]) for one in tried]
+    times = [float(one.levels["duration"]) for one in tried]
     return Measured(words, float(np.interp(-float(error.value or 0.0), -errors, times)), "s")
 
 

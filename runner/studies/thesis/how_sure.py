@@ -1,6 +1,6 @@
 """Robustness of the verdicts: tables, a figure and numbers of the claims over many seeds."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -9,17 +9,16 @@ from runner.reporting.figures import origin
 from runner.reporting.published_claims import FACTOR, load_claims
 from runner.reporting.sweep.effects import at_texts
 from runner.reporting.words import PRESET
-from runner.store import Run
 from runner.studies.thesis.judged import Judged, judge_by_seeds
 from runner.study.measured import Measured
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 
-_RUNS = "sure/{figure}/{preset}/{seeds}"
+_RUNS = "sure/{figure}/{preset}/{repetitions}"
 _BESIDE = 0.12  # of a claim's place, so that the bars of both presets are seen
 _COLORS = {"as_reported": 1, "full_equations": 0}  # palette indices, as in all figures of the report
 
 
-def judged(runs: Mapping[str, Run]) -> list[Judged]:
+def judged(runs: Runs) -> list[Judged]:
     """Return every claim under every preset, judged by the seeds of the Runge-Kutta plant."""
     claims = load_claims("thesis")
     made = found(runs, _RUNS)
@@ -31,7 +30,7 @@ def judged(runs: Mapping[str, Run]) -> list[Judged]:
     return sorted(given, key=lambda each: each.claim.number)
 
 
-def around_printed(runs: Mapping[str, Run], caption: str, given: Sequence[Judged]) -> Curves:
+def around_printed(runs: Runs, caption: str, given: Sequence[Judged]) -> Curves:
     """Return simulated values over what they are compared with, between the factors within which a claim matches."""
     numbers = list(dict.fromkeys(each.claim.number for each in given))
     series: list[Series] = []

@@ -1,14 +1,14 @@
 """Stability limits with delayed and missed commands, and computing times of controllers."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
 from runner.controllers.stability import delay_limit, miss_limit, pattern_limit
 from runner.reporting.document import Series
 from runner.store import Run
-from runner.study.prose.patterns import found
 from runner.study.prose.signals import failed
+from runner.study.results import Runs, found
 
 _TOP = 1.0  # m, of the lines in figures
 _LOW = 1e-5
@@ -32,12 +32,12 @@ def as_predicted(run: Run) -> bool:
     return failed(run) == (rate(run) > bears(run))
 
 
-def limits(runs: Mapping[str, Run], pattern: str) -> list[Series]:
+def limits(runs: Runs, pattern: str) -> list[Series]:
     """Return an upright line, as long as the axis, at the limit of each of some runs, which differ only in it."""
     return _upright(bears(one.run) for one in found(runs, pattern))
 
 
-def miss_limits(runs: Mapping[str, Run], pattern: str) -> list[Series]:
+def miss_limits(runs: Runs, pattern: str) -> list[Series]:
     """Return an upright line at the probability of a miss up to which each rate is stable in the mean square."""
     return _upright(round(miss_limit(rate(one.run)), 9) for one in found(runs, pattern))
 

@@ -1,6 +1,6 @@
 """Flexible Macro: modes, stability limits and damping ratios from free vibration."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
@@ -14,6 +14,7 @@ from runner.studies.thesis_beyond.cantilever import frequency_errors
 from runner.studies.thesis_beyond.flexible_map import stable_and_not
 from runner.study.prose.plots import points
 from runner.study.prose.signals import moved, norm, vector
+from runner.study.results import Runs
 from runner.trajectories.impulses import zero_vibration
 
 _MACRO = 3  # its joints
@@ -30,7 +31,7 @@ _DISPLACED = norm(moved(vector("macro_tip")))  # m, of the Macro's end point fro
 _PARTS = (1, 2, 3, 4, 8, 16)
 
 
-def modes(runs: Mapping[str, Run], run: str, law: float) -> list[Series]:
+def modes(runs: Runs, run: str, law: float) -> list[Series]:
     """Return the Macro's modes at home in Hz against the stiffness of its joints, and a law's frequency in rad/s."""
     stiffness = np.array(_STIFFNESSES)
     rates = [np.sqrt(stiffness / mass) / (2.0 * np.pi) for mass in np.linalg.eigvalsh(_mass(runs[run]))[::-1]]
@@ -53,13 +54,13 @@ def grows(run: Run) -> bool:
     return bool(speed[-tenth:].max() > speed[5 * tenth : 6 * tenth].max())
 
 
-def motors_bear(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
+def motors_bear(runs: Runs, run: str) -> Callable[[float], float]:
     """Return the natural frequency in rad/s up to which the sampled law is stable by motors of an inertia in kg m^2."""
     heaviest, period = float(np.linalg.eigvalsh(_mass(runs[run]))[-1]), float(runs[run].config["controller"]["period"])
     return lambda inertia: 1.0 / (period * (1.0 + heaviest / inertia))
 
 
-def links_bear(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
+def links_bear(runs: Runs, run: str) -> Callable[[float], float]:
     """Return the largest stable natural frequency in rad/s of a first joint by encoders at links, by its resonance."""
     joints = runs[run].config["plant"]["flexible_joints"]
     link, motor = float(_mass(runs[run])[0, 0]), float(joints["motor_inertia"][0])
@@ -67,7 +68,7 @@ def links_bear(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
     return lambda resonance: share * resonance
 
 
-def map_of_motors(runs: Mapping[str, Run], run: str) -> list[Series]:
+def map_of_motors(runs: Runs, run: str) -> list[Series]:
     """Return the stability map of a run's law by encoders at the motors, over their inertia in kg m^2."""
     inertias, frequencies = np.geomspace(0.4, 10.0, _GRID), np.geomspace(8.0, 100.0, _GRID)
     return stable_and_not(
@@ -78,7 +79,7 @@ def map_of_motors(runs: Mapping[str, Run], run: str) -> list[Series]:
     )
 
 
-def map_of_links(runs: Mapping[str, Run], run: str) -> list[Series]:
+def map_of_links(runs: Runs, run: str) -> list[Series]:
     """Return the stability map of a run's law by encoders at the links, over the resonance of joint 1 in rad/s."""
     resonances, frequencies = np.geomspace(12.0, 120.0, _GRID), np.geomspace(0.5, 12.0, _GRID)
     motor = float(runs[run].config["plant"]["flexible_joints"]["motor_inertia"][0])
@@ -136,7 +137,7 @@ def closed_damping(run: Run, bare: Run) -> float:
     return 0.0
 
 
-def damping_line(runs: Mapping[str, Run], run: str, bare: str) -> Callable[[float], float]:
+def damping_line(runs: Runs, run: str, bare: str) -> Callable[[float], float]:
     """Return the closed form of inertial damping against its gain in 1/s, with the other numbers of a run."""
     return damping_by_gain(runs[run], runs[bare])
 
@@ -158,7 +159,7 @@ def shaped_line(kind: Literal["zv", "zvd"]) -> Callable[[float], float]:
     return lambda share: zero_vibration(kind, share, 0.0).residual(1.0)
 
 
-def off_the_line(runs: Mapping[str, Run], pattern: str, unshaped: str, kind: Literal["zv", "zvd"]) -> float:
+def off_the_line(runs: Runs, pattern: str, unshaped: str, kind: Literal["zv", "zvd"]) -> float:
     """Return by how much what runs leave of the vibration differs from the closed form, at most."""
     (left,) = points(runs, pattern, "share", left_of_vibration, "", unshaped)
     exact = np.array([shaped_line(kind)(float(share)) for share in left.x])

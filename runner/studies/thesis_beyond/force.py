@@ -1,6 +1,6 @@
 """Force control: rise times, effective masses, stiffest stable wall, impacts and sliding friction."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from runner.controllers.stability import force_loop_limit
 from runner.reporting.document import Series
 from runner.robots.task_space import mass_along, tip_mobility
 from runner.store import Run
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 from runner.study.run_values import delay_of
 
 _RISE = 3.3579  # of omega_c times the time from 10 % to 90 % of a critically damped step
@@ -155,7 +155,7 @@ def _last(value: object) -> float:
     return float(list(value.values())[-1] if isinstance(value, dict) else value)  # type: ignore[arg-type]
 
 
-def walls_tried(runs: Mapping[str, Run], name: str, bounce: bool, color: int) -> list[Series]:
+def walls_tried(runs: Runs, name: str, bounce: bool, color: int) -> list[Series]:
     """Return the walls on which runs come to rest, or bounce, as points: period of the law in ms, stiffness in N/m."""
     tried = [one.run for one in found(runs, "force/limit/{case}/{share}") if bounces(one.run) == bounce]
     periods = np.array([1e3 * _last(run.config["controller"]["period"]) for run in tried])
@@ -169,7 +169,7 @@ def beside_the_wall(run: Run) -> FloatArray:
     return np.asarray(np.linalg.norm(error - np.outer(error @ n, n), axis=1))
 
 
-def masses_around(runs: Mapping[str, Run], run: str, name: str, color: int) -> list[Series]:
+def masses_around(runs: Runs, run: str, name: str, color: int) -> list[Series]:
     """Return the mass of what pushes in each direction of the plane x = 0 where a run starts, as a curve in kg."""
     model, q = runs[run].model, runs[run].joints("q")[0]
     yields = tip_mobility(model, q, _first_that_pushes(runs[run]))

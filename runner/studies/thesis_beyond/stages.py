@@ -1,6 +1,6 @@
 """Three-stage arm: errors, effective masses and force bandwidths by stage."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
@@ -11,12 +11,13 @@ from runner.reporting.document import Series
 from runner.robots.task_space import tip_mobility
 from runner.store import Run
 from runner.studies.thesis_beyond.force import rise_time
+from runner.study.results import Runs
 
 _BANDWIDTH = float(np.sqrt(np.sqrt(2.0) - 1.0))  # over omega_c, of a critically damped loop, at -3 dB
 _POSTURES = 1000
 
 
-def rungs(runs: Mapping[str, Run], run: str, name: str, color: int) -> list[Series]:
+def rungs(runs: Runs, run: str, name: str, color: int) -> list[Series]:
     """Return the largest axis error of each stage's end point of a run, in m, as points at 1, 2, ..."""
     errors = [runs[run].median(metric) for metric in _errors(runs[run])]
     return [Series(name, np.arange(1.0, 1.0 + len(errors)), np.array(errors), "points_line", color=color)]

@@ -1,6 +1,6 @@
 """Quantities of a run that are not metrics: joint margins, lag, saturation, sag and drift."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -9,6 +9,7 @@ import pinocchio as pin
 from runner.base.quantities import number
 from runner.store import Run
 from runner.study.prose.signals import limit_margin
+from runner.study.results import Runs
 from runner.study.run_values import values
 
 ROWS = {"position": 3, "pose": 6}  # of the Jacobian, by the tip's task
@@ -32,7 +33,7 @@ def lag(run: Run, rate: float | None = None) -> float:
     return float(peak_speed(run) / (gain * (1.0 - 0.5 * gain * period)))
 
 
-def lag_at(runs: Mapping[str, Run], run: str) -> Callable[[float], float]:
+def lag_at(runs: Runs, run: str) -> Callable[[float], float]:
     """Return the closed form of a run's lag as a function of the rate of the commands, in Hz."""
     return partial(lag, runs[run])
 

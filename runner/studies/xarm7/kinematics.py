@@ -14,6 +14,7 @@ from runner.robots.model import RobotModel
 from runner.store import Run
 from runner.studies.xarm7.equations.derivations.xarm7 import JOINTS, constants
 from runner.studies.xarm7.parts.three_joint_kinematics import BRANCHES, MOVING, Branch, ThreeJointArm
+from runner.study.results import Runs
 
 CENTIMETRES = 100.0
 """One metre in the report's unit of length."""
@@ -77,7 +78,7 @@ _FIXED: dict[str, tuple[tuple[str, ...], float]] = {  # which formulas are put r
 }
 
 
-def off_the_model(runs: Mapping[str, Run], run: str, right: bool, count: int) -> tuple[float, float]:
+def off_the_model(runs: Runs, run: str, right: bool, count: int) -> tuple[float, float]:
     """Return the largest and the median distance of the printed tip, or of the right one, from a run's model, in m."""
     model = runs[run].model
     postures = random_postures(model, count)
@@ -85,7 +86,7 @@ def off_the_model(runs: Mapping[str, Run], run: str, right: bool, count: int) ->
     return float(distances.max()), float(np.median(distances))
 
 
-def fixed_errors(runs: Mapping[str, Run], run: str) -> list[tuple[str, float, float, float]]:
+def fixed_errors(runs: Runs, run: str) -> list[tuple[str, float, float, float]]:
     """Return the largest errors of q2, q4 and the tip along the line, for each way to put the formulas right."""
     arm, points, wrist = _arm(runs[run]), _line(runs[run]), float(runs[run].config["controller"]["wrist"])
     exact = _branch(runs[run], BRANCHES[0])[0][:, list(MOVING)]
@@ -98,7 +99,7 @@ def fixed_errors(runs: Mapping[str, Run], run: str) -> list[tuple[str, float, fl
     return rows
 
 
-def branch_rows(runs: Mapping[str, Run], *names: str) -> list[list[str]]:
+def branch_rows(runs: Runs, *names: str) -> list[list[str]]:
     """Return the joint positions along the lines of some runs, and the smallest margin: a row for each branch."""
     return [_branch_row(runs[name], branch) for branch in BRANCHES for name in names]
 
@@ -111,7 +112,7 @@ def _branch_row(run: Run, branch: Branch) -> list[str]:
     return [name, f"{_line(run)[0, 0]:g}", *ranges, f"{number(float(margins[worst]))} (q{worst + 1})"]
 
 
-def branch_rooms(runs: Mapping[str, Run], *names: str) -> list[list[float]]:
+def branch_rooms(runs: Runs, *names: str) -> list[list[float]]:
     """Return the smallest margin to a joint limit of each branch along each of some lines, in rad."""
     return [[float(_branch(runs[name], branch)[1].min()) for name in names] for branch in BRANCHES]
 

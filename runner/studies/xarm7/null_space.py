@@ -1,6 +1,6 @@
 """Effect of null-space motion on the tip, the joints and the manipulability of the arm."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
@@ -9,8 +9,8 @@ from runner.base.quantities import number
 from runner.reporting.document import Series
 from runner.store import Run
 from runner.study.measured import Measured
-from runner.study.prose.patterns import called, found
 from runner.study.prose.signals import manipulability
+from runner.study.results import Runs, called, found
 from runner.study.run_values import Signal, trace_of
 
 _ASIDE = [2, 4]  # the joints that lead the elbow out of the arm's vertical plane
@@ -39,7 +39,7 @@ def _cycle(run: Run) -> int:
     return round(float(run.config["trajectory"]["duration"]) / float(run.config["controller"]["period"]))
 
 
-def drift_by_cycle(runs: Mapping[str, Run], pattern: str) -> list[Series]:
+def drift_by_cycle(runs: Runs, pattern: str) -> list[Series]:
     """Return the drifts over the cycles, of each null-space task that a pattern stands for."""
     drift = {called("{task}", one.levels, {}): drifts(one.run) for one in found(runs, pattern)}
     return [Series(task, np.arange(1.0, own.size + 1.0), own, "points_line") for task, own in drift.items()]

@@ -1,7 +1,5 @@
 """Payload capacity of the joints, from their effort limits."""
 
-from collections.abc import Mapping
-
 import numpy as np
 from scipy.optimize import minimize
 
@@ -10,7 +8,7 @@ from runner.base.quantities import number
 from runner.reporting.document import Block, Notice, Series
 from runner.store import Run
 from runner.studies.xarm7.figures import SHOULDER
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 
 _PLANE = [1, 3, 5]  # the joints in the arm's vertical plane
 _GRID = 12  # angles of each, where the search for the widest posture begins
@@ -56,7 +54,7 @@ def stretched(run: Run) -> tuple[float, FloatArray]:
     return -float(found.fun), largest_payloads(unloaded, added, model.effort_limits)
 
 
-def along_the_line(runs: Mapping[str, Run], group: str) -> FloatArray:
+def along_the_line(runs: Runs, group: str) -> FloatArray:
     """Return the payload with which each joint meets its effort limit along a line, shape (nq,), in kg; see asked."""
     light, torque, added = _torques(runs, group)
     return largest_payloads(torque, added, light.model.effort_limits)
@@ -67,7 +65,7 @@ def others(payloads: FloatArray) -> float:
     return float(np.delete(payloads, SHOULDER).min())
 
 
-def limit_rows(runs: Mapping[str, Run], run: str, *payloads: FloatArray) -> list[list[str]]:
+def limit_rows(runs: Runs, run: str, *payloads: FloatArray) -> list[list[str]]:
     """Return the effort limit of each joint of a run's arm and payloads with which it is met: a row for each."""
     return [
         [f"q{joint + 1}", f"{limit:g}", *(_kilograms(each[joint]) for each in payloads)]
@@ -79,7 +77,7 @@ def _kilograms(mass: float) -> str:
     return number(float(mass)) if np.isfinite(mass) and mass < 100.0 else "above 100"
 
 
-def asked(runs: Mapping[str, Run], group: str, largest: float) -> list[Series]:
+def asked(runs: Runs, group: str, largest: float) -> list[Series]:
     """Return each joint's largest torque on the line over its effort limit, by the payload in kg.
 
     Two runs on ideal joints have names that begin so: one without payload and one with it.
@@ -90,7 +88,7 @@ def asked(runs: Mapping[str, Run], group: str, largest: float) -> list[Series]:
     return [Series(f"q{joint + 1}", masses, share) for joint, share in enumerate(shares.T)]
 
 
-def _torques(runs: Mapping[str, Run], group: str) -> tuple[Run, FloatArray, FloatArray]:
+def _torques(runs: Runs, group: str) -> tuple[Run, FloatArray, FloatArray]:
     """Return the run without payload, the torques asked of it, and what each kilogram adds, shapes (T, nq)."""
     light, heavy = (one.run for one in found(runs, f"{group}/{{mass}}"))
     unloaded, loaded = (run.joints("tau") for run in (light, heavy))
@@ -105,7 +103,7 @@ def lost_when(run: Run) -> str:
     return f"{run.t[int(np.argmax(beyond))]:.3g}" if beyond.any() else "not lost"
 
 
-def beyond_the_rating(runs: Mapping[str, Run]) -> list[Block]:
+def beyond_the_rating(runs: Runs) -> list[Block]:
     """Return a warning about payloads above the manufacturer's rating; empty if none is above it."""
     ours = [run for name, run in runs.items() if name.startswith("payload/")]
     texts = sorted({str(caveat["text"]) for run in ours for caveat in run.caveats if caveat["rule"] == "overload"})

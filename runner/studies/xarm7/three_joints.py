@@ -1,6 +1,6 @@
 """Line motion of the xArm7 with three joints: a picture, and quantities for the origin of the report's X."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
@@ -9,12 +9,13 @@ from runner.reporting.charts.arm import arm_motion
 from runner.reporting.document import Picture
 from runner.reporting.figures import origin
 from runner.store import Run
+from runner.study.results import Runs
 from runner.study.run_values import trace_of
 
 _STILLS = (0.0, 0.25, 0.5)  # of the period: at A, half way, at B
 
 
-def sketch(runs: Mapping[str, Run], run: str) -> Picture:
+def sketch(runs: Runs, run: str) -> Picture:
     """Return the arm at A, half way and at B in one picture."""
     shown, period = runs[run], float(runs[run].config["trajectory"]["duration"])
     rows = [int(np.searchsorted(shown.t, share * period - 1e-9)) for share in _STILLS]
@@ -39,7 +40,7 @@ def apart_in(*signals: str) -> Callable[[Run, Run], float]:
     return lambda run, other: max(float(np.abs(trace_of(each, run) - trace_of(each, other)).max()) for each in signals)
 
 
-def home_tip(runs: Mapping[str, Run], run: str) -> list[float]:
+def home_tip(runs: Runs, run: str) -> list[float]:
     """Return the tip's position at home, in m."""
     home: list[float] = runs[run].model.tip_position(np.array(runs[run].config["robot"]["home"])).tolist()
     return home
@@ -50,7 +51,7 @@ def reach(run: Run) -> float:
     return float(np.linalg.norm(run.vector("tip") - run.model.shoulder, axis=1).max())
 
 
-def joint_range(runs: Mapping[str, Run], run: str, joint: str) -> str:
+def joint_range(runs: Runs, run: str, joint: str) -> str:
     """Return the least and the largest position of a joint, as a cell of a table."""
     q = runs[run].signal(joint)
     return f"{q.min():.3f} to {q.max():.3f}"

@@ -14,7 +14,7 @@ from runner.store import Run
 from runner.studies.xarm7.figures import ROWS, line_length, smallest_margin
 from runner.studies.xarm7.kinematics import random_postures
 from runner.studies.xarm7.parts.xarm7_as_printed import PrintedJacobian
-from runner.study.prose.patterns import found
+from runner.study.results import Runs, found
 
 _COUNT, _SEED = 1000, 7  # of the random postures
 _ZERO = 7  # palette index of singular values that are zero except for rounding
@@ -52,7 +52,7 @@ def invert(jacobians: FloatArray) -> Inversion:
     )
 
 
-def inversions(runs: Mapping[str, Run]) -> dict[tuple[str, str], Inversion]:
+def inversions(runs: Runs) -> dict[tuple[str, str], Inversion]:
     """Return the inversions by the tip's task and by the kind of postures: random, or on the line."""
     model = runs["printed/position/working"].model
     everywhere = _true(model, random_postures(model, _COUNT, _SEED))
@@ -96,7 +96,7 @@ def inverse_values(tried: Mapping[tuple[str, str], Inversion]) -> dict[str, floa
     }
 
 
-def singular_values(runs: Mapping[str, Run], task: str) -> list[Series]:
+def singular_values(runs: Runs, task: str) -> list[Series]:
     """Return the singular values of J^T J of the right Jacobian along the line, over the tip's y in m."""
     rows, run = ROWS[task], runs[f"printed/{task}/working"]
     J = _along(runs, task)[:, :rows]
@@ -108,21 +108,21 @@ def singular_values(runs: Mapping[str, Run], task: str) -> list[Series]:
     ]
 
 
-def least_true_value(runs: Mapping[str, Run]) -> float:
+def least_true_value(runs: Runs) -> float:
     """Return the least of the singular values of J^T J along the line, of both tasks, that J's rows account for."""
     return min(float(np.min(each.y)) for each in _all_singular_values(runs) if each.style == "line")
 
 
-def largest_rounded_value(runs: Mapping[str, Run]) -> float:
+def largest_rounded_value(runs: Runs) -> float:
     """Return the largest of the others, which are zero except for rounding."""
     return max(float(np.max(each.y)) for each in _all_singular_values(runs) if each.style != "line")
 
 
-def _all_singular_values(runs: Mapping[str, Run]) -> list[Series]:
+def _all_singular_values(runs: Runs) -> list[Series]:
     return [series for task in ROWS for series in singular_values(runs, task)]
 
 
-def _along(runs: Mapping[str, Run], task: str) -> FloatArray:
+def _along(runs: Runs, task: str) -> FloatArray:
     """Return the right Jacobians along the line, from A to B, shape (N, 6, 7)."""
     run = runs[f"printed/{task}/working"]
     return _true(run.model, run.joints("q")[_to_b(run)])
@@ -149,7 +149,7 @@ def jacobians(model: RobotModel, postures: FloatArray, shifted: bool, mistaken: 
     return np.array([printed(q) for q in postures])
 
 
-def compare(runs: Mapping[str, Run], run: str) -> dict[str, FloatArray]:
+def compare(runs: Runs, run: str) -> dict[str, FloatArray]:
     """Return Jacobians at random postures and at those along a run's line, shapes (N, 6, 7).
 
     Those `as_printed`, with only `angles` wrong, with only the columns `shifted`, `fixed`, and the `true` ones;
@@ -193,14 +193,14 @@ def _largest(difference: FloatArray) -> float:
     return float(np.linalg.norm(difference, axis=1).max())
 
 
-def column_errors(runs: Mapping[str, Run], run: str, shifted: bool) -> list[Series]:
+def column_errors(runs: Runs, run: str, shifted: bool) -> list[Series]:
     """Return the error of each column's linear part with mistaken angles from A to B, over the tip's y in m."""
     model, line = runs[run].model, runs[run].joints("q")[_to_b(runs[run])]
     off = np.linalg.norm((jacobians(model, line, shifted, True) - jacobians(model, line, False, False))[:, :3], axis=1)
     return [Series(f"column {k + 1}", _y(runs[run]), own) for k, own in enumerate(off.T)]
 
 
-def largest_column_error(runs: Mapping[str, Run], run: str, shifted: bool) -> float:
+def largest_column_error(runs: Runs, run: str, shifted: bool) -> float:
     """Return the largest of these errors, in m/rad."""
     return max(float(np.max(each.y)) for each in column_errors(runs, run, shifted))
 
@@ -227,7 +227,7 @@ def column_values(compared: Mapping[str, FloatArray]) -> dict[str, float]:
     }
 
 
-def outcomes(runs: Mapping[str, Run]) -> list[list[str | float | None]]:
+def outcomes(runs: Runs) -> list[list[str | float | None]]:
     """Return the outcome of each run with the report's errors, and of the corrected law: a row for each."""
     rows = []
     for one in found(runs, "printed/{task}/{case}"):
@@ -248,7 +248,7 @@ def _outcome(run: Run) -> list[str | float | None]:
     ]
 
 
-def with_the_inverse(runs: Mapping[str, Run]) -> dict[str, int]:
+def with_the_inverse(runs: Runs) -> dict[str, int]:
     """Return the numbers of runs with the inverse as printed: all, those on the line, and those that end early."""
     ours = [one.run for one in found(runs, "printed/{task}/{case=as printed|inverse alone}")]
     errors = [(run.median("max_axis_error"), line_length(run)) for run in ours]

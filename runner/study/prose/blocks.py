@@ -16,11 +16,11 @@ from runner.reporting.words import PLANT
 from runner.store import Run
 from runner.study import run_values
 from runner.study.measured import Measured
-from runner.study.prose.patterns import axes_of, called, found, other
+from runner.study.results import Runs, axes_of, called, found, other
 from runner.study.run_values import Signal, config_value, number_of
 
 
-def metric(runs: Mapping[str, Run], run: str, name: str, words: str = "", end: str = "median") -> Measured:
+def metric(runs: Runs, run: str, name: str, words: str = "", end: str = "median") -> Measured:
     """Return a metric of a run, with its unit: the median, or the "min" or "max" of its repetitions.
 
     Conditions call it by the words, or by run and name.
@@ -39,35 +39,35 @@ def round_to(value: Measured | float, digits: int) -> str:
     return quantity(value.value, value.unit, digits) if isinstance(value, Measured) else number(value, digits)
 
 
-def config(runs: Mapping[str, Run], run: str, key: str) -> Any:
+def config(runs: Runs, run: str, key: str) -> Any:
     """Return a value of a run's config by its dotted key."""
     return config_value(runs[run], key)
 
 
-def playback(runs: Mapping[str, Run], run: str, caption: str, end: float) -> Playback:
+def playback(runs: Runs, run: str, caption: str, end: float) -> Playback:
     """Return the motion of a run up to an instant, in s."""
     return figures.playback(runs[run], caption, end)
 
 
 def desired_motion(
-    runs: Mapping[str, Run], run: str, caption: str, number: str = "", axes: tuple[str, ...] = ("x", "y", "z")
+    runs: Runs, run: str, caption: str, number: str = "", axes: tuple[str, ...] = ("x", "y", "z")
 ) -> Curves:
     """Return the desired position, velocity and acceleration of a run's tip along some axes."""
     return figures.desired_motion(runs[run], caption, number, tuple(axes))
 
 
-def failures(runs: Mapping[str, Run], prefix: str) -> list[Block]:
+def failures(runs: Runs, prefix: str) -> list[Block]:
     """Return a notice that names the failed runs of those whose names begin so; nothing where none failed."""
     return run_values.failures({name: run for name, run in runs.items() if name.startswith(prefix)})
 
 
-def plant_of(runs: Mapping[str, Run], run: str) -> str:
+def plant_of(runs: Runs, run: str) -> str:
     """Return the name of a run's plant, such as "PyBullet", or "MuJoCo" where that one is missing."""
     kind: str = runs[run].config["plant"]["kind"]
     return PLANT.get(kind, kind)
 
 
-def integration_error(runs: Mapping[str, Run], run: str, *metrics: str) -> str:
+def integration_error(runs: Runs, run: str, *metrics: str) -> str:
     """Return a run's plant, its step, and the error of the step in some metrics, in two sentences at most."""
     return describe_plant(runs[run], metrics)
 
@@ -93,7 +93,7 @@ def smallest(name: str, *values: Measured) -> Measured:
 
 
 def of_run(
-    runs: Mapping[str, Run],
+    runs: Runs,
     words: str,
     what: Callable[..., float | None],
     unit: str,
@@ -109,7 +109,7 @@ def of_run(
     return Measured(words, None if left_out else what(*chosen), unit)
 
 
-def told(runs: Mapping[str, Run], what: Callable[..., Any], *names: str) -> Any:
+def told(runs: Runs, what: Callable[..., Any], *names: str) -> Any:
     """Return the value of a function for a run, or for some runs, failed or not."""
     return what(*(runs[name] for name in names))
 
@@ -125,7 +125,7 @@ def named(words: str, value: float | None, unit: str = "1") -> Measured:
 
 
 def each(
-    runs: Mapping[str, Run],
+    runs: Runs,
     words: str,
     what: Signal,
     unit: str,
@@ -154,7 +154,7 @@ def each(
     ]
 
 
-def count(runs: Mapping[str, Run], words: str, what: Callable[..., bool] | None, *patterns: str) -> Measured:
+def count(runs: Runs, words: str, what: Callable[..., bool] | None, *patterns: str) -> Measured:
     """Return of how many runs that patterns stand for a function is true, or with none how many there are."""
     chosen = [one.run for pattern in patterns for one in found(runs, pattern)]
     return Measured(words, sum(bool(what(run)) if what else True for run in chosen))

@@ -15,6 +15,7 @@ from runner.reporting.published_claims import PublishedClaim, compared_with
 from runner.store import Run
 from runner.study.claims import run_name
 from runner.study.prose.plots import Style
+from runner.study.results import Runs
 
 _STYLES: tuple[Style, ...] = ("line", "dashed", "dotted")
 _GREY = 7  # palette index
@@ -27,7 +28,7 @@ _EMPTY: FloatArray = np.zeros(0)
 
 
 def compare(
-    runs: Mapping[str, Run],
+    runs: Runs,
     presets: Mapping[str, str],
     claims: Sequence[PublishedClaim],
     caption: str,
@@ -141,7 +142,7 @@ class _Figure:
         return [_dotted([start, self._end], [sign * value, sign * value]) for sign in (1.0, -1.0)]
 
 
-def _value(claim: PublishedClaim, runs: Mapping[str, Run], preset: str) -> float | None:
+def _value(claim: PublishedClaim, runs: Runs, preset: str) -> float | None:
     """Return the printed value of a claim, or that of the run that it is said to be like."""
     return compared_with(claim, lambda run, metric: runs[run_name(run, preset)].median(metric))
 

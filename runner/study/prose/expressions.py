@@ -18,10 +18,10 @@ from runner.base.expressions.evaluator import Budget, Scope
 from runner.base.expressions.grammar import ExpressionError, parse
 from runner.base.expressions.insertions import insertions
 from runner.reporting.document import Block, Claim, Panel, Section, Series
-from runner.study.job import MissingError
 from runner.study.measured import Condition, Measured
 from runner.study.prose.signals import Quantity
 from runner.study.prose.tables import Column
+from runner.study.results import MissingError
 
 OPEN, CLOSE = "\uf000", "\uf001"
 """Characters around the number of a value that is stored separately."""

@@ -11,7 +11,7 @@ from runner.base.errors import RunnerError
 from runner.reporting.document import Curves, Map, Maps, Panel, Series
 from runner.reporting.figures import AXES, captioned, origin
 from runner.store import Run
-from runner.study.prose.patterns import axes_of, called, found, other
+from runner.study.results import Runs, axes_of, called, found, other
 from runner.study.run_values import Signal, number_of, trace_of
 
 Style = Literal["line", "dashed", "dotted", "points", "points_line"]
@@ -20,7 +20,7 @@ _MARGIN = 0.05  # of the range of y, above and below what is drawn
 
 
 def line(
-    runs: Mapping[str, Run],
+    runs: Runs,
     pattern: str,
     signal: Signal,
     name: str = "",
@@ -58,14 +58,14 @@ def line(
     return series
 
 
-def joints(runs: Mapping[str, Run], run: str, stem: str = "q", name: str = "q") -> list[Series]:
+def joints(runs: Runs, run: str, stem: str = "q", name: str = "q") -> list[Series]:
     """Return a signal of each joint over time: q, qd, tau or another that has a column for each joint."""
     values = runs[run].joints(stem)
     t = runs[run].t[: len(values)]
     return [Series(f"{name}{joint + 1}", t, column) for joint, column in enumerate(values.T)]
 
 
-def axes(runs: Mapping[str, Run], run: str, stem: str = "error", factor: float = 1.0) -> list[Series]:
+def axes(runs: Runs, run: str, stem: str = "error", factor: float = 1.0) -> list[Series]:
     """Return so many times a vector's x, y and z over time: tip, desired, error or another that has these columns."""
     return [
         Series(axis, runs[run].t[: len(values)], factor * values, color=index)
@@ -75,7 +75,7 @@ def axes(runs: Mapping[str, Run], run: str, stem: str = "error", factor: float =
 
 
 def over(
-    runs: Mapping[str, Run],
+    runs: Runs,
     pattern: str,
     axis: str,
     what: Signal,
@@ -129,7 +129,7 @@ def over(
 
 
 def points(
-    runs: Mapping[str, Run],
+    runs: Runs,
     pattern: str,
     x: Signal,
     y: Callable[..., float],
@@ -219,7 +219,7 @@ def same_y(*panels: Panel) -> list[Panel]:
 
 
 def curves(
-    runs: Mapping[str, Run],
+    runs: Runs,
     caption: str,
     run: str,
     *panels: Panel | Sequence[Panel],
@@ -241,7 +241,7 @@ def curves(
 
 
 def heat_map(
-    runs: Mapping[str, Run],
+    runs: Runs,
     caption: str,
     pattern: str,
     x: str,

@@ -14,7 +14,7 @@ from runner.reporting.metric_titles import title
 from runner.reporting.table import Cell, Number
 from runner.store import Run
 from runner.study.measured import Measured
-from runner.study.prose.patterns import Found, axes_of, called, found, other
+from runner.study.results import Found, Runs, axes_of, called, found, other
 from runner.study.run_values import Signal
 
 _NEVER = "never"
@@ -33,7 +33,7 @@ class Column:
     """
 
     title: str
-    cell: Callable[[Mapping[str, Run], Found], Cell]
+    cell: Callable[[Runs, Found], Cell]
     metric: str = ""
     levels: Mapping[str, Sequence[str]] = field(default_factory=dict)
 
@@ -48,7 +48,7 @@ def level(axis: str, title: str = "", words: Mapping[str, str] | None = None, mi
         missing: What stands for runs of a pattern without that axis.
     """
 
-    def text(_runs: Mapping[str, Run], row: Found) -> str:
+    def text(_runs: Runs, row: Found) -> str:
         return called(f"{{{axis}}}", row.levels, words or {}) if axis in row.levels else missing
 
     return Column(title or axis, text, levels={axis: ()})
@@ -75,7 +75,7 @@ def column(
         though_failed: Whether what a function reads of a run until it failed is shown.
     """
 
-    def found_cell(runs: Mapping[str, Run], row: Found) -> Cell:
+    def found_cell(runs: Runs, row: Found) -> Cell:
         if any(row.levels.get(axis) not in own for axis, own in chosen.items()):
             return Number(None)
         of = [other(runs, name, row.levels) for name in others] or [row.run]
@@ -86,7 +86,7 @@ def column(
 
 
 def table(
-    runs: Mapping[str, Run],
+    runs: Runs,
     caption: str,
     pattern: str | Sequence[str],
     *columns: Column,
@@ -126,7 +126,7 @@ def _check_levels(given: Column, rows: Sequence[Found]) -> None:
 
 
 def comparison(
-    runs: Mapping[str, Run],
+    runs: Runs,
     caption: str,
     pattern: str,
     *metrics: str,
@@ -143,7 +143,7 @@ def comparison(
 
 
 def listing(
-    runs: Mapping[str, Run],
+    runs: Runs,
     caption: str,
     run: str,
     header: Sequence[str],

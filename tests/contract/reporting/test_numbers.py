@@ -4,14 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from support.made_up_runs import planned
 
-from runner.study.job import MissingError, Results
 from runner.study.measured import Measured
 from runner.study.prose import read_chapter
 from runner.study.prose.blocks import metric, percent, round_to
 from runner.study.prose.plots import over
 from runner.study.prose.signals import setting
 from runner.study.prose.tables import column, level, table
+from runner.study.results import MissingError, Results
 from runner.sweeps.job import run
 
 
@@ -25,7 +26,7 @@ def runs(tmp_path_factory):
     }
     failed = made["step/3.5/slow"]
     made["step/3.5/slow"] = replace(failed, record={**failed.record, "status": "failed", "metrics": {}})
-    return made
+    return planned("step/{case}/slow", made)
 
 
 def period(one):

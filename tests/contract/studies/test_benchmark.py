@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import spearmanr
 from support.benchmark_runs import LAWS, SCATTER, SEEDS, SIZES, TUNINGS, benchmark_runs
+from support.made_up_runs import planned
 from support.recorded_runs import recorded
 from support.study_plans import FULL_ALONE
 from support.study_sections import texts
@@ -24,10 +25,12 @@ from runner.studies.benchmark.late_and_limited import bearable
 from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
 from runner.study.check import never_failing
 from runner.study.measured import findings
+from runner.study.results import Results
 from runner.study.study import load_study
 
 STUDY = load_study("benchmark")
 METRIC = "rms_tracking_error"
+NAMES = "{question}/{arm}/{law}/{task}/{condition}/{gains}"
 
 
 def a_run(errors, period=0.01):
@@ -46,7 +49,7 @@ def cell(tunings=(1.0, 1.0, 1.0), **laws):
         for task, scale in (("line", 1.0), ("circle", 10.0))
         for number, factor in enumerate(tunings, start=1)
     }
-    return cells(runs, "arm")["wind"]
+    return cells(planned(NAMES, runs), "arm")["wind"]
 
 
 def test_a_common_factor_is_found_whatever_the_seeds_have_in_common():
@@ -94,7 +97,7 @@ def repeating(condition="all", **by_round):
             one.metrics, one.values = own, lambda name, own=own: own[name] * SCATTER
             made[f"learned/macro/{law}/line/{condition}/{number}"] = one
             made[f"first/macro/{law}/line/{condition}/{number}"] = a_run(SCATTER)
-    return made
+    return planned(NAMES, made)
 
 
 @pytest.mark.parametrize(
@@ -143,7 +146,7 @@ def test_where_nothing_is_drawn_a_lead_holds_along_every_path(repetitions):
         for task, error in zip(("line", "circle"), errors, strict=True)
         for number in (1, 2, 3)
     }
-    made = cells(runs, "arm")["wind"]
+    made = cells(planned(NAMES, runs), "arm")["wind"]
     assert made.best.law == "a"
     assert (made.leads["a", "c"].shown, made.leads["a", "b"].shown) == (True, False)
     assert (made.leads["a", "c"].interval, made.leads["a", "c"].p_value) == (None, None)
@@ -151,9 +154,9 @@ def test_where_nothing_is_drawn_a_lead_holds_along_every_path(repetitions):
 
 def test_another_gain_is_compared_and_another_period_is_refused():
     alike = {f"first/arm/{law}/line/wind/{number}": a_run(SCATTER) for law in "ab" for number in (1, 2, 3)}
-    assert list(cells(alike, "arm")) == ["wind"]
+    assert list(cells(planned(NAMES, alike), "arm")) == ["wind"]
     with pytest.raises(RunnerError, match=r"line, wind: controller.period is 0.01 for a and 0.005 for b; "):
-        cells(alike | {"first/arm/b/line/wind/2": a_run(SCATTER, period=0.005)}, "arm")
+        cells(planned(NAMES, alike | {"first/arm/b/line/wind/2": a_run(SCATTER, period=0.005)}), "arm")
 
 
 def test_halves_of_the_seeds_are_held_against_each_other():
@@ -163,14 +166,14 @@ def test_halves_of_the_seeds_are_held_against_each_other():
         for law, errors in {"a": np.where(even, 1.0, 2.0) * SCATTER, "b": np.where(even, 2.0, 1.0) * SCATTER}.items()
         for gains in TUNINGS
     }
-    found = [cells(turned, "macro", seeds=slice(start, None, 2))["all"] for start in (0, 1)]
+    found = [cells(planned(NAMES, turned), "macro", seeds=slice(start, None, 2))["all"] for start in (0, 1)]
     assert [half.best.law for half in found] == ["a", "b"]
     assert [half.best.errors.shape for half in found] == [(2, 1, SEEDS // 2)] * 2
-    assert halves(turned) == (2, 0, 2)
+    assert halves(planned(NAMES, turned)) == (2, 0, 2)
     alike = {name: a_run((1.0 if "/a/" in name else 2.0) * SCATTER) for name in turned}
-    assert halves(alike) == (2, 2, 0)
+    assert halves(planned(NAMES, alike)) == (2, 2, 0)
     half = {name: a_run(np.where(even, 1.0, 2.0) * SCATTER if "/a/" in name else 2.0 * SCATTER) for name in turned}
-    assert halves(half) == (1, 0, 0)
+    assert halves(planned(NAMES, half)) == (1, 0, 0)
 
 
 def test_values_near_an_end_of_their_range_are_named_with_law_and_arm():
@@ -184,7 +187,7 @@ def test_values_near_an_end_of_their_range_are_named_with_law_and_arm():
         for place, question in enumerate(("first", "learned"))
     }
     ranges = {f"{question}/macro/spring": {"controller.gain": [0.1, 10.0]} for question in ("first", "learned")}
-    told = [row[2:] for row in ends_of(runs, ranges)]
+    told = [row[2:] for row in ends_of(planned(NAMES, runs), ranges)]
     assert told == [
         ["from the first second", "1", "controller.gain", "0.32", "lower end"],
         ["from the first second", "2", "controller.gain", "28", "upper end"],
@@ -254,11 +257,11 @@ def test_the_orders_on_two_plants_are_held_against_each_other(runs):
         for name, one in runs.items()
         for plan, arm, law, *rest in [name.split("/")]
     }
-    assert engines.against(swapped).value >= 5.0  # joint PD far behind, far ahead, under each condition
+    assert engines.against(STUDY.results(swapped)).value >= 5.0  # joint PD far behind, far ahead, under each condition
     order = [LAWS.index(of.get(law, law)) for law in LAWS]
     judged = [SIZES[condition] for condition in ("exact", "masses", "friction", "encoders", "all")]
     expected = [spearmanr(sizes, np.array(sizes)[order]).statistic for sizes in judged]
-    assert engines.mean_correlation(swapped).value == pytest.approx(np.mean(expected), abs=0.02)
+    assert engines.mean_correlation(STUDY.results(swapped)).value == pytest.approx(np.mean(expected), abs=0.02)
 
 
 @pytest.mark.parametrize("file", FULL_ALONE)
@@ -269,7 +272,7 @@ def test_what_the_full_profile_alone_shows(tmp_path, whole, file):
     }[file]
     wanted = re.compile(rf"first/({arms})/\w+/circle/{condition}/.*")
     names = [name for name in whole if wanted.fullmatch(name)]
-    chapters = STUDY.chapters(benchmark_runs(names, recorded("benchmark", tmp_path)), {})
+    chapters = STUDY.chapters(STUDY.results(benchmark_runs(names, recorded("benchmark", tmp_path))), Results({}))
     told = [finding for _, finding in findings(SimpleNamespace(sections=[chapters.section(file)]))]
     assert [each.title for each in told if not each.holds] == []
     assert len(told) == count

@@ -20,7 +20,7 @@ from runner.store import Run
 from runner.studies.precision import measure, tried
 from runner.studies.precision.exact import Adaptive, Collocation, energy_drift
 from runner.studies.precision.figures import large_enough
-from runner.study.job import MissingError
+from runner.study.results import MissingError
 from runner.study.study import load_study
 
 STUDY = load_study("precision")

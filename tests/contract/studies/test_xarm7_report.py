@@ -9,9 +9,10 @@ from runner.reporting import outline
 from runner.reporting.document import Curves, Notice, Picture, Playback, Section, Table, Text, Verdicts
 from runner.reporting.formulas import faulty
 from runner.reporting.render import write_report
+from runner.reporting.words import PRESET
 from runner.study.chapters import Chapters
-from runner.study.job import PRESETS
 from runner.study.measured import findings
+from runner.study.results import Results
 from runner.study.study import load_study
 
 STUDIES = ("why_it_failed", "null_space", "rates", "servo", "payload", "torque_level")
@@ -34,7 +35,7 @@ def document(runs):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Chapters, "section", without_studies)
-        return load_study("xarm7").document(runs, {})
+        return load_study("xarm7").document(runs, Results({}))
 
 
 def blocks_of(document, *kinds):
@@ -68,7 +69,7 @@ def test_the_verdicts(document):
     same = {number: ["matches", "matches"] for number in "123467"}
     assert verdicts == {**same, "5": ["source contradicts itself", "source contradicts itself"]}
     for claim in claims.rows:
-        assert tuple(finding.preset for finding in claim.findings) == PRESETS
+        assert tuple(finding.preset for finding in claim.findings) == (*PRESET,)
 
 
 def test_one_branch_alone_is_inside_the_joint_limits(document):
@@ -84,7 +85,7 @@ def test_the_formulas_put_right_lead_to_the_line_and_no_others_do(document):
     assert min(misses.values()) > 1e-2
 
 
-@pytest.mark.parametrize("preset", PRESETS)
+@pytest.mark.parametrize("preset", PRESET)
 def test_seven_joints_meet_what_is_asked_of_them(runs, preset):
     for name in ("seven_joints", "seven_joints_pose"):
         metrics = runs[f"{name}/{preset}"].metrics
@@ -126,7 +127,7 @@ def test_a_motion_is_shown_from_a_to_b_as_its_caption_says(document):
 
 def test_the_plants_disagreement_is_measured_and_shrinks_with_the_step(document):
     (text,) = [block.text for block in blocks_of(document, Text) if "PyBullet is the plant, in steps of" in block.text]
-    assert text.count("The integration step contributes") == len(PRESETS)
+    assert text.count("The integration step contributes") == len(PRESET)
     distances = [float(re.sub("·10⁻⁶$", "e-6", row[2]).replace("·10⁻⁷", "e-7")) for row in
                  table(document, "PyBullet's step against Runge-Kutta").lines[1:]]  # fmt: skip
     for first in range(0, len(distances), 3):

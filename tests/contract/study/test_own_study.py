@@ -16,6 +16,7 @@ from runner.study.check import problems
 from runner.study.execute import make_all
 from runner.study.measured import findings
 from runner.study.names import find_study, study_names, write_new
+from runner.study.results import Results
 from runner.study.study import load_study
 from runner.sweeps.job import run
 
@@ -58,9 +59,17 @@ def made(tmp_path_factory):
     return {name: run(*job, f"outputs={root}") for name, job in jobs.items()}
 
 
+def results(study, runs):
+    return study.results(runs), Results({})
+
+
+def document(study, runs):
+    return study.document(*results(study, runs))
+
+
 def read(folder, runs, **options):
     study = load_study(str(folder), **options)
-    return study, study.chapters(runs, {}).sections()
+    return study, study.chapters(*results(study, runs)).sections()
 
 
 @pytest.mark.costs(5)
@@ -85,8 +94,8 @@ def test_answers_of_the_first_chapter_open_the_report(tmp_path, made):
     answer = CHAPTER.replace("# One", "# Does it err?").replace("::: finding It errs\n", "::: stands It does.\n")
     files = {"study__yaml": ABOUT.replace("[one.md]", "[answers.md, one.md]"), "answers__md": answer}
     study = load_study(str(a_study(tmp_path / "paper", **files)))
-    assert [*problems(study, made, {})] == []
-    plain, opened = (load_study(str(a_study(tmp_path / "paper", **own))).document(made, {}) for own in ({}, files))
+    assert [*problems(study, *results(study, made))] == []
+    plain, opened = (document(load_study(str(a_study(tmp_path / "paper", **own))), made) for own in ({}, files))
     assert (plain.answers, [each.title for each in opened.answers]) == ([], ["It does."])
     assert all(finding[1].claim != "It does." for finding in findings(plain))
     assert [number for number, each in findings(opened) if each.claim == "It does."] == ["1"]
@@ -115,7 +124,7 @@ def test_its_chapters_read_its_runs(tmp_path, made):
     assert table.lines[0] == ["preset", "error (mm)"]
     assert [row[0] for row in table.lines[1:]] == ["slow", "slow", "fast", "fast"]
     assert finding.holds
-    assert [*problems(study, made, {})] == []
+    assert [*problems(study, *results(study, made))] == []
 
 
 @pytest.mark.parametrize(
@@ -131,7 +140,7 @@ def test_what_is_wrong_with_a_study_is_told_with_its_place(tmp_path, made, holds
     text = CHAPTER.replace("holds: error > 1e-9", holds).replace("It errs by {{ error }}.", words)
     text = "\n".join(line for line in text.splitlines() if not line.startswith("{{ table"))
     study = load_study(str(a_study(tmp_path / "paper", one__md=text)))
-    found = [*problems(study, made, {})]
+    found = [*problems(study, *results(study, made))]
     assert len(found) == 1
     assert re.search(told, found[0]), found
 
@@ -155,7 +164,7 @@ def test_reproduce_with_check_finds_what_study_check_finds(tmp_path, capsys):
 def test_caveats_that_no_run_can_have_are_told(tmp_path, made):
     caveats = "- {rules: [saturation], runs: [gaol/*], why: So.}\n"
     study = load_study(str(a_study(tmp_path / "paper", caveats__yaml=caveats)))
-    assert [*problems(study, made, {})] == ["paper: gaol/*: expected caveats: no run of it is named so"]
+    assert [*problems(study, *results(study, made))] == ["paper: gaol/*: expected caveats: no run of it is named so"]
 
 
 def test_a_cover_shows_a_run_in_motion_and_one_that_is_none_is_told(tmp_path, made):
@@ -164,10 +173,10 @@ def test_a_cover_shows_a_run_in_motion_and_one_that_is_none_is_told(tmp_path, ma
             str(a_study(tmp_path / "paper", study__yaml=ABOUT + f"cover: {{run: {run}, caption: It moves.}}\n"))
         )
 
-    assert "<animate" in with_cover("goal/slow/0.1").document(made, {}).cover.moving
+    assert "<animate" in document(with_cover("goal/slow/0.1"), made).cover.moving
     study = with_cover("goal/slwo/0.1")
-    assert study.document(made, {}).cover is None
-    (told,) = problems(study, made, {})
+    assert document(study, made).cover is None
+    (told,) = problems(study, *results(study, made))
     assert re.search(r"paper/study.yaml: cover: no run 'goal/slwo/0.1' \(did you mean goal/slow/0.1\?\)", told), told
 
 
@@ -196,7 +205,7 @@ def test_functions_of_the_study_are_called_where_code_may_run(tmp_path, made):
     assert section.blocks[0].text == "There are 4 runs, 4."
     _, (section,) = read(folder, made)
     assert section.title == "Left out: One"
-    assert "not run" in load_study(str(folder)).document(made, {}).sections[-2].blocks[1].rows[-1][1]
+    assert "not run" in document(load_study(str(folder)), made).sections[-2].blocks[1].rows[-1][1]
 
 
 def test_code_that_cannot_be_imported_is_told(tmp_path, made):
@@ -206,12 +215,9 @@ def test_code_that_cannot_be_imported_is_told(tmp_path, made):
 
 
 def test_a_run_that_was_not_made_leaves_its_chapter_out(tmp_path, made):
-    from runner.study.job import Results
-
-    runs = Results(
-        {name: each for name, each in made.items() if name != "goal/slow/0.1"}, {"goal/slow/0.1": "cut short"}
-    )
-    _, (section,) = read(a_study(tmp_path / "paper"), runs)
+    study = load_study(str(a_study(tmp_path / "paper")))
+    runs = {name: each for name, each in made.items() if name != "goal/slow/0.1"}
+    (section,) = study.chapters(study.results(runs, {"goal/slow/0.1": "cut short"}), Results({})).sections()
     assert section.title == "Left out: One"
     assert "goal/slow/0.1: cut short" in section.blocks[0].text
 
@@ -340,7 +346,7 @@ def test_all_equations_that_cannot_be_checked_are_told_at_once(tmp_path):
 
 def test_a_formula_that_cannot_be_read_is_told_with_its_line(tmp_path, made):
     study = load_study(str(a_study(tmp_path / "paper", one__md="# One\n\nSo.\n\nThis is $frac(1$.\n")))
-    assert [*problems(study, made, {})] == ["paper/one.md:5: frac(1: no formula in Typst's notation"]
+    assert [*problems(study, *results(study, made))] == ["paper/one.md:5: frac(1: no formula in Typst's notation"]
 
 
 def test_claims_that_do_not_fit_are_told_before_anything_is_made(tmp_path):

@@ -10,7 +10,7 @@ from runner.reporting.document import Verdicts
 from runner.reporting.published_claims import CONTRADICTION, PublishedClaim, PublishedStatement
 from runner.reporting.words import PRESET
 from runner.study.claims import judged_claims, judged_statements, legend
-from runner.study.job import PRESETS, MissingError
+from runner.study.results import MissingError
 
 NUMBER = {
     "number": 1,
@@ -43,12 +43,12 @@ def run_of(metrics=None, failed=False, width=0.4):
 
 
 def blocks(runs, *claims):
-    both = {f"{name}/{preset}": each for name, each in runs.items() for preset in PRESETS}
+    both = {f"{name}/{preset}": each for name, each in runs.items() for preset in PRESET}
     return judged_claims([PublishedClaim.model_validate(claim) for claim in claims], both, PRESET)
 
 
 def told(block):
-    assert [finding.preset for finding in block.findings] == list(PRESETS)
+    assert [finding.preset for finding in block.findings] == list(PRESET)
     (said,) = {(finding.measured, finding.verdict) for finding in block.findings}
     return said
 
@@ -173,7 +173,7 @@ def test_repetitions_that_are_late_are_counted_where_the_error_at_rest_is_judged
     error = NUMBER | {"metric": "steady_state_error", "unit": "m", "printed": [0.009]}
     made = run_of({"steady_state_error": made_up_metric(0.01, 0.019, 0.03)})
     (block,) = blocks({"macro": made}, error)
-    late = [f"1 of 3 repetitions ({PRESET[preset]}) are beyond 20 mm in the last half second." for preset in PRESETS]
+    late = [f"1 of 3 repetitions ({PRESET[preset]}) are beyond 20 mm in the last half second." for preset in PRESET]
     assert block.reason == " ".join(["As printed.", *late])
     (block,) = blocks({"macro": run_of({"steady_state_error": made_up_metric(0.01)})}, error)
     assert block.reason == "As printed."

@@ -15,7 +15,7 @@ from runner.study.expected_caveats import (
     caveats_section,
     unexpected_caveats,
 )
-from runner.study.job import Results
+from runner.study.results import Results
 from runner.study.run_values import measured
 from runner.study.study import load_study
 

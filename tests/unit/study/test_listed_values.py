@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from support.made_up_runs import made_up_run
+from support.made_up_runs import made_up_run, planned
 
 from runner.base.errors import RunnerError
 from runner.study import check as trying
@@ -20,7 +20,8 @@ def pressed(stiffness, failed=False):
     return made_up_run(trace=motion, config={"wall": {"stiffness": stiffness}}, failed=failed)
 
 
-RUNS = {"wall/soft": pressed(10.0), "wall/hard": pressed(1000.0), "wall/gone": pressed(5.0, True), "free": pressed(0.0)}
+WALLS = {"wall/soft": pressed(10.0), "wall/hard": pressed(1000.0), "wall/gone": pressed(5.0, True)}
+RUNS = planned("wall/{case}", {**WALLS, "free": pressed(0.0)})
 
 
 def test_a_number_of_each_run_is_none_where_it_failed():
@@ -36,7 +37,7 @@ def test_a_number_of_some_runs_alone():
 
 
 def test_a_logarithmic_axis_leaves_zeros_out():
-    levels = {"at/0": pressed(0.0), "at/2": pressed(4.0)}
+    levels = planned("at/{level}", {"at/0": pressed(0.0), "at/2": pressed(4.0)})
     series = over(levels, "at/{level}", "level", setting("wall.stiffness"), x_factor=1000.0)
     drawn = panel("", "x", "y", series, x_log=True).series[0]
     np.testing.assert_array_equal(drawn.x, [2000.0])

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from support.made_up_runs import made_up_metric, made_up_run
+from support.made_up_runs import made_up_metric, made_up_run, planned
 
 from runner.base.errors import RunnerError
-from runner.study.job import MissingError, Results
 from runner.study.measured import Measured
 from runner.study.prose import blocks, plots, signals, tables
-from runner.study.prose.patterns import found
+from runner.study.results import MissingError, found
 
 
 def run_of(value, failed=False, ends=None, unit="m"):
@@ -22,11 +21,13 @@ def run_of(value, failed=False, ends=None, unit="m"):
     return made_up_run(metrics, trace, {"controller": {"gain": 10 * value}}, failed=failed, command=f"runner {value}")
 
 
-RUNS = {
+PATTERN = "gain/{controller.gain}/{preset}"
+GAINS = {
     f"gain/{gain}/{preset}": run_of(float(gain) * (1.0 if preset == "full_equations" else 2.0))
     for preset in ("full_equations", "as_reported")
     for gain in (1, 10, 5)
 } | {"held": run_of(7.0)}
+RUNS = planned(PATTERN, GAINS)
 
 
 def test_a_pattern_names_runs_in_the_order_of_the_plan():
@@ -49,7 +50,7 @@ def test_a_pattern_that_names_nothing_is_refused():
     with pytest.raises(RunnerError, match=r"has no axis 'gian' \(did you mean gain\?\)"):
         found(RUNS, "gain/{gain}/full_equations", ["gian"])
     with pytest.raises(MissingError, match="gain/2/full_equations: cut short"):
-        found(Results(RUNS, {"gain/2/full_equations": "cut short"}), "gain/{gain}/full_equations")
+        found(planned(PATTERN, RUNS, {"gain/2/full_equations": "cut short"}), "gain/{gain}/full_equations")
 
 
 def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
@@ -84,7 +85,7 @@ def test_a_table_has_a_row_for_each_run_and_a_unit_for_each_metric():
 
 
 def test_a_failed_run_says_so():
-    runs = {**RUNS, "gain/10/full_equations": run_of(0.0, failed=True)}
+    runs = planned(PATTERN, {**RUNS, "gain/10/full_equations": run_of(0.0, failed=True)})
     made = tables.table(runs, "Errors.", "gain/{gain}/full_equations", tables.column("error", "error"))
     assert [row[0] for row in made.lines[1:]] == ["1", "failed", "5"]
     (series,) = plots.over(runs, "gain/{gain}/full_equations", "gain", "error")
@@ -100,7 +101,7 @@ def test_a_comparison_has_a_row_for_each_metric_and_a_column_for_each_level():
 
 
 def test_a_number_against_an_axis_has_the_band_of_its_repetitions():
-    runs = {**RUNS, "gain/10/full_equations": run_of(10.0, ends=(8.0, 13.0))}
+    runs = planned(PATTERN, {**RUNS, "gain/10/full_equations": run_of(10.0, ends=(8.0, 13.0))})
     full_equations, reported = plots.over(runs, "gain/{gain}/{preset}", "gain", "error", "{preset}", color=3)
     assert (full_equations.name, reported.name, full_equations.color, reported.color) == (
         "by the printed equations",
@@ -204,7 +205,7 @@ def test_a_panel_of_powers_of_ten_leaves_zeros_out():
 
 
 def test_a_map_has_a_cell_for_each_run():
-    runs = {**RUNS, "gain/10/full_equations": run_of(0.0, failed=True)}
+    runs = planned(PATTERN, {**RUNS, "gain/10/full_equations": run_of(0.0, failed=True)})
     made = plots.heat_map(runs, "Map.", "gain/{gain}/{preset}", "gain", "preset", "error", "error (m)")
     (panel,) = made.panels
     assert (panel.x_names, panel.y_names) == (["1", "10", "5"], ["full_equations", "as_reported"])
