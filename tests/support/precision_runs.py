@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pyarrow
 
 from runner.store import Run
 from runner.store.atomic import write_atomically
@@ -35,7 +36,7 @@ def precision_runs(names: Iterable[str], kinds: Mapping[str, Run], outputs: Path
         for column in ("q1", "tip_x"):
             trace[column] += np.linspace(0.0, error(plant, float(step)), len(trace))
         made[name] = replace(kind)
-        made[name].__dict__["_frame"] = trace
+        made[name].__dict__["_table"] = pyarrow.Table.from_pandas(trace, preserve_index=False)
     for base, exact in kinds.items():
         steps = [name.rpartition("/")[2] for name in made if name.startswith(f"{base}/{measure.PLANT}/")]
         errors = {step: error(measure.PLANT, float(step)) for step in steps}
