@@ -91,7 +91,7 @@ def quantity(value: float | None, unit: str, digits: int = 3, rounding: float = 
 
 def above_rounding(value: float | None, unit: str = "1", digits: int = 3) -> str:
     """Return a number with its unit, or "0 (rounding)" for a value of the size of rounding errors in SI units."""
-    return quantity(value, unit, digits, ROUNDING) if unit != "1" else number(value, digits, ROUNDING)
+    return quantity(value, unit, digits, ROUNDING)
 
 
 def format_duration(seconds: float) -> str:

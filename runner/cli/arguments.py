@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
@@ -85,6 +86,18 @@ _MEANINGS = {
     "a controller can be one function: controller=FILE.py:NAME; repeat for more",
     "quiet": "print only the path of the result",
 }
+
+
+def put(content: str | bytes, output: Path | None) -> None:
+    """Print a result, or write it to a file and print the path of the file."""
+    content = content.encode("utf-8", errors="replace") if isinstance(content, str) else content
+    if output is None:
+        sys.stdout.write(content.decode())
+    else:
+        from runner.store.atomic import write_atomically
+
+        write_atomically(output, content)
+        print(output)
 
 
 class UsageError(RunnerError):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from runner.base import engines
 from runner.base.errors import RunnerError, unknown
 from runner.base.former_names import TOPICS as FORMER_TOPICS
+from runner.base.paths import studies_with
 from runner.base.sanitize import escaped, one_line
 from runner.cli.arguments import Parser
 from runner.config.compose.files import group_options, groups
@@ -76,21 +77,16 @@ def _read_bullets(docstring: str) -> dict[str, str]:
 
 
 def _list_claims(_: Sequence[Path]) -> dict[str, str]:
-    from runner.reporting.published_claims import (
-        load_claims,
-        load_statements,
-        studies_with_claims,
-        studies_with_statements,
-    )
+    from runner.reporting.published_claims import CLAIMS, STATEMENTS, load_claims, load_statements
 
     claims = {
         f"{source} {claim.number}": f"{claim.statement}{_printed(claim)} ({claim.place})"
-        for source in studies_with_claims()
+        for source in studies_with(CLAIMS)
         for claim in load_claims(source)
     }
     statements = {
         f"{source} {number}": f"{each.statement} ({each.place})"
-        for source in studies_with_statements()
+        for source in studies_with(STATEMENTS)
         for number, each in enumerate(load_statements(source), start=1)
     }
     return claims | statements

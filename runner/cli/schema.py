@@ -6,7 +6,7 @@ Example: runner schema --output schema.json
 import json
 from argparse import Namespace
 
-from runner.cli.arguments import Parser
+from runner.cli.arguments import Parser, put
 
 
 def add_arguments(parser: Parser) -> None:
@@ -20,12 +20,6 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Print the schema, or write it and print its path."""
     from runner.config.json_schema import json_schema
-    from runner.store.atomic import write_atomically
 
-    text = json.dumps(json_schema(options.group), indent=1) + "\n"
-    if options.output is None:
-        print(text, end="")
-    else:
-        write_atomically(options.output, text.encode())
-        print(options.output)
+    put(json.dumps(json_schema(options.group), indent=1) + "\n", options.output)
     return 0

@@ -5,14 +5,13 @@ Without options, all cells of a sweep are written to table.parquet and table.csv
 Example: runner table latest --format latex --by controller --output table.tex
 """
 
-import sys
 from argparse import Namespace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from runner.base.errors import RunnerError, unknown
 from runner.base.sanitize import one_line
-from runner.cli.arguments import Parser, Stored
+from runner.cli.arguments import Parser, Stored, put
 
 if TYPE_CHECKING:
     from runner.sweeps.measurements import Measurements
@@ -53,11 +52,13 @@ def run(options: Namespace) -> int:
         from runner.reporting.export.paper_table import of_sweep
 
         table = of_sweep(measurements, sweep.command, options.metrics, options.by, swept)
-        return _put(table.written(chosen), options.output)
+        put(table.written(chosen), options.output)
+        return 0
     from runner.reporting.export.pooling import as_csv, as_parquet, selection
 
     frame = selection(measurements, options.metrics, options.by, swept)
-    return _put(as_parquet(frame, measurements) if chosen == "parquet" else as_csv(frame), options.output)
+    put(as_parquet(frame, measurements) if chosen == "parquet" else as_csv(frame), options.output)
+    return 0
 
 
 def _format(options: Namespace) -> str:
@@ -99,7 +100,7 @@ def _of_run(options: Namespace, chosen: str) -> int:
     if chosen in ("", *_FOR_PAPER):
         from runner.reporting.export.paper_table import of_run
 
-        _put(of_run(run, options.metrics).written(chosen or "markdown"), options.output)
+        put(of_run(run, options.metrics).written(chosen or "markdown"), options.output)
         if not chosen:
             print(options.folder)
         return 0
@@ -108,16 +109,5 @@ def _of_run(options: Namespace, chosen: str) -> int:
 
     measured = measure_run(run)
     frame = of_one(measured, options.metrics)
-    return _put(as_parquet(frame, measured) if chosen == "parquet" else as_csv(frame), options.output)
-
-
-def _put(content: str | bytes, output: Path | None) -> int:
-    from runner.store.atomic import write_atomically
-
-    content = content.encode("utf-8", errors="replace") if isinstance(content, str) else content
-    if output is None:
-        sys.stdout.write(content.decode())
-    else:
-        write_atomically(output, content)
-        print(output)
+    put(as_parquet(frame, measured) if chosen == "parquet" else as_csv(frame), options.output)
     return 0

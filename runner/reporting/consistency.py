@@ -9,21 +9,24 @@ from runner.reporting.document import Block, Curves, Document, Maps, Panel, Sect
 from runner.reporting.outline import blocks
 
 
-def color_series(document: Document) -> Document:
-    """Return a report in which all curves of one name have one palette index, unless their figure chose another.
+def make_consistent(document: Document) -> Document:
+    """Return a report with the same colours for the same names, and figures in the units that fit their numbers.
 
-    A name has the index that its meaning or the first figure that chose one gives it, otherwise the first that no
-    curve next to it has, in any panel of the report.
+    All curves of one name have one palette index, unless their figure chose another: that of its meaning or of the
+    first figure that chose one, otherwise the first that no curve next to it has, in any panel of the report.
     """
     panels = [panel for block in blocks(document) if isinstance(block, Curves) for panel in block.panels]
     found = _by_name(panels)
 
-    def colored(block: Block) -> Block:
+    def changed(block: Block) -> Block:
+        if isinstance(block, Maps):
+            return maps_in_readable_units(block)
         if not isinstance(block, Curves):
             return block
-        return replace(block, panels=[replace(panel, series=list(_series(panel, found))) for panel in block.panels])
+        panels = [replace(panel, series=list(_series(panel, found))) for panel in block.panels]
+        return curves_in_readable_units(replace(block, panels=panels))
 
-    return replace(document, sections=_changed(document.sections, colored))
+    return replace(document, sections=_changed(document.sections, changed))
 
 
 def _by_name(panels: list[Panel]) -> dict[str, int]:
@@ -48,20 +51,6 @@ def _series(panel: Panel, found: Mapping[str, int]) -> Iterator[Series]:
             yield replace(series, color=color)
         else:
             yield series
-
-
-def in_readable_units(document: Document) -> Document:
-    """Return a report whose figures have the units that fit their numbers."""
-    return replace(document, sections=_changed(document.sections, _readable))
-
-
-def _readable(block: Block) -> Block:
-    match block:
-        case Curves():
-            return curves_in_readable_units(block)
-        case Maps():
-            return maps_in_readable_units(block)
-    return block
 
 
 def _changed(sections: Sequence[Section], change: Callable[[Block], Block]) -> list[Section]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
 from runner.reporting.charts.arm import arm_motion, moving_arm
 from runner.reporting.charts.figure import spaced_indices
@@ -108,11 +109,7 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
         frames: Largest number of instants.
         has_still: Whether it has a still picture, which takes most of the time.
     """
-    rows, model = rows_until(run, until), run.model
-    finite = np.isfinite(np.hstack([run.joints("q"), run.vector("tip")])[rows]).all(axis=1)
-    t, q, tip, desired = (
-        values[rows][finite] for values in (run.t, run.joints("q"), run.vector("tip"), run.vector("desired"))
-    )
+    model, (t, q, tip, desired) = run.model, _motion(run, until)
     shown = spaced_indices(len(t), frames)
     stills = spaced_indices(len(t), _STILLS)
     moving = bool(np.ptp(desired, axis=0).any())
@@ -133,6 +130,14 @@ def playback(run: Run, caption: str, until: float | None = None, frames: int = 1
         target=desired[shown],
         joints=joint_places(model, q[shown]),
     )
+
+
+def _motion(run: Run, until: float | None) -> tuple[FloatArray, ...]:
+    """Return time, joint positions, tip and desired tip up to a time, without the rows of a diverged arm."""
+    rows = rows_until(run, until)
+    columns = [values[rows] for values in (run.t, run.joints("q"), run.vector("tip"), run.vector("desired"))]
+    finite = np.isfinite(np.hstack(columns[1:3])).all(axis=1)
+    return tuple(values[finite] for values in columns)
 
 
 def overlaid(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
@@ -171,11 +176,7 @@ def cover(run: Run, caption: str, until: float | None = None) -> Cover:
         caption: What moves.
         until: End of the part shown, in s; None shows it all.
     """
-    rows = rows_until(run, until)
-    finite = np.isfinite(run.joints("q")[rows]).all(axis=1)
-    t, q, tip, desired = (
-        values[rows][finite] for values in (run.t, run.joints("q"), run.vector("tip"), run.vector("desired"))
-    )
+    t, q, tip, desired = _motion(run, until)
     few, path = spaced_indices(len(t), _FRAMES), spaced_indices(len(t), 5 * _FRAMES)
     moving = moving_arm(run.model, q[few], float(t[-1] - t[0]), tip[path], desired[path])
     return Cover(caption, moving, playback(run, caption, until).still)

@@ -10,11 +10,11 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError
-from runner.base.paths import studies_dir, studies_with
+from runner.base.paths import studies_dir
 from runner.schema.model import StrictModel
 
 CLAIMS = "claims.yaml"
-_STATEMENTS = "statements.yaml"
+STATEMENTS = "statements.yaml"
 FACTOR = 1.5
 """By which factor a simulated value may differ from a printed one that it matches: sources read theirs off plots."""
 Verdict = Literal[
@@ -140,11 +140,6 @@ class PublishedClaim(Simulation):
         return self.printed[-1] if self.printed else None
 
 
-def studies_with_claims() -> list[str]:
-    """Return the names of the studies that have claims, sorted."""
-    return studies_with(CLAIMS)
-
-
 def load_claims(study: str | Path) -> list[PublishedClaim]:
     """Return the published numbers of a study in order.
 
@@ -179,11 +174,6 @@ class PublishedStatement(StrictModel):
     reason: str = ""
 
 
-def studies_with_statements() -> list[str]:
-    """Return the names of the studies that have statements, sorted."""
-    return studies_with(_STATEMENTS)
-
-
 def load_statements(study: str | Path) -> list[PublishedStatement]:
     """Return the statements of a study in order.
 
@@ -193,7 +183,7 @@ def load_statements(study: str | Path) -> list[PublishedStatement]:
     Raises:
         RunnerError: if its file does not fit; names the file, the entries and keys.
     """
-    return read_data(studies_dir() / study / _STATEMENTS, list[PublishedStatement])
+    return read_data(studies_dir() / study / STATEMENTS, list[PublishedStatement])
 
 
 def judge(printed: float, measured: float | None, bound: float | None = None) -> Verdict:

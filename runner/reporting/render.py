@@ -5,7 +5,7 @@ from pathlib import Path
 
 from runner.base.errors import RunnerError
 from runner.reporting import html, pdf
-from runner.reporting.consistency import color_series, in_readable_units
+from runner.reporting.consistency import make_consistent
 from runner.reporting.document import Document
 from runner.store.atomic import write_atomically
 
@@ -33,7 +33,7 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
     if unknown:
         raise RunnerError(f"unknown report format {', '.join(unknown)}; allowed: {', '.join(_RENDERERS)}")
     folder.mkdir(parents=True, exist_ok=True)
-    shown = in_readable_units(color_series(document))
+    shown = make_consistent(document)
     written = [folder / f"report.{name}" for name in formats]
     for name, path in zip(formats, written, strict=True):
         write_atomically(path, _RENDERERS[name](shown))

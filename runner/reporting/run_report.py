@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.config.compose.compose import compose
@@ -174,7 +175,7 @@ def config_blocks(run: Run) -> list[Block]:
     """Return the keys that were changed, and then all of them; only all keys for a config that no group here makes."""
     changed = changed_keys(run)
     resolved = {key: value for key, value in run.config.items() if key != "outputs"}
-    rows = [[key, _yaml(value)] for key, value in flatten(resolved).items()]
+    rows = [[dotted(place), _yaml(value)] for place, value in leaves(resolved, lists=False)]
     file = Code(yaml.safe_dump(resolved, sort_keys=False, allow_unicode=True), "config.yaml")
     everything: list[Block] = [
         Table("All keys and their values.", [*_KEY_AND_VALUE], rows, folded=changed is not None),
@@ -249,17 +250,6 @@ def changed_keys(run: Run) -> dict[str, tuple[Any, Any]] | None:
         plain = compose([f"{group}={name}" for group, name in choices.items() if group != "experiment"])
     except ConfigError:
         return None
-    before, now = flatten(plain.resolved), flatten(run.config)
-    keys = [key for key in now if key != "outputs" and key in before and before[key] != now[key]]
-    return {key: (before[key], now[key]) for key in keys}
-
-
-def flatten(value: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Return the values of a config by their dotted keys."""
-    flat: dict[str, Any] = {}
-    for key, item in value.items():
-        if isinstance(item, Mapping) and item:
-            flat |= flatten(item, f"{prefix}{key}.")
-        else:
-            flat[f"{prefix}{key}"] = item
-    return flat
+    before, now = (dict(leaves(config, lists=False)) for config in (plain.resolved, run.config))
+    places = [place for place in now if place != ("outputs",) and place in before and before[place] != now[place]]
+    return {dotted(place): (before[place], now[place]) for place in places}

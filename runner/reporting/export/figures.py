@@ -15,7 +15,7 @@ from runner.base.sanitize import csv_text
 from runner.reporting.charts import static
 from runner.reporting.charts.figure import Map, Panel, Series
 from runner.reporting.charts.sheet import Sheet
-from runner.reporting.consistency import color_series, in_readable_units
+from runner.reporting.consistency import make_consistent
 from runner.reporting.document import Curves, Document, Maps, Picture, Playback
 from runner.reporting.markup import spans
 from runner.reporting.outline import blocks, numbered_place
@@ -38,7 +38,7 @@ def figures_of(document: Document) -> dict[str, Figure]:
     A name says what the figure shows, such as tracking-error-by-controller. It begins with the figure's number in the
     source if it has one, such as figure-3-5, and ends with -2, -3, ... if an earlier figure shows the same.
     """
-    document = in_readable_units(color_series(document))
+    document = make_consistent(document)
     named: dict[str, Figure] = {}
     for block in blocks(document):
         if isinstance(block, Curves | Maps | Picture | Playback):

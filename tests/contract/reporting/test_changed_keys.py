@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from runner.config.compose.compose import compose
-from runner.reporting.run_report import changed_keys, flatten
+from runner.reporting.run_report import changed_keys
 
 
 @dataclass
@@ -33,7 +33,3 @@ def test_nothing_is_named_where_nothing_was_set() -> None:
 
 def test_groups_that_are_not_here_are_told_by_none() -> None:
     assert changed_keys(_Run({}, {"choices": {"robot": "of_a_stranger"}})) is None
-
-
-def test_keys_are_dotted() -> None:
-    assert flatten({"a": {"b": 1, "c": {}}, "d": [2]}) == {"a.b": 1, "a.c": {}, "d": [2]}

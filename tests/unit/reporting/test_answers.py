@@ -39,9 +39,9 @@ def test_up_to_two_per_cent_of_the_larger_median_is_no_answer(size):
 
 
 def test_of_a_fraction_it_is_two_hundredths():
-    told = {"metric": "saturation_fraction", "unit": "1", "size": 0.001}
-    assert one(0.0199 * (1 + 1e-6 * APART), **told).word == "less than 0.02 apart"
-    assert one(0.0201 * (1 + 1e-6 * APART), **told).word == "larger"
+    values = {"metric": "saturation_fraction", "unit": "1", "size": 0.001}
+    assert one(0.0199 * (1 + 1e-6 * APART), **values).word == "less than 0.02 apart"
+    assert one(0.0201 * (1 + 1e-6 * APART), **values).word == "larger"
 
 
 def test_what_the_plants_step_leaves_is_no_answer_and_is_told():

@@ -18,25 +18,27 @@ def found(a, b):
 
 def test_one_value_differs_alone():
     a, b = (side(name, LAWS, nothing, noise={"position": size}) for name, size in (("A", 1e-3), ("B", 1e-4)))
-    told = found(a, b)
-    assert list(told.values) == [Value("noise.position", "0.001", "0.0001")]
-    assert told.in_words("A", "B") == "A and B differ only in noise.position: 0.001 against 0.0001."
+    differences = found(a, b)
+    assert list(differences.values) == [Value("noise.position", "0.001", "0.0001")]
+    assert differences.in_words("A", "B") == "A and B differ only in noise.position: 0.001 against 0.0001."
 
 
 def test_an_option_differs_alone_where_only_one_has_its_other_values():
     a = side("A", LAWS, nothing, controller={"kind": "computed_torque", "gain": 30.0, "integral_gain": 0.0})
     b = side("B", LAWS, nothing, controller={"kind": "operational_space", "gain": 30.0, "null_space": "none"})
-    told = found(a, b)
-    assert told.in_words("A", "B") == ("A and B differ only in controller: computed_torque against operational_space.")
-    assert told.values == []
+    differences = found(a, b)
+    assert differences.in_words("A", "B") == (
+        "A and B differ only in controller: computed_torque against operational_space."
+    )
+    assert differences.values == []
 
 
 def test_a_gain_that_both_laws_have_is_named_beside_them():
     a = side("A", LAWS, nothing, controller={"kind": "computed_torque", "gain": 30.0}, plant={"step": 1e-3})
     b = side("B", LAWS, nothing, controller={"kind": "operational_space", "gain": 5.0}, plant={"step": 1e-4})
-    told = found(a, b)
-    assert told.names == ["controller", "controller.gain", "plant.step"]
-    assert told.in_words("A", "B") == (
+    differences = found(a, b)
+    assert differences.names == ["controller", "controller.gain", "plant.step"]
+    assert differences.in_words("A", "B") == (
         "A and B differ in controller (computed_torque against operational_space), and also in controller.gain, "
         "plant.step. What follows may be due to any of these."
     )

@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from runner.reporting.consistency import color_series
+from runner.reporting.consistency import make_consistent
 from runner.reporting.document import Curves, Document, Panel, Section, Series
 from runner.reporting.export.figures import figures_of
 
@@ -30,14 +30,14 @@ def colors(made):
 
 
 def test_a_name_keeps_its_colour_from_figure_to_figure():
-    first, third, second = colors(color_series(document(["Macro", "Mini"], ["Mini", "third"], ["Mini"])))
+    first, third, second = colors(make_consistent(document(["Macro", "Mini"], ["Mini", "third"], ["Mini"])))
     assert first["Mini"] == third["Mini"] == second["Mini"] == 1
     assert second["Mini"] != second.get("third")
 
 
 def test_stable_is_green_and_unstable_orange_whatever_else_a_figure_has():
     for found in colors(
-        color_series(document(["bound", "stable", "unstable"], ["unstable"], ["map", "bound", "stable"]))
+        make_consistent(document(["bound", "stable", "unstable"], ["unstable"], ["map", "bound", "stable"]))
     ):
         assert found.get("stable", 2) == 2
         assert found.get("unstable", 3) == 3
@@ -45,7 +45,7 @@ def test_stable_is_green_and_unstable_orange_whatever_else_a_figure_has():
 
 
 def test_a_colour_that_a_figure_chose_is_kept_and_taken_over_elsewhere():
-    chosen, other, crowded = colors(color_series(document([("tip", 4)], [("a", 4), "tip"], ["tip", "b"])))
+    chosen, other, crowded = colors(make_consistent(document([("tip", 4)], [("a", 4), "tip"], ["tip", "b"])))
     assert chosen == {"tip": 4}
     assert other["tip"] == 4
     assert crowded["a"] == 4
@@ -53,7 +53,7 @@ def test_a_colour_that_a_figure_chose_is_kept_and_taken_over_elsewhere():
 
 
 def test_curves_without_a_name_stay_as_they_are():
-    (found, *_) = colors(color_series(document([("", 3), "a"])))
+    (found, *_) = colors(make_consistent(document([("", 3), "a"])))
     assert found == {"": 3, "a": 0}
 
 
@@ -63,7 +63,7 @@ def test_no_two_names_of_a_panel_share_a_colour(seed):
     names = [f"name {number}" for number in range(12)]
     panels = [list(rng.choice(names, 4, replace=False)) for _ in range(20)]
     of_name = {}
-    for found in colors(color_series(document(*panels))):
+    for found in colors(make_consistent(document(*panels))):
         assert all(found[a] != found[b] for a, b in combinations(found, 2))
         of_name |= {name: of_name.setdefault(name, color) for name, color in found.items()}
         assert all(of_name[name] == color for name, color in found.items())

@@ -4,8 +4,9 @@ import pytest
 import yaml
 
 from runner.base.errors import RunnerError
+from runner.base.paths import studies_with
 from runner.reporting import published_claims
-from runner.reporting.published_claims import load_claims, load_statements, studies_with_claims
+from runner.reporting.published_claims import CLAIMS, load_claims, load_statements
 
 
 @pytest.fixture
@@ -23,7 +24,7 @@ def entries(tmp_path, monkeypatch):
 THESIS = load_claims("thesis")
 
 
-@pytest.mark.parametrize("study", studies_with_claims())
+@pytest.mark.parametrize("study", studies_with(CLAIMS))
 def test_the_claims_of_a_study_are_numbered_in_order(study):
     assert [each.number for each in load_claims(study)] == list(range(1, len(load_claims(study)) + 1))
 
