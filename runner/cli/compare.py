@@ -67,7 +67,6 @@ def run(options: Namespace) -> int:
 
 
 def _compare(options: Namespace) -> None:
-    """Print a comparison of levels, runs or sweeps."""
     from runner.reporting.comparison.sweeps import answer_rows, compare_levels, compare_sweeps, measure_compared
     from runner.reporting.comparison.text import level_lines, run_lines, sweep_lines
     from runner.reporting.sweep.subject import main_metrics

@@ -117,7 +117,6 @@ def _study_of(path: Path) -> tuple[str, Path] | None:
 
 
 def _document(paths: Sequence[Path]) -> "tuple[Document, Path]":
-    """Return a report and the folder that it is written to."""
     studies = [study for path in paths if (study := _study_of(path)) is not None]
     if studies and len(paths) > 1:
         raise RunnerError("DIR: a study among several results. Allowed: one study, or runs, or sweeps.")

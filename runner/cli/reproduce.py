@@ -140,7 +140,6 @@ def _reproduce(study: "Study | None", options: Namespace) -> "tuple[str, _Reprod
 
 
 def _conclusions(made: Mapping[str, _Reproduced]) -> str:
-    """Return the conclusions of some studies as JSON."""
     from runner.study.conclusions import conclusions
 
     content = {
@@ -150,7 +149,6 @@ def _conclusions(made: Mapping[str, _Reproduced]) -> str:
 
 
 def _reproduce_study(study: "Study", options: Namespace) -> _Reproduced:
-    """Simulate the runs of a study, and create its document."""
     from runner.reporting.markup import literal
     from runner.study.check import formulas_at, problems
     from runner.study.claims import late_claims

@@ -54,7 +54,6 @@ def _series(panel: Panel, found: Mapping[str, int]) -> Iterator[Series]:
 
 
 def _changed(sections: Sequence[Section], change: Callable[[Block], Block]) -> list[Section]:
-    """Return sections, and those below them, with each of their blocks changed."""
     return [
         replace(each, blocks=list(map(change, each.blocks)), sections=_changed(each.sections, change))
         for each in sections

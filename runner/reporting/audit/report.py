@@ -140,7 +140,6 @@ def _source(source: str, checked: Sequence[CheckedEquation]) -> Section:
 
 
 def _consequences(checked: Sequence[CheckedEquation]) -> Sequence[str]:
-    """Return the names of the rollouts with wrong formulas, each once."""
     return list(dict.fromkeys(each.entry.consequence for each in checked if each.entry.consequence))
 
 

@@ -253,7 +253,6 @@ def _channels(series: Series) -> list[FloatArray]:
 
 
 def _kept(channels: list[FloatArray], points: int) -> NDArray[np.intp]:
-    """Return the sorted indices of the samples to keep."""
     length = channels[0].size
     count = max(1, points // (2 * len(channels)))
     edges = np.linspace(0, length, count + 1).astype(int)

@@ -78,7 +78,6 @@ def _metrics(runs: Sequence[Run], names: Sequence[str]) -> Table:
 
 
 def _curves(runs: Sequence[Run], names: Sequence[str]) -> list[Block]:
-    """Return the curves and motions of the first runs."""
     blocks = overlaid(runs[:_MOST_CURVES], names[:_MOST_CURVES])
     if len(runs) > _MOST_CURVES:
         blocks.append(Notice("warning", f"{len(runs) - _MOST_CURVES} runs are not drawn", "The first ones are drawn."))

@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from runner.base.quantities import ROUNDING, SUPERSCRIPT, unit_text
 from runner.base.sanitize import one_line, plain
@@ -17,8 +17,7 @@ BEYOND, MISSING = "∞", "–"
 _MARKDOWN = re.compile(r"([\\`*{}\[\]#|~$!])|(?<![^\W_])(_)|(_)(?![^\W_])")  # an underscore within a word is itself
 
 
-@dataclass(frozen=True)
-class Unit:
+class Unit(NamedTuple):
     """A unit such as "mm", "N m" or "m/s^2", with a power of ten before it.
 
     Attributes:
@@ -35,8 +34,7 @@ class Unit:
         return f"{power} {unit_text(self.name)}".strip()
 
 
-@dataclass(frozen=True)
-class Written:
+class Written(NamedTuple):
     """A cell as text.
 
     Attributes:
@@ -56,8 +54,7 @@ class Written:
         return f"{self.text} [{self.low}, {self.high}]" if self.low else self.text
 
 
-@dataclass(frozen=True)
-class PaperColumn:
+class PaperColumn(NamedTuple):
     """A column of a table for a paper.
 
     Attributes:
@@ -103,7 +100,7 @@ def lay_out(table: Table) -> list[PaperColumn]:
         else:
             rows = [_write([cell], unit) for cell, unit in zip(cells, units, strict=True)]
             shown = [Written(str(unit), unit=unit) for unit, _ in rows]
-            laid = [replace(each, cells=shown) if each.kind == "unit" else each for each in laid]
+            laid = [each._replace(cells=shown) if each.kind == "unit" else each for each in laid]
             laid.append(PaperColumn(column.title, column.kind, [cell for _, (cell,) in rows], Unit("1")))
     return laid
 
@@ -189,5 +186,4 @@ def write_typst(table: Table, caption: str, sources: Sequence[str]) -> str:
 
 
 def _lines(columns: Sequence[PaperColumn]) -> list[list[str]]:
-    """Return the head and the rows as strings."""
     return [[each.head for each in columns], *map(list, zip(*(map(str, each.cells) for each in columns), strict=True))]

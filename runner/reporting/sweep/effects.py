@@ -97,7 +97,6 @@ def _on_chance(tests: int) -> str:
 
 
 def _main_effects(subject: Subject) -> list[Curves]:
-    """Return a figure for each metric, with a panel for each axis."""
     figures: list[Curves] = []
     for metric in subject.metrics[:3]:
         panels = [_main_effect(subject, metric, axis) for axis in subject.axes]

@@ -187,7 +187,6 @@ def _row(one: Failing, x: Axis, y: Axis, cells: NDArray[np.intp], start: str) ->
 
 
 def _texts(failing: Failing) -> list[str]:
-    """Return a phrase for each cell on a bound."""
     columns = zip(failing.failed, failing.of, failing.share, *failing.ends, failing.few, strict=True)
     return [
         f"{failed} of {of} failed, {probability(share)} ({probability(low)} to {probability(high)})"

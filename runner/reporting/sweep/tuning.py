@@ -277,7 +277,6 @@ def _front(trials: Trials) -> Section:
 
 
 def _keys(trials: Trials) -> Section:
-    """Return the objectives over each key, and the importance of the keys."""
     panels = []
     for index, objective in enumerate(trials.objectives):
         y = trials.values(index)
@@ -307,7 +306,6 @@ def _importance(trials: Trials) -> Block:
 
 
 def _chosen(trials: Trials, runs: dict[int, Run]) -> Section:
-    """Return the trial that is best in each objective."""
     one = len(trials.objectives) == 1
     sections = []
     for place, objectives in trials.best_by_objective().items():
