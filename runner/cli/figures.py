@@ -137,7 +137,9 @@ def _of_study(name: str, outputs: Path) -> "tuple[Document, Path]":
     folder, mend = outputs / "reports" / Path(name).name, f"`runner reproduce {name} --output {outputs}` makes"
     if not folder.is_dir():
         raise RunnerError(f"no report on {name} in {outputs}; {mend} it")
+    from runner.study.chapters import Chapters
     from runner.study.execute import count_missing, make_all
+    from runner.study.report import study_document
     from runner.study.study import load_study
 
     print(f"looking for the runs of {name} ...", file=sys.stderr)
@@ -146,7 +148,7 @@ def _of_study(name: str, outputs: Path) -> "tuple[Document, Path]":
     if missing:
         raise RunnerError(f"{missing} runs of {name} are not stored in {outputs} as they are made today; {mend} them")
     study.measure(outputs)
-    return study.document(*make_all(study, outputs)), folder
+    return study_document(Chapters(study, *make_all(study, outputs))), folder
 
 
 def _tell_failure(run: "Run") -> None:

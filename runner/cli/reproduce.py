@@ -150,20 +150,22 @@ def _conclusions(made: Mapping[str, _Reproduced]) -> str:
 
 def _reproduce_study(study: "Study", options: Namespace) -> _Reproduced:
     from runner.reporting.markup import literal
+    from runner.study.chapters import Chapters
     from runner.study.check import formulas_at, problems
     from runner.study.claims import late_claims
     from runner.study.execute import make_all
+    from runner.study.report import study_document
 
     study.measure(options.output)
     runs, calibrations = make_all(study, options.output, options.overrides, options.command)
     missing = runs.missing | calibrations.missing
-    chapters = study.chapters(runs, calibrations)
-    document = study.document(runs, calibrations, chapters)
+    chapters = Chapters(study, runs, calibrations)
+    document = study_document(chapters)
     late = late_claims(options.output, study, runs)
     document = replace(document, notes=[*document.notes, *map(literal, late)])
     for line in late:
         print(f"runner: {study.name}: {line}", file=sys.stderr)
-    found = [*problems(study, runs, calibrations, chapters, document)] if options.check else []
+    found = [*problems(chapters, document)] if options.check else []
     for line in [] if options.check else formulas_at(study, document):
         print(f"runner: {line}", file=sys.stderr)
     return _Reproduced(document, runs, missing, study.expected, found, calibrations)

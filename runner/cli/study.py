@@ -59,13 +59,13 @@ def _check(options: Namespace) -> int:
     from runner.study.names import find_study
 
     find_study(options.study)  # rejects an unknown name before anything is read
+    from runner.study.chapters import Chapters
     from runner.study.check import problems
     from runner.study.execute import make_all
     from runner.study.study import load_study
 
     study = load_study(options.study, options.code)
-    runs, calibrations = make_all(study, options.output)
-    found = [*problems(study, runs, calibrations)]
+    found = [*problems(Chapters(study, *make_all(study, options.output)))]
     for line in found:
         print(one_line(line))
     print("nothing is wrong" if not found else f"{len(found)} problem{'s' if len(found) > 1 else ''}")

@@ -1,7 +1,7 @@
 """Chapters of a study, from Markdown or Python files."""
 
 import shlex
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from inspect import signature
 from pathlib import Path
@@ -13,20 +13,20 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.limits import CHAPTER, read_text
 from runner.reporting.audit.report import rows
-from runner.reporting.document import Claim, Equations, Origin, Section, Verdicts
+from runner.reporting.document import Claim, Equations, Notice, Origin, Section, Text, Verdicts
+from runner.reporting.markup import literal
 from runner.reporting.outline import number_sections
 from runner.reporting.published_claims import CLAIMS, FACTOR, PublishedClaim, Verdict, load_claims
 from runner.store import Calibration, Run
 from runner.study.claims import judged_claims, legend
-from runner.study.code import Code, public_functions
-from runner.study.grids import Grids
-from runner.study.manifest import Manifest, Part
+from runner.study.code import public_functions
+from runner.study.manifest import Part
 from runner.study.measured import Finding, Measured
 from runner.study.prose import blocks, plots, read_chapter, signals, tables
 from runner.study.prose.compared import compare
 from runner.study.prose.reader import Reading
-from runner.study.report import parts
-from runner.study.results import Results, Runs
+from runner.study.results import LeftOutError, MissingError, Results, Runs
+from runner.study.study import Study
 
 SHARED = (blocks, signals, tables, plots)
 """The modules whose functions every chapter may call."""
@@ -38,34 +38,19 @@ class Chapters:
     """The chapters of a study, made from its stored runs and calibrations; each file is read once.
 
     Args:
-        folder: The study's folder.
-        manifest: Content of study.yaml.
-        code: Its Python.
-        grids: Its runs.yaml.
-        command: What `runner reproduce` takes for it: its name or its folder.
-        runs: The runs by name.
-        calibrations: The calibrations by name.
+        study: The study.
+        runs: Its stored runs by name.
+        calibrations: Its stored calibrations by name.
     """
 
-    def __init__(
-        self,
-        folder: Path,
-        manifest: Manifest,
-        code: Code,
-        grids: Grids,
-        command: str,
-        runs: Runs,
-        calibrations: Results[Calibration],
-    ) -> None:
-        self._folder, self._manifest, self._code, self._grids = folder, manifest, code, grids
-        self._command = shlex.join(["runner", "reproduce", command])
-        self._runs, self._calibrations = runs, calibrations
+    def __init__(self, study: Study, runs: Runs, calibrations: Results[Calibration]) -> None:
+        self.study, self.runs, self.calibrations = study, runs, calibrations
         self._readings: dict[str, Reading] = {}
 
     def sections(self) -> list[Section]:
         """Return all chapters; one that needs what was not made says so in its place."""
-        progress.begin("writing chapters", _count(self._manifest.chapters), "chapters")
-        return self._each(self._manifest.chapters)
+        progress.begin("writing chapters", _count(self.study.manifest.chapters), "chapters")
+        return self._each(self.study.manifest.chapters)
 
     def said(self, stem: str) -> dict[str, Any]:
         """Return the named numbers and strings of a chapter in Markdown, and as `holds` whether its findings hold."""
@@ -86,9 +71,9 @@ class Chapters:
         """
         if stem not in self._readings:
             file = f"{stem}.md"
-            values = self._code.values(_FIGURES) + self._code.values(stem)
+            values = self.study.code.values(_FIGURES) + self.study.code.values(stem)
             self._readings[stem] = read_chapter(
-                f"{self._folder.name}/{file}", self._text(file), self.names(stem), values
+                f"{self.study.folder.name}/{file}", self._text(file), self.names(stem), values
             )
         return self._readings[stem]
 
@@ -99,13 +84,13 @@ class Chapters:
         the module with the chapter's name; and what study.yaml, runs.yaml and claims.yaml hold. A function whose
         first argument is `runs` or `calibrations` gets these.
         """
-        presets, tunings = self._manifest.presets, self._grids.tunings
+        presets, tunings = self.study.manifest.presets, self.study.grids.tunings
         found: dict[str, Any] = {
-            "level_of": self._grids.level,
-            "value": self._grids.value,
+            "level_of": self.study.grids.level,
+            "value": self.study.grids.value,
             "ranges": {name: {key: [*own] for key, own in each.ranges.items()} for name, each in tunings.items()},
             "presets": presets,
-            "words": self._manifest.words,
+            "words": self.study.manifest.words,
             "claims": self._claims,
             "claims_that": self._claims_that,
             "verdicts": lambda caption: Verdicts(caption, self._claims(), self._legend()),
@@ -113,27 +98,27 @@ class Chapters:
             "verdict_factor": FACTOR,
             "equations": self._equations,
             "said": self.said,
-            "compare": partial(compare, self._runs, presets, self._published()),
+            "compare": partial(compare, self.runs, presets, self._published()),
         }
         for module in SHARED:
             found |= _filled(public_functions(module), {"runs": self._stored()})
-        own = {"runs": self._runs, "calibrations": self._calibrations}
+        own = {"runs": self.runs, "calibrations": self.calibrations}
         for name in (_FIGURES, stem):
-            found |= _filled(self._code.functions(name), own)
+            found |= _filled(self.study.code.functions(name), own)
         return found
 
     def _stored(self) -> Results[Run | Calibration]:
         """Return runs and calibrations in one."""
-        runs, calibrations = self._runs, self._calibrations
+        runs, calibrations = self.runs, self.calibrations
         missing = {**runs.missing, **calibrations.missing}
         return Results({**runs, **calibrations}, missing, runs.dropped, runs.parts)
 
     def _claims(self) -> list[Claim]:
-        return judged_claims(self._published(), self._runs, self._manifest.presets)
+        return judged_claims(self._published(), self.runs, self.study.manifest.presets)
 
     def _published(self) -> list[PublishedClaim]:
         """Return its claims; none if it has no file of them."""
-        return load_claims(self._folder) if (self._folder / CLAIMS).is_file() else []
+        return load_claims(self.study.folder) if (self.study.folder / CLAIMS).is_file() else []
 
     def _legend(self) -> str:
         """Return the meaning of the words of its verdicts; empty without claims."""
@@ -146,8 +131,9 @@ class Chapters:
 
     def _equations(self, caption: str) -> Equations:
         """Return the printed equations of the study with their verdicts."""
-        checked = audit(Source(self._folder, self._code.runs))
-        return Equations(caption, rows(checked), Origin(command=self._command), self._folder.name)
+        checked = audit(Source(self.study.folder, self.study.code.runs))
+        command = shlex.join(["runner", "reproduce", self.study.command])
+        return Equations(caption, rows(checked), Origin(command=command), self.study.folder.name)
 
     def _each(self, chapters: Sequence[str | Part]) -> list[Section]:
         return parts((self._title(each), partial(self._one, each)) for each in chapters)
@@ -165,10 +151,10 @@ class Chapters:
         stem, _, suffix = chapter.rpartition(".")
         if suffix == "md":
             return self.reading(stem).section
-        make = self._code.functions(stem).get(_SECTION)
+        make = self.study.code.functions(stem).get(_SECTION)
         if make is None:
-            raise RunnerError(f"{self._folder / chapter}: must have a function {_SECTION}(runs)")
-        section: Section = make(self._runs)
+            raise RunnerError(f"{self.study.folder / chapter}: must have a function {_SECTION}(runs)")
+        section: Section = make(self.runs)
         return section
 
     def _title(self, chapter: str | Part) -> str:
@@ -179,7 +165,26 @@ class Chapters:
         return heading.removeprefix("# ").strip() if heading.startswith("# ") else chapter
 
     def _text(self, file: str) -> str:
-        return chapter_text(self._folder / file)
+        return chapter_text(self.study.folder / file)
+
+
+def parts(makers: Iterable[tuple[str, Callable[[], Section]]]) -> list[Section]:
+    """Return chapters or sections, made one by one; one that needs what was not made says so instead.
+
+    Args:
+        makers: What each of them is called where it is left out, such as its file, and what makes it.
+    """
+    found = []
+    for name, make in makers:
+        try:
+            found.append(make())
+        except LeftOutError as error:
+            text = f"The profile makes less than this part needs: {literal(str(error))}."
+            found.append(Section(f"Left out: {literal(name)}", (Text(text),)))
+        except MissingError as error:
+            notice = Notice("failure", "Left out", f"This part needs what was not made: {literal(str(error))}.")
+            found.append(Section(f"Left out: {literal(name)}", (notice,)))
+    return found
 
 
 def chapter_text(path: Path) -> str:

@@ -11,36 +11,28 @@ from runner.base.expressions.insertions import insertions
 from runner.base.paths import STUDY_FILE
 from runner.reporting.document import Document
 from runner.reporting.formulas import faulty
-from runner.store import Calibration
 from runner.study.chapters import Chapters, chapter_text
 from runner.study.conclusions import list_failed_findings
 from runner.study.expected_caveats import unexpected_caveats
 from runner.study.measured import Measured
 from runner.study.prose.expressions import Values
 from runner.study.prose.reader import Reading, Stated, conditions_of
-from runner.study.results import LeftOutError, MissingError, Parts, Results, Runs
+from runner.study.report import study_document
+from runner.study.results import LeftOutError, MissingError, Parts, Runs
 from runner.study.study import Study
 
 
-def problems(
-    study: Study,
-    runs: Runs,
-    calibrations: Results[Calibration],
-    chapters: Chapters | None = None,
-    document: Document | None = None,
-) -> Iterator[str]:
+def problems(chapters: Chapters, document: Document | None = None) -> Iterator[str]:
     """Yield the problems of a study, a line each.
 
     Every chapter is read, so that each expression is evaluated; every condition is tried with changed values.
 
     Args:
-        study: The study.
-        runs: Its stored runs by name.
-        calibrations: Its stored calibrations by name.
-        chapters: Its chapters, if they have been read.
+        chapters: The chapters of the study, with their runs.
         document: Its report, if it exists.
     """
-    levels, chapters, readable = levels_in(study.parts().values()), chapters or study.chapters(runs, calibrations), True
+    study, runs = chapters.study, chapters.runs
+    levels, readable = levels_in(study.parts().values()), True
     for file in study.manifest.files():
         try:
             yield from _of_chapter(study, file, chapters, levels)
@@ -55,7 +47,7 @@ def problems(
     if cover is not None and cover.run not in {**runs, **study.dropped()}:
         yield f"{study.folder.name}/{STUDY_FILE}: cover: no run '{cover.run}'{nearest(cover.run, list(runs))}"
     if document is not None or readable:
-        document = document or study.document(runs, calibrations, chapters)
+        document = document or study_document(chapters)
         yield from list_failed_findings(document)
         yield from formulas_at(study, document)
 

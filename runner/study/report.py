@@ -1,7 +1,7 @@
 """Report on a study: chapters, provenance, caveats, checklist of the source (`checklist.yaml`) and citation."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Self
 
@@ -27,14 +27,17 @@ from runner.reporting.document import (
     Text,
     Verdicts,
 )
-from runner.reporting.markup import literal
+from runner.reporting.figures import cover
 from runner.reporting.outline import number_sections
 from runner.reporting.run_report import provenance
 from runner.reporting.verdicts import find_conditional_claims
 from runner.schema.model import StrictModel
 from runner.store import Calibration, Run
+from runner.study.chapters import Chapters
 from runner.study.expected_caveats import ExpectedCaveat, caveats_section, unexpected_caveats
-from runner.study.results import LeftOutError, MissingError, Runs, distinct
+from runner.study.manifest import CoverRun
+from runner.study.results import Runs, distinct
+from runner.study.study import Study
 
 _FILE = "checklist.yaml"
 _MISSING, _NOWHERE = "missing", "–"
@@ -156,44 +159,39 @@ def _places(sections: Sequence[Section]) -> tuple[dict[str, str], dict[str, str]
     return titles, numbers
 
 
-def study_document(
-    title: str,
-    subtitle: str,
-    abstract: str,
-    chapters: Sequence[Section],
-    runs: Runs,
-    calibrations: Mapping[str, Calibration],
-    expected: Sequence[ExpectedCaveat],
-    checklist: Checklist | None,
-    code: str,
-    cover: Cover | None = None,
-    bibtex: str = "",
-    profile: Sequence[Section] = (),
-) -> Document:
-    """Return the report on a study.
-
-    Args:
-        title: The study's title.
-        subtitle: Whose it is.
-        abstract: What comes out; inline mathematics as in Text.
-        chapters: The report's own chapters.
-        runs: The stored runs of the study's plan, by name.
-        calibrations: The stored calibrations of the study, by name.
-        expected: The caveats that the study expects of them.
-        checklist: Checklist of the source, for the last chapter; None if the study has no list.
-        code: What is to be said of the study's own code; nothing where it has none.
-        cover: The picture of the first screen.
-        bibtex: BibTeX entry of the source; empty where there is none.
-        profile: Sections on the profile; empty for the whole study.
-    """
+def study_document(chapters: Chapters) -> Document:
+    """Return the report on a study, from its chapters and their runs."""
+    study, runs, made = chapters.study, chapters.runs, chapters.sections()
+    manifest, first = study.manifest, 1 if made and made[0].answers else 0  # answers come before what is said of runs
     missing = [_missing(runs.missing)] if runs.missing else []
-    first = 1 if chapters and chapters[0].answers else 0  # the answers come before what is said of the runs
-    made = [*chapters[:first], *profile, *missing, *chapters[first:]]
-    sections = [*made, caveats_section(runs, expected), _where_from(runs, calibrations, code)]
+    before = [*made[:first], *_by_profile(study, runs), *missing, *made[first:]]
+    about = study.code.about()
+    sections = [*before, caveats_section(runs, study.expected), _where_from(runs, chapters.calibrations, about)]
     date = max((str(run.provenance["date"]) for run in runs.values()), default="")
+    checklist = load_checklist(study.folder)
     listed = [checklist.section(sections)] if checklist else []
-    everything = [*sections, *listed, citing_section(title, subtitle, bibtex, runs)]
-    return Document(title, subtitle, abstract, everything, date, cover, _notes(chapters, runs, expected))
+    everything = [*sections, *listed, citing_section(manifest.title, manifest.source, manifest.bibtex, runs)]
+    notes = _notes(made, runs, study.expected)
+    cover = _cover(manifest.cover, runs)
+    return Document(manifest.title, manifest.source, manifest.abstract, everything, date, cover, notes)
+
+
+def _by_profile(study: Study, runs: Runs) -> list[Section]:
+    """Return what the profile makes otherwise than the whole study; nothing where that is nothing."""
+    dropped, repetitions = study.dropped(), study.chosen.repetitions if study.chosen else None
+    if not (dropped or repetitions):
+        return []
+    less = " and leaves out some of the whole study" if dropped else ""
+    each = f" Every run has {repetitions} repetitions." if repetitions else ""
+    text = f"The profile {study.profile} takes {len(distinct(runs)):,} runs{less}.{each}"
+    return [Section("Made with a profile", (Text(text),))]
+
+
+def _cover(wanted: CoverRun | None, runs: Runs) -> Cover | None:
+    """Return the picture of the first screen; None where there is none, or its run was not made."""
+    if wanted is None or wanted.run not in runs or runs[wanted.run].status == "failed":
+        return None
+    return cover(runs[wanted.run], wanted.caption, wanted.end)
 
 
 def _notes(chapters: Sequence[Section], runs: Mapping[str, Run], expected: Sequence[ExpectedCaveat]) -> list[str]:
@@ -220,25 +218,6 @@ def _where_from(runs: Mapping[str, Run], calibrations: Mapping[str, Calibration]
         rows = provenance(list(runs.values())).rows
         blocks.append(Provenance([*rows, *([("code of the study", code)] if code else [])]))
     return Section("Provenance", blocks)
-
-
-def parts(makers: Iterable[tuple[str, Callable[[], Section]]]) -> list[Section]:
-    """Return chapters or sections, made one by one; one that needs what was not made says so instead.
-
-    Args:
-        makers: What each of them is called where it is left out, such as its file, and what makes it.
-    """
-    found = []
-    for name, make in makers:
-        try:
-            found.append(make())
-        except LeftOutError as error:
-            text = f"The profile makes less than this part needs: {literal(str(error))}."
-            found.append(Section(f"Left out: {literal(name)}", (Text(text),)))
-        except MissingError as error:
-            notice = Notice("failure", "Left out", f"This part needs what was not made: {literal(str(error))}.")
-            found.append(Section(f"Left out: {literal(name)}", (notice,)))
-    return found
 
 
 def _missing(missing: Mapping[str, str]) -> Section:

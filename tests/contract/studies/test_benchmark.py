@@ -23,6 +23,7 @@ from runner.studies.benchmark.horizon import grown
 from runner.studies.benchmark.how_tuned import ends_of
 from runner.studies.benchmark.late_and_limited import bearable
 from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
+from runner.study.chapters import Chapters
 from runner.study.check import never_failing
 from runner.study.measured import findings
 from runner.study.results import Results
@@ -272,7 +273,7 @@ def test_what_the_full_profile_alone_shows(tmp_path, whole, file):
     }[file]
     wanted = re.compile(rf"first/({arms})/\w+/circle/{condition}/.*")
     names = [name for name in whole if wanted.fullmatch(name)]
-    chapters = STUDY.chapters(STUDY.results(benchmark_runs(names, recorded("benchmark", tmp_path))), Results({}))
+    chapters = Chapters(STUDY, STUDY.results(benchmark_runs(names, recorded("benchmark", tmp_path))), Results({}))
     told = [finding for _, finding in findings(SimpleNamespace(sections=[chapters.section(file)]))]
     assert [each.title for each in told if not each.holds] == []
     assert len(told) == count

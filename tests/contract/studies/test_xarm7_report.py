@@ -12,6 +12,7 @@ from runner.reporting.render import write_report
 from runner.reporting.words import PRESET
 from runner.study.chapters import Chapters
 from runner.study.measured import findings
+from runner.study.report import study_document
 from runner.study.results import Results
 from runner.study.study import load_study
 
@@ -35,7 +36,7 @@ def document(runs):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Chapters, "section", without_studies)
-        return load_study("xarm7").document(runs, Results({}))
+        return study_document(Chapters(load_study("xarm7"), runs, Results({})))
 
 
 def blocks_of(document, *kinds):

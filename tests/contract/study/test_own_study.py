@@ -12,10 +12,12 @@ from runner.base.paths import example_study_dir
 from runner.cli.main import dispatch
 from runner.reporting import html, pdf
 from runner.reporting.document import Table
+from runner.study.chapters import Chapters
 from runner.study.check import problems
 from runner.study.execute import make_all
 from runner.study.measured import findings
 from runner.study.names import find_study, study_names, write_new
+from runner.study.report import study_document
 from runner.study.results import Results
 from runner.study.study import load_study
 from runner.sweeps.job import run
@@ -59,17 +61,13 @@ def made(tmp_path_factory):
     return {name: run(*job, f"outputs={root}") for name, job in jobs.items()}
 
 
-def results(study, runs):
-    return study.results(runs), Results({})
-
-
-def document(study, runs):
-    return study.document(*results(study, runs))
+def chapters(study, runs, missing=None):
+    return Chapters(study, study.results(runs, missing), Results({}))
 
 
 def read(folder, runs, **options):
     study = load_study(str(folder), **options)
-    return study, study.chapters(*results(study, runs)).sections()
+    return study, chapters(study, runs).sections()
 
 
 @pytest.mark.costs(5)
@@ -94,8 +92,9 @@ def test_answers_of_the_first_chapter_open_the_report(tmp_path, made):
     answer = CHAPTER.replace("# One", "# Does it err?").replace("::: finding It errs\n", "::: stands It does.\n")
     files = {"study__yaml": ABOUT.replace("[one.md]", "[answers.md, one.md]"), "answers__md": answer}
     study = load_study(str(a_study(tmp_path / "paper", **files)))
-    assert [*problems(study, *results(study, made))] == []
-    plain, opened = (document(load_study(str(a_study(tmp_path / "paper", **own))), made) for own in ({}, files))
+    assert [*problems(chapters(study, made))] == []
+    studies = (load_study(str(a_study(tmp_path / "paper", **own))) for own in ({}, files))
+    plain, opened = (study_document(chapters(each, made)) for each in studies)
     assert (plain.answers, [each.title for each in opened.answers]) == ([], ["It does."])
     assert all(finding[1].claim != "It does." for finding in findings(plain))
     assert [number for number, each in findings(opened) if each.claim == "It does."] == ["1"]
@@ -124,7 +123,7 @@ def test_its_chapters_read_its_runs(tmp_path, made):
     assert table.lines[0] == ["preset", "error (mm)"]
     assert [row[0] for row in table.lines[1:]] == ["slow", "slow", "fast", "fast"]
     assert finding.holds
-    assert [*problems(study, *results(study, made))] == []
+    assert [*problems(chapters(study, made))] == []
 
 
 @pytest.mark.parametrize(
@@ -140,7 +139,7 @@ def test_what_is_wrong_with_a_study_is_told_with_its_place(tmp_path, made, holds
     text = CHAPTER.replace("holds: error > 1e-9", holds).replace("It errs by {{ error }}.", words)
     text = "\n".join(line for line in text.splitlines() if not line.startswith("{{ table"))
     study = load_study(str(a_study(tmp_path / "paper", one__md=text)))
-    found = [*problems(study, *results(study, made))]
+    found = [*problems(chapters(study, made))]
     assert len(found) == 1
     assert re.search(told, found[0]), found
 
@@ -164,7 +163,7 @@ def test_reproduce_with_check_finds_what_study_check_finds(tmp_path, capsys):
 def test_caveats_that_no_run_can_have_are_told(tmp_path, made):
     caveats = "- {rules: [saturation], runs: [gaol/*], why: So.}\n"
     study = load_study(str(a_study(tmp_path / "paper", caveats__yaml=caveats)))
-    assert [*problems(study, *results(study, made))] == ["paper: gaol/*: expected caveats: no run of it is named so"]
+    assert [*problems(chapters(study, made))] == ["paper: gaol/*: expected caveats: no run of it is named so"]
 
 
 def test_a_cover_shows_a_run_in_motion_and_one_that_is_none_is_told(tmp_path, made):
@@ -173,10 +172,10 @@ def test_a_cover_shows_a_run_in_motion_and_one_that_is_none_is_told(tmp_path, ma
             str(a_study(tmp_path / "paper", study__yaml=ABOUT + f"cover: {{run: {run}, caption: It moves.}}\n"))
         )
 
-    assert "<animate" in document(with_cover("goal/slow/0.1"), made).cover.moving
+    assert "<animate" in study_document(chapters(with_cover("goal/slow/0.1"), made)).cover.moving
     study = with_cover("goal/slwo/0.1")
-    assert document(study, made).cover is None
-    (told,) = problems(study, *results(study, made))
+    assert study_document(chapters(study, made)).cover is None
+    (told,) = problems(chapters(study, made))
     assert re.search(r"paper/study.yaml: cover: no run 'goal/slwo/0.1' \(did you mean goal/slow/0.1\?\)", told), told
 
 
@@ -205,7 +204,7 @@ def test_functions_of_the_study_are_called_where_code_may_run(tmp_path, made):
     assert section.blocks[0].text == "There are 4 runs, 4."
     _, (section,) = read(folder, made)
     assert section.title == "Left out: One"
-    assert "not run" in document(load_study(str(folder)), made).sections[-2].blocks[1].rows[-1][1]
+    assert "not run" in study_document(chapters(load_study(str(folder)), made)).sections[-2].blocks[1].rows[-1][1]
 
 
 def test_code_that_cannot_be_imported_is_told(tmp_path, made):
@@ -217,7 +216,7 @@ def test_code_that_cannot_be_imported_is_told(tmp_path, made):
 def test_a_run_that_was_not_made_leaves_its_chapter_out(tmp_path, made):
     study = load_study(str(a_study(tmp_path / "paper")))
     runs = {name: each for name, each in made.items() if name != "goal/slow/0.1"}
-    (section,) = study.chapters(study.results(runs, {"goal/slow/0.1": "cut short"}), Results({})).sections()
+    (section,) = chapters(study, runs, {"goal/slow/0.1": "cut short"}).sections()
     assert section.title == "Left out: One"
     assert "goal/slow/0.1: cut short" in section.blocks[0].text
 
@@ -346,7 +345,7 @@ def test_all_equations_that_cannot_be_checked_are_told_at_once(tmp_path):
 
 def test_a_formula_that_cannot_be_read_is_told_with_its_line(tmp_path, made):
     study = load_study(str(a_study(tmp_path / "paper", one__md="# One\n\nSo.\n\nThis is $frac(1$.\n")))
-    assert [*problems(study, *results(study, made))] == ["paper/one.md:5: frac(1: no formula in Typst's notation"]
+    assert [*problems(chapters(study, made))] == ["paper/one.md:5: frac(1: no formula in Typst's notation"]
 
 
 def test_claims_that_do_not_fit_are_told_before_anything_is_made(tmp_path):
