@@ -13,7 +13,14 @@ from runner.calibration import REST, GravityCalibration, Tool, WrenchCompensatio
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.reporting.document import Curves, Table
 from runner.studies.meca500.figures import consistency, error, fit, predicted, refusal
-from runner.studies.meca500.gravity import angles, exact_readings, force_step, swapped_moment_step
+from runner.studies.meca500.gravity import (
+    _left_over,
+    angles,
+    exact_readings,
+    force_step,
+    left_over_panels,
+    swapped_moment_step,
+)
 from runner.studies.meca500.tool_centre_point import common_point_covariance, independent_rows_covariance
 
 GRAVITY = 9.81
@@ -147,3 +154,13 @@ def test_swapped_axes_give_another_centre_of_mass():
 def test_arc_cosine_loses_the_sign_and_arc_sine_the_half_turn(calibrations):
     assert angles(calibrations, -0.3) == ["-0.3", "0.300", "-0.300", "-0.300"]
     assert angles(calibrations, 2.0) == ["2", "2.000", "1.142", "2.000"]
+
+
+def test_what_is_left_over_is_drawn_over_the_angle_from_straight_down(calibrations):
+    force, moment = left_over_panels(calibrations, "gravity/base")
+    rotations = _left_over(calibrations["gravity/base"])[0]
+    down = np.degrees(np.arccos(rotations @ [0.0, 0.0, 1.0] @ [0.0, 0.0, -1.0]))
+    for panel in (force, moment):
+        middle, high = panel.series
+        assert middle.x == pytest.approx(np.sort(down))
+        assert (middle.y <= high.y).all()

@@ -2,7 +2,7 @@
 
 import pytest
 
-from runner.reporting.document import Items, Table, Text
+from runner.reporting.document import Items, Section, Table, Text
 from runner.reporting.markup import link_text, mark_text
 from runner.study.measured import Measured
 from runner.study.prose import ProseError, read_chapter
@@ -32,6 +32,13 @@ def test_paragraphs_lists_and_sections_become_blocks():
     (below,) = chapter.sections
     assert (below.title, below.blocks) == ("Below", (Text("Two."),))
     assert (below.sections[0].title, below.sections[0].blocks) == ("Deeper", (TABLE, TABLE))
+
+
+def test_an_inserted_section_is_beside_those_of_the_chapter_and_within_no_other():
+    names = {**NAMES, "section": lambda: Section("Inserted", (TABLE,))}
+    chapter = read("## First\n\nOne.\n\n{{ section() }}\n\n## Second\n\nTwo.", names)
+    assert [each.title for each in chapter.sections] == ["First", "Inserted", "Second"]
+    assert chapter.sections[0].blocks == (Text("One."),)
 
 
 def test_marks_and_mathematics_of_a_sentence():

@@ -114,3 +114,11 @@ def test_the_key_that_decides_is_the_important_one(direction, sign):
 
 def test_of_few_trials_no_importance_is_told():
     assert importances(KEYS, search(bowl, trials=19), GOAL[0], 0) == {}
+
+
+def test_a_failed_trial_violates_a_constraint_and_no_other_does():
+    good, bad = (
+        make_optuna_trial(KEYS, Trial({"x": 1.0, "y": 0.0, "n": 3}, (2.0,), "a", why)) for why in ("", "failed")
+    )
+    assert all(value <= 0.0 for value in good.constraints.values())
+    assert any(value > 0.0 for value in bad.constraints.values())
