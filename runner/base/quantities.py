@@ -114,19 +114,16 @@ def digits_between(low: float, high: float) -> int:
     return 3 if high <= low else min(12, max(3, 2 - math.floor(math.log10((high - low) / largest))))
 
 
-def format_range(
-    low: float | None, high: float | None, unit: str, beside: float | None = None, word: str = "to"
-) -> str:
+def format_range(low: float | None, high: float | None, unit: str, word: str = "to") -> str:
     """Return a range with one unit for both ends, such as "7 to 44 mm".
 
     Args:
         low: The lower end.
-        high: The upper end, which determines the unit by default.
+        high: The upper end, which determines the unit.
         unit: The SI unit.
-        beside: A value for comparison; its unit is used unless another one needs fewer powers of ten.
         word: Word between the ends.
     """
-    factor, name = _shared((low, high), unit, beside)
+    factor, name = _shared((low, high), unit, None)
     return f"{_scaled(low, factor)} {word} {_scaled(high, factor)} {name}".strip()
 
 
@@ -147,7 +144,7 @@ def spread(
         low: The smallest value; None if there is none.
         high: The largest value; None if a value is missing.
         count: Number of repetitions.
-        beside: A value for comparison; see `format_range`.
+        beside: A value for comparison; its unit is used unless another one needs fewer powers of ten.
     """
     if count < 2 or low == high is not None:
         factor, name = _shared((median,), unit, median if beside is None else beside)
@@ -166,7 +163,7 @@ def with_ends(
         low: The lower end of the range; an infinite value becomes "never".
         high: The upper end of the range; an infinite value becomes "never".
         unit: The SI unit.
-        beside: A value for comparison; see `format_range`.
+        beside: A value for comparison; see `spread`.
     """
     known = [value for value in (middle, low, high) if value is not None and math.isfinite(value)]
     chosen = beside if beside is not None else middle if middle is not None and math.isfinite(middle) else None

@@ -14,8 +14,7 @@ from runner.base.expressions.parser import parse
 from runner.base.quantities import number
 from runner.reporting.document import Table
 from runner.robots.model import RobotModel
-from runner.studies.meca500.equations.derivations.meca500 import TABLE
-from runner.studies.meca500.modified_denavit_hartenberg import modified_frames
+from runner.studies.meca500.equations.derivations.meca500 import TABLE, frames
 from runner.study.measured import Measured
 from runner.study.results import Runs
 
@@ -69,7 +68,7 @@ def frame_off(runs: Runs, case: str) -> list[Measured]:
     drawn = np.random.default_rng(0).uniform(low, high, (_COUNT, len(TABLE)))
     true = np.array([flange.tip_pose(q) for q in drawn])
     table = [replace(row, theta=0.0) if index in _TURNED[case] else row for index, row in enumerate(TABLE)]
-    poses = np.array([modified_frames(table, q)[-1] for q in drawn])
+    poses = frames(drawn, table)[-1]
     distance = np.linalg.norm(poses[:, :3, 3] - _MILLIMETRES * true[:, :3, 3], axis=1)
     chord = np.linalg.norm(poses[:, :3, :3] - true[:, :3, :3], axis=(1, 2))  # 2 sqrt(2) sin(angle / 2)
     angle = np.degrees(2.0 * np.arcsin(np.minimum(chord / np.sqrt(8.0), 1.0)))

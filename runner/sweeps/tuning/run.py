@@ -1,5 +1,6 @@
 """Execution of a whole tuning, from its command line to its stored trials."""
 
+import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -21,15 +22,17 @@ from runner.store.axes import is_simulated
 from runner.store.kinds import note
 from runner.store.names import Names
 from runner.sweeps.check import Checked, check
-from runner.sweeps.plan import Grid, Plan
-from runner.sweeps.run import Engine, clean, make_jobs, make_rules
+from runner.sweeps.plan import Grid, Item, Listed, Plan
+from runner.sweeps.run import Engine, clean, make_jobs, make_missing, make_rules
 from runner.sweeps.status import at_work
-from runner.sweeps.tuning.fresh import run_on_fresh_seed
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import RANGES, Key, read_key
-from runner.sweeps.tuning.objective import Objective
+from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.queue import TrialQueue
-from runner.sweeps.tuning.study import Study, Tuning, journal_path
+from runner.sweeps.tuning.study import Fresh, Study, Tuning, journal_path
+from runner.sweeps.writer import Rules
+
+_FEWEST = 8  # repetitions on the fresh seed, enough to compare five metrics in pairs
 
 
 def tune(
@@ -83,7 +86,7 @@ def tune(
             study.write(folder, journal.trials)
         clean(rules, [trial.run for trial in journal.trials if trial.run])
         unsimulated = [text for text in shared if not is_simulated(text)]
-        fresh = run_on_fresh_seed(study, journal.trials, unsimulated, loader, rules, engine)
+        fresh = _run_on_fresh_seed(study, journal.trials, unsimulated, loader, rules, engine)
         study.write(folder, journal.trials, fresh)
     return Tuning(folder, study, journal.trials, fresh)
 
@@ -97,6 +100,35 @@ def _work_off(plan: Plan, checked: Checked, queue: TrialQueue, engine: Engine, e
             queue.note(report.outcomes)
             if queue.rules.stop_at_failure and any(end.failure for end in report.outcomes):
                 return
+
+
+def _run_on_fresh_seed(
+    study: Study, trials: Sequence[Trial], shared: Sequence[str], loader: Composer, rules: Rules, engine: Engine
+) -> Fresh | None:
+    """Simulate the default config and the chosen trial on another seed; return their runs, or None if neither can run.
+
+    The trials were chosen by their own draws. `shared` are overrides that do not affect the simulation.
+    """
+    chosen = best(trials, study.objectives)
+    if not chosen:
+        return None
+    first = min(chosen, key=lambda number: study.objectives[0].sign * trials[number].values[0])
+    resolved = Listed({"default": Item(tuple(study.overrides))}, shared, loader).composed(0).resolved
+    repetitions = max(_FEWEST, cast(int, resolved["repetitions"]))
+    fresh = [f"seed={cast(int, resolved['seed']) + 1}", f"repetitions={repetitions}"]
+
+    def item(overrides: Sequence[str]) -> Item:
+        return Item((*(text for text in overrides if not text.startswith(("seed=", "repetitions="))), *fresh))
+
+    cells = {"default": item(study.overrides), "tuned": item(study.trial_overrides(trials[first]))}
+    plan = Listed(cells, shared, loader)
+    try:
+        checked = check(plan)
+        make_missing(plan, checked, rules, engine)
+    except ConfigError as error:
+        print(f"runner: default and tuned config are not compared on {fresh[0]}: {error}", file=sys.stderr)
+        return None
+    return Fresh(first, *checked.names)
 
 
 def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[str], list[Key]]:

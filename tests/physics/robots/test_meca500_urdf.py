@@ -11,13 +11,13 @@ from runner.robots import RobotModel, find_urdf, read_urdf
 from runner.robots.description import with_payloads
 from runner.robots.inertials import Payload
 from runner.studies.meca500.equations.derivations import meca500 as report
-from runner.studies.meca500.modified_denavit_hartenberg import (
-    ModifiedRow,
-    modified_frames,
-    modified_transform,
-)
 
 TABLE = [replace(row, a=row.a / 1000.0, d=row.d / 1000.0) for row in report.TABLE]  # in m
+
+
+def modified_frames(rows, q):
+    """Return frames 1 to n in frame 0 at joint positions q, shape (n, 4, 4)."""
+    return np.array([frame[0] for frame in report.frames(q[None], rows)])
 
 
 def model_of(inertials=None, payload=None):
@@ -49,7 +49,7 @@ def test_check_values():
 
 
 def test_without_the_lost_turn_of_joint_2_the_tip_is_a_third_of_a_metre_off(meca500):
-    turned = (TABLE[0], ModifiedRow(TABLE[1].alpha, TABLE[1].a, 0.0, TABLE[1].d), *TABLE[2:])
+    turned = (TABLE[0], report.ModifiedRow(TABLE[1].alpha, TABLE[1].a, 0.0, TABLE[1].d), *TABLE[2:])
     off = [
         np.linalg.norm(modified_frames(turned, q)[-1][:3, 3] - meca500.tip_position(q))
         for q in within_limits(meca500, 2000)
@@ -63,12 +63,13 @@ def test_a_modified_step_is_the_product_of_its_elementary_ones():
     first = np.array([[1, 0, 0, a], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]])
     c, s = np.cos(theta + q), np.sin(theta + q)
     second = np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, d], [0, 0, 0, 1]])
-    np.testing.assert_allclose(modified_transform(ModifiedRow(alpha, a, theta, d), q), first @ second, atol=1e-15)
+    (found,) = report.row_transform(report.ModifiedRow(alpha, a, theta, d), np.array([q]))
+    np.testing.assert_allclose(found, first @ second, atol=1e-15)
 
 
 def modified_jacobian(rows, q):
     """Return the geometric Jacobian of frame n in frame 0, shape (6, n): J_i = [z_i x (p_n - p_i); z_i]."""
-    poses = modified_frames(rows, q)[1:]
+    poses = modified_frames(rows, q)
     z, p = poses[:, :3, 2], poses[:, :3, 3]
     return np.vstack([np.cross(z, p[-1] - p).T, z.T])
 
@@ -83,7 +84,7 @@ def test_the_table_s_jacobian_is_the_model_s(meca500):
 @pytest.mark.parametrize("seed", range(3))
 def test_the_jacobian_of_any_table_by_finite_differences(seed):
     generator, h = np.random.default_rng(seed), 1e-6
-    rows = [ModifiedRow(*generator.uniform(-1.0, 1.0, 4)) for _ in range(5)]
+    rows = [report.ModifiedRow(*generator.uniform(-1.0, 1.0, 4)) for _ in range(5)]
     q = generator.uniform(-3.0, 3.0, 5)
     J, pose = modified_jacobian(rows, q), modified_frames(rows, q)[-1]
     for joint, e in enumerate(np.eye(5)):

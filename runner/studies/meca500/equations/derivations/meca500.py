@@ -5,7 +5,8 @@ frames of the report differ; the URDF defines each of them in the manufacturer's
 Denavit-Hartenberg table uses the modified (Craig) convention. Lengths in mm, as in the report.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -23,11 +24,28 @@ from runner.audit.derivations import (
 )
 from runner.audit.model_derivations import audited_arm, by_model
 from runner.base.arrays import FloatArray
-from runner.studies.meca500.modified_denavit_hartenberg import ModifiedRow
 
 JOINTS = 6
 _Matrices = Callable[[FloatArray], FloatArray]
 _HALF = np.pi / 2
+
+
+@dataclass(frozen=True)
+class ModifiedRow:
+    """Row of a modified (proximal, Craig's) D-H table: joint i turns about z_i, and frame i is on the axis of joint i.
+
+    Attributes:
+        alpha: Angle from z_{i-1} to z_i about x_{i-1}, in rad.
+        a: Distance from z_{i-1} to z_i along x_{i-1}, in mm.
+        theta: Angle from x_{i-1} to x_i about z_i at q_i = 0, in rad; the joint position is added to it.
+        d: Distance from x_{i-1} to x_i along z_i, in mm.
+    """
+
+    alpha: float
+    a: float
+    theta: float
+    d: float
+
 
 TABLE = (
     ModifiedRow(alpha=0.0, a=0.0, theta=0.0, d=135.0),
@@ -73,10 +91,10 @@ def row_transform(row: ModifiedRow, angle: FloatArray) -> FloatArray:
     return product([rotation("x", row.alpha), translation("x", row.a), turn, shift])
 
 
-def frames(q: FloatArray) -> list[FloatArray]:
-    """Return the transforms of frames 1 to 6 in the base frame by the emended table, shape (T, 4, 4) each, in mm."""
+def frames(q: FloatArray, table: Sequence[ModifiedRow] = TABLE) -> list[FloatArray]:
+    """Return the transforms of frames 1 to n in the base frame by a table, shape (T, 4, 4) each, in mm."""
     result: list[FloatArray] = []
-    for i, row in enumerate(TABLE):
+    for i, row in enumerate(table):
         step = row_transform(row, q[:, i])
         result.append(result[-1] @ step if result else step)
     return result

@@ -12,8 +12,7 @@ from runner.studies.xarm7.equations.derivations.xarm7 import (
     pose,
     printed_jacobians,
 )
-from runner.studies.xarm7.equations.derivations.xarm7_inverse import ENDS, full, points, solve
-from runner.studies.xarm7.kinematics import CENTIMETRES, printed_tip
+from runner.studies.xarm7.equations.derivations.xarm7_inverse import CENTIMETRES, ENDS, full, points, printed_tip, solve
 
 _POINTS = 201
 _DURATION = 4.0  # s
