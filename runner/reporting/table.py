@@ -91,11 +91,11 @@ class Table:
 
     Attributes:
         caption: What it lists; inline mathematics as in Text.
-        header: Its columns; a string is the title of a column of texts.
+        header: Its columns; a string is the title of a text column.
         rows: Cells, one sequence per row, each as long as the header.
         origin: Its number in the source, command and commit.
         folded: True if HTML shows it only on a click, and paper not at all.
-        prose: True if titles and texts may have inline mathematics as in Text; otherwise a dollar sign is literal.
+        prose: True if titles and strings may have inline mathematics as in Text; otherwise a dollar sign is literal.
     """
 
     block: ClassVar[str] = "table"

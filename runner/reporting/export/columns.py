@@ -35,10 +35,10 @@ class Unit(NamedTuple):
 
 
 class Written(NamedTuple):
-    """A cell as text.
+    """A cell as a string.
 
     Attributes:
-        text: The text; "∞" for a number beyond every number, "–" for a missing one.
+        text: The string; "∞" for a number beyond every number, "–" for a missing one.
         low: Lower end of the interval, or "".
         high: Upper end, or "".
         unit: The unit that it names, or None.
@@ -85,7 +85,7 @@ class PaperColumn(NamedTuple):
 def lay_out(table: Table) -> list[PaperColumn]:
     """Return the columns of a table for a paper.
 
-    If a column has the unit of each row, the numbers of a row have a unit of their own, which that column shows.
+    If a column has the unit of each row, it shows the unit and power of ten that fit the numbers of that row.
     """
     laid = []
     units = next(([str(row[place]) for row in table.rows] for place, each in enumerate(table.columns)
