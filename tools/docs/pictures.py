@@ -19,8 +19,7 @@ from runner.reporting.charts.sheet import column
 from runner.reporting.document import Playback
 from runner.reporting.export.motion import write_motion
 from runner.reporting.figures import overlaid
-from runner.studies.thesis.diagrams.block_diagram import block_diagram
-from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node
+from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram
 from runner.studies.thesis.diagrams.operational_space import operational_space_graph
 from tools.docs.friction_picture import friction
 from tools.docs.robot_pictures import robots

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -82,25 +83,18 @@ def judge_by_seeds(
         preset: The preset that both have.
     """
 
-    def stored(run: str, metric: str) -> FloatArray:
-        return _values(seeds[run], metric)
-
     def by(groups: _Places) -> list[Verdict | None]:
-        if not groups.size:
-            return []
-        medians: dict[tuple[str, str], list[float]] = {}
+        @cache
+        def medians(run: str, metric: str) -> list[float]:
+            values = _values(seeds[run], metric)
+            return over_repetitions(values[groups])[:, 0].tolist() if values.size else [np.nan] * len(groups)
 
-        def simulated(group: int, run: str, metric: str) -> float | None:
-            key = run, metric
-            if key not in medians:
-                values = stored(*key)
-                medians[key] = (
-                    over_repetitions(values[groups])[:, 0].tolist() if values.size else [np.nan] * len(groups)
-                )
-            value = medians[key][group]
+        def simulated(group: int, *key: str) -> float | None:
+            value = medians(*key)[group]
             return None if np.isnan(value) else value
 
-        return [verdict_on(claim, claims, lambda *key, at=at: simulated(at, *key)) for at in range(len(groups))]
+        places = range(len(groups) if groups.size else 0)
+        return [verdict_on(claim, claims, lambda *key, at=at: simulated(at, *key)) for at in places]
 
     def of_study(run: str, metric: str) -> float | None:
         return own[run].median(metric)
@@ -109,7 +103,7 @@ def judge_by_seeds(
         return seeds[run].median(metric)
 
     run, metric = claim.simulated_by
-    values = stored(run, metric)
+    values = _values(seeds[run], metric)
     count = values.size
     size = int(own[run].config["repetitions"])
     every = np.arange(count)

@@ -13,8 +13,7 @@ from runner.reporting.charts.canvas import Camera, circle
 from runner.robots import RobotModel
 from runner.robots.workspace import analyse
 from runner.studies.thesis.base_axis import distance_between
-from runner.studies.thesis.diagrams.block_diagram import block_diagram
-from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node
+from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram
 from runner.studies.thesis.diagrams.frames import frame_assignment
 from runner.studies.thesis.diagrams.operational_space import operational_space_graph
 from runner.studies.thesis.diagrams.workspace import _best_samples, workspace_sphere

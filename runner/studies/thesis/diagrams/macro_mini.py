@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node, Side
+from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, Side
 
 # Rows of the picture: above the Macro, between both arms, the Mini.
 _OUTER, _OVER, _BETWEEN, _LANE, _ABOVE_MINI, _MINI, _UNDER = -2.2, -1.2, 1.7, 2.55, 3.35, 4.5, 5.6

@@ -1,6 +1,6 @@
 """Block diagram of operational-space control (thesis figures 3.4 and 3.7)."""
 
-from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node
+from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node
 
 
 def operational_space_graph(

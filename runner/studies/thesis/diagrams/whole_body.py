@@ -1,6 +1,6 @@
 """Block diagram of whole-body control of a redundant arm (thesis figure 5.2)."""
 
-from runner.studies.thesis.diagrams.control_graph import ControlGraph, Edge, Node
+from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node
 from runner.studies.thesis.diagrams.operational_space import damping
 
 _TASK, _TORQUE = 1.1, 3.2  # columns from F* to the summing points of the task and of the torques
