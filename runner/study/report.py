@@ -177,7 +177,7 @@ def study_document(chapters: Chapters) -> Document:
 
 
 def _by_profile(study: Study, runs: Runs) -> list[Section]:
-    """Return what the profile makes otherwise than the whole study; nothing where that is nothing."""
+    """Return the differences of the profile from the whole study; nothing without any."""
     dropped, repetitions = study.dropped(), study.chosen.repetitions if study.chosen else None
     if not (dropped or repetitions):
         return []

@@ -33,6 +33,25 @@ A curve connects a package with one that it imports. Imports that follow from th
 - Configs, studies, robots and recordings are data. Only plug-ins named on the command line, and a study's Python with
   `--code`, run code.
 - Reports are made from stored runs only. HTML and Typst are in `reports/templates/` only.
+
+## From data to a report
+
+A claim of a study becomes a square on the first screen of its report by these files, in this order:
+
+- data: `runner/studies/thesis/claims.yaml`, `runner/studies/thesis/runs.yaml`, `runner/studies/thesis/answers.md`
+- verdict: `runner/reporting/published_claims.py`, `runner/study/claims.py`, from `runner/study/results.py`
+- chapter: `runner/study/chapters.py`, `runner/study/prose/reader.py`, `runner/study/prose/expressions.py`,
+  `runner/study/prose/paragraphs.py`
+- report: `runner/study/report.py`, `runner/reporting/document.py`, `runner/reporting/verdicts.py`
+- page: `runner/reporting/html.py`, `reports/templates/report.html.j2`, `reports/templates/style.css`
+
+Runs of a study become a figure by the same chapter, report and page, and by these files:
+
+- data: `runner/studies/thesis/experiment/figure_5_12.yaml`, `runner/studies/thesis/chapter5.md`
+- plan: `runner/study/grid.py`, `runner/study/grids.py`, `runner/study/study.py`
+- runs: `runner/study/execute.py`, `runner/study/items.py`
+- figure: `runner/study/prose/compared.py`, `runner/reporting/charts/figure.py`,
+  `runner/reporting/charts/interactive.py`
 """
 _ROW, _TOP, _NAME, _TEXT, _WIDTH = 26, 16, 100, 252, 860
 

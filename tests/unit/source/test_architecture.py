@@ -1,6 +1,7 @@
 """docs/architecture.md and its picture against the package: docstrings, contract and imports."""
 
 import ast
+import re
 
 from support.pages import ROOT
 
@@ -13,6 +14,13 @@ def test_the_page_and_the_picture_are_up_to_date():
     stale = "stale: run `python -m tools.docs.architecture`"
     assert PAGE.read_text() == page(), stale
     assert PICTURE.read_text() == picture(), stale
+
+
+def test_the_ways_from_data_to_a_report_name_files():
+    ways = PAGE.read_text().split("## From data to a report")[1].split("## ")[0]
+    named = re.findall(r"`(\w+/[\w./]+)`", ways)
+    assert len(named) == len(set(named)) > 20
+    assert [name for name in named if not (ROOT / name).is_file()] == []
 
 
 def test_every_package_is_a_layer_and_two_modules_are_loose():
