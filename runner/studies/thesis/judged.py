@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,7 +84,7 @@ def judge_by_seeds(
     """
 
     def by(groups: _Places) -> list[Verdict | None]:
-        @cache
+        @lru_cache(maxsize=8)
         def medians(run: str, metric: str) -> list[float]:
             values = _values(seeds[run], metric)
             return over_repetitions(values[groups])[:, 0].tolist() if values.size else [np.nan] * len(groups)
