@@ -11,7 +11,6 @@ from pydantic import Field
 from runner.base.data_file import read_data
 from runner.base.errors import RunnerError, nearest
 from runner.config.judgement import THRESHOLDS
-from runner.metrics.caveats.plant_error import DEFAULT_PLANT
 from runner.reporting.document import Block, Notice, Section, Table, Text
 from runner.reporting.markup import literal
 from runner.reporting.table import numbers
@@ -109,7 +108,7 @@ def _row(rule: str, why: str, expected: Sequence[ExpectedCaveat], runs: Mapping[
 
 FILE = "caveats.yaml"
 _OF_THE_MACHINE = ExpectedCaveat(
-    DEFAULT_PLANT.name, "*", "PyBullet was not installed; conclusions and verdicts are stated for it, and may differ."
+    "default_plant", "*", "PyBullet was not installed; conclusions and verdicts are stated for it, and may differ."
 )
 _Texts = Annotated[list[Annotated[str, Field(min_length=1)]], Field(min_length=1)]
 

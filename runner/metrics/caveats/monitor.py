@@ -13,9 +13,11 @@ from runner.base.cache import Memory
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
 from runner.metrics.caveats import plant_error
 from runner.metrics.caveats.plant_error import PlantStep, caveat_of
-from runner.metrics.caveats.registry import SETTING_RULES, TRACE_RULES, rules_digest
 from runner.metrics.caveats.rule import Caveat, Found, TraceRule
 from runner.metrics.caveats.setting import Setting, Signals
+from runner.metrics.caveats.setting_rules import SETTING_RULES
+from runner.metrics.caveats.trace_rules import TRACE_RULES
+from runner.metrics.caveats.versions import rules_digest
 from runner.metrics.plant_error import PlantError
 
 _KEYS = {rule: key for rule, (key, *_) in THRESHOLDS.items()}

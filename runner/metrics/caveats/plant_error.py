@@ -1,9 +1,8 @@
-"""Caveat rules on plants: integration error, and a plant that replaces the missing default plant."""
+"""Caveat on the integration error of the plant."""
 
 from typing import NamedTuple
 
-from runner.metrics.caveats.rule import Caveat, SettingRule, percent
-from runner.metrics.caveats.setting import Setting
+from runner.metrics.caveats.rule import Caveat, percent
 from runner.metrics.plant_error import PARTED, PLANT, PlantError, sufficient_step
 from runner.plugins.metric_units import unit_of
 
@@ -69,18 +68,3 @@ def _parted(error: PlantError, own: PlantStep) -> str:
         told = f"{found}: {apart}; what is measured after that is one of several outcomes"
         return f"{told}; {fails}" if error.failure else told
     return f"{found}: {fails}" if error.failure else f"{found}, where this run fails and that on {PLANT} does not"
-
-
-def _replaced(setting: Setting) -> float | None:
-    """Return 1 if another plant replaces the missing default plant."""
-    return None if setting.in_place_of is None else 1.0
-
-
-def _tell_replaced(_: float, setting: Setting) -> str:
-    return (
-        f"{setting.plant} stands in for {setting.in_place_of}, the default plant, as PyBullet is not installed: bands "
-        f"and verdicts are stated for {setting.in_place_of}"
-    )
-
-
-DEFAULT_PLANT = SettingRule("default_plant", _replaced, _tell_replaced)

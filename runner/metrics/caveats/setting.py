@@ -21,6 +21,9 @@ if TYPE_CHECKING:
     from runner.robots.model import RobotModel
     from runner.sensing import EncoderNoise
 
+IDEAL = "kinematic"
+"""Plant with ideal joint motion; forces have no effect on it."""
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -85,7 +88,6 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
     """
     from runner.controllers.stability import velocity_loop
     from runner.metrics.caveats.contact_stability import force_contact, servo_contact
-    from runner.metrics.caveats.mjcf import left_out_of
     from runner.metrics.caveats.time_constants import slowest_part
     from runner.plants.kinds import options_of
 
@@ -117,8 +119,44 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
         touch=None if q_start is None else force_contact(config, q_start),
         velocity_loop=velocity_loop(config.loops, config.arm, config.path) if config.commands == "torque" else None,
         slowest=slowest_part(config, q_start),
-        left_out=left_out_of(config),
+        left_out=_left_out_of(config),
     )
+
+
+def _left_out_of(config: "RunConfig") -> Mapping[str, Sequence[str]]:
+    """Return messages, by robot file, about contents that would change the motion and are missing in the run.
+
+    Damping, friction and armature of a joint in the file count if the value of the joint in the run is zero. The
+    mapping is empty for the kinematic plant.
+    """
+    from runner.config.flexibility import find_flexibility
+    from runner.plants.decoupled import TorquePlantConfig
+    from runner.plants.friction_law import joint_friction
+    from runner.robots.joint_dynamics import by_value
+
+    arm, plant = config.arm, config.plant
+    if plant.kind == IDEAL:
+        return {}
+    viscous, coulomb = np.zeros((2, arm.model.nq))
+    if isinstance(plant, TorquePlantConfig):
+        friction = joint_friction("plant.friction", plant.friction, arm.model.joint_names)
+        viscous, coulomb = friction.viscous, friction.coulomb
+    flexibility = find_flexibility(config)
+    armature = arm.model.armature
+    if flexibility is not None:
+        armature = np.maximum(armature, flexibility.motors)
+    found = {}
+    for stage in arm.stages:
+        if stage.file is None:
+            continue
+        parts = list(stage.file.left_out)
+        for (what, key, held), given in zip(stage.file.by_key(), (viscous, coulomb, armature), strict=True):
+            lost = np.where(given[stage.joints] == 0.0, held, 0.0)
+            if lost.any():
+                parts.append(f"{what} ({key}): {by_value(lost, stage.model.joint_names)}")
+        if parts:
+            found[stage.file.file] = parts
+    return found
 
 
 @lru_cache(maxsize=8)  # the runs of a sweep share their arm

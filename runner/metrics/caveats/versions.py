@@ -1,16 +1,28 @@
-"""Differences between the rules and thresholds of stored caveats and the current ones."""
+"""Digest of the caveat rules, and differences of stored rules and thresholds from the current ones."""
 
+import hashlib
 from collections.abc import Mapping
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import yaml
 
 from runner.base.paths import conf_dir
 from runner.config.judgement import CaveatsConfig
-from runner.metrics.caveats.registry import rules_digest
+
+_HEX = 24
 
 Thresholds = Mapping[str, Mapping[str, float]]
+
+
+@cache
+def rules_digest() -> str:
+    """Return a digest of the source of the rules."""
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.glob("*.py")):
+        digest.update(path.name.encode() + b"\0" + path.read_bytes() + b"\0")
+    return digest.hexdigest()[:_HEX]
 
 
 def changes_since(rules: Mapping[str, Any] | None, today: Thresholds | None = None) -> list[str]:

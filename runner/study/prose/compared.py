@@ -7,7 +7,6 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import format_range, quantity
-from runner.metrics.caveats.torques import CHATTER
 from runner.reporting.charts.figure import envelope
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.figures import AXES, captioned, origin, rows_until
@@ -63,7 +62,7 @@ def compare(
         f"{stages[-1].capitalize()} torque": last,
     }  # fmt: skip
     panels = [figure.torques(title, [joints.index(name) + 1 for name in group]) for title, group in groups.items()]
-    if stages and any(caveat["rule"] == CHATTER.name for run in shown.values() for caveat in run.caveats):
+    if stages and any(caveat["rule"] == "chatter" for run in shown.values() for caveat in run.caveats):
         ticks = [joints.index(name) + 1 for name in last]
         panels.append(figure.torques(f"{[*groups][-1]}, last {quantity(_SHORT, 's')}", ticks, _SHORT))
     panels += [figure.error(f"{stages[0].capitalize()} end point, error", f"{stages[0]}_error")] if stages else []

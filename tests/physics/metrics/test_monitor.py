@@ -11,16 +11,9 @@ from support.caveat_runs import signals, stacked
 from support.engines import ASKED
 
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
-from runner.metrics.caveats import (
-    Signals,
-    Watch,
-    changes_since,
-    look_together,
-    plant_error,
-    registry,
-    setting_of,
-    signals_of,
-)
+from runner.metrics.caveats import Signals, Watch, changes_since, look_together, plant_error, setting_of, signals_of
+from runner.metrics.caveats.setting_rules import SETTING_RULES
+from runner.metrics.caveats.trace_rules import TRACE_RULES
 from runner.metrics.caveats.versions import our_thresholds
 from runner.store import run_hash
 
@@ -28,7 +21,7 @@ ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini",
 
 
 def test_every_rule_has_a_threshold_of_its_own():
-    rules = [rule.name for rule in (*registry.TRACE_RULES, *registry.SETTING_RULES)] + [plant_error.NAME]
+    rules = [rule.name for rule in (*TRACE_RULES, *SETTING_RULES)] + [plant_error.NAME]
     keys = {name: tuple(values) for name, values in our_thresholds().items()}
     assert keys == {name: (key,) for name, (key, *_) in THRESHOLDS.items()}
     assert sorted(CaveatsConfig.model_fields) == sorted(rules)
@@ -59,7 +52,7 @@ def test_runs_side_by_side_are_judged_as_one_after_another(checked_config):
     several.look(stacked(*runs))
     found = one.found()
     assert found == several.found()
-    assert {caveat.rule for caveat in found.caveats} == {rule.name for rule in registry.TRACE_RULES}
+    assert {caveat.rule for caveat in found.caveats} == {rule.name for rule in TRACE_RULES}
 
 
 def some_signals(limit, seed=0):
@@ -94,7 +87,7 @@ def test_runs_with_limits_and_thresholds_of_their_own_are_judged_as_each_alone(c
         look_together(watches, stacked(*(runs[run] for run in order)))
         assert [watch.found() for watch in watches] == [expected[run] for run in order]
     told = {caveat.rule for found in expected for caveat in found.caveats}
-    assert told >= {rule.name for rule in registry.TRACE_RULES}
+    assert told >= {rule.name for rule in TRACE_RULES}
     assert len({len(found.caveats) for found in expected}) > 2
 
 

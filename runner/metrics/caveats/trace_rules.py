@@ -1,0 +1,112 @@
+"""Caveat rules on signals: tracking error, position limits of joints, and torques at their limits."""
+
+import numpy as np
+
+from runner.base.arrays import FloatArray
+from runner.base.trace import by_rows
+from runner.metrics.caveats.rule import TraceRule, called, percent
+from runner.metrics.caveats.setting import IDEAL, Setting, Signals
+
+_AT_LIMIT = 1.0 - 1e-12  # as in the metric saturation_fraction
+_SIZED = 60  # most rows, including the last one, used for the size of a motion
+_END = 10  # for a motion to a goal, the last tenth of the run is evaluated
+
+
+def _unfollowed(signals: Signals, setting: Setting) -> FloatArray:
+    """Return the ratio of the largest tip error to the size of the motion, shape (..., 1).
+
+    The size is the largest distance of the desired position from the start of the tip. For a motion to a goal, whose
+    error starts at that size, only the last tenth counts. The ratio is 0 if the arm must stay or comply.
+    """
+    if setting.complies:
+        return np.zeros((*signals.q.shape[:-2], 1))
+    desired, tip, start = signals.desired, signals.tip, signals.tip[..., :1, :]
+    if not setting.tracked:
+        last = tip.shape[-2] // _END + 1
+        desired, tip = desired[..., -last:, :], tip[..., -last:, :]
+    every = desired.shape[-2] // _SIZED + 1
+    size = _longest(desired[..., ::-every, :] - start)
+    band = setting.robot.settling_band
+    share: FloatArray = _longest(desired - tip) / np.maximum(size, band) * (size > band)
+    return share[..., None]
+
+
+def _longest(vectors: FloatArray) -> FloatArray:
+    """Return the largest norm of the vectors in rows, shapes (..., T, 3) to (...)."""
+    squares = vectors * vectors
+    squared = squares[..., 0] + squares[..., 1]
+    squared += squares[..., 2]
+    longest: FloatArray = np.sqrt(squared.max(axis=-1))
+    return longest
+
+
+def _tell_unfollowed(value: float, joint: int, setting: Setting) -> str:
+    if setting.tracked:
+        return f"the arm did not follow: the tip's error reaches {percent(value)} of the size of its motion"
+    return f"the arm did not follow: at the end the tip is still {percent(value)} of its way from the goal"
+
+
+def _beyond(signals: Signals, setting: Setting) -> FloatArray:
+    """Return the excess of each joint over its position limits, shape (..., nq), in rad; negative within the limits."""
+    lower, upper = setting.position_limits
+    q = by_rows(signals.q)
+    excess: FloatArray = np.maximum(lower - q.min(axis=-1), q.max(axis=-1) - upper)
+    return excess
+
+
+def _tell_beyond(value: float, joint: int, setting: Setting) -> str:
+    return (
+        f"{called(joint, setting)} goes {value:.3g} {setting.joint_units[joint]} beyond its position limits, "
+        f"at which the plant {setting.plant} does not hold it"
+    )
+
+
+def _tell_saturated(value: float, joint: int, setting: Setting) -> str:
+    name, limit = called(joint, setting), _limit(joint, setting)
+    if setting.plant == IDEAL:
+        return (
+            f"{name} would need its torque limit, {limit}, or more in {percent(value)} of the ticks; the plant "
+            f"{setting.plant} moves it all the same"
+        )
+    return f"{name} is at its torque limit, {limit}, in {percent(value)} of the ticks"
+
+
+def _chatter(signals: Signals, setting: Setting) -> FloatArray:
+    """Return the fraction of loop ticks with a torque jump from one limit to the opposite one, shape (..., nq)."""
+    if setting.plant == IDEAL:
+        return np.zeros_like(signals.saturation)
+    often = np.flatnonzero(signals.saturation.reshape(-1, signals.saturation.shape[-1]).any(axis=0))
+    if not len(often):
+        return signals.saturation
+    share: FloatArray = np.zeros_like(signals.saturation)
+    tau = np.ascontiguousarray(signals.tau.swapaxes(-1, -2)[..., often, :])  # one row for each joint is faster
+    if setting.speed_limits_torque:
+        limits = signals.limits.swapaxes(-1, -2)[..., often, : tau.shape[-1]]
+        leap = np.maximum(_AT_LIMIT * (limits[..., 1:] + limits[..., :-1]), 1e-300)  # no change is not a jump
+    else:
+        leap = 2.0 * _AT_LIMIT * signals.limits[..., often, None]  # largest possible change of a torque
+    jumps = (np.abs(tau[..., 1:] - tau[..., :-1]) >= leap).sum(axis=-1)
+    share[..., often] = jumps * setting.ticks_per_torque[often] / tau.shape[-1]
+    return np.minimum(share, 1.0)
+
+
+def _tell_chatter(value: float, joint: int, setting: Setting) -> str:
+    name, limit = called(joint, setting), _limit(joint, setting)
+    return (
+        f"{name} chatters: its torque jumps from one limit, {limit}, to the opposite one "
+        f"at {percent(value)} of its ticks"
+    )
+
+
+def _limit(joint: int, setting: Setting) -> str:
+    unit = "N m" if setting.joint_units[joint] == "rad" else "N"
+    return f"{setting.torque_limits[joint]:.4g} {unit}{' at rest' if setting.speed_limits_torque else ''}"
+
+
+TRACE_RULES = (
+    TraceRule("did_not_follow", _unfollowed, _tell_unfollowed),
+    TraceRule("saturation", lambda signals, setting: signals.saturation, _tell_saturated),
+    TraceRule("chatter", _chatter, _tell_chatter),
+    TraceRule("joint_limits", _beyond, _tell_beyond),
+)
+"""Rules in the order of output."""
