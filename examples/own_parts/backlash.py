@@ -26,7 +26,7 @@ class BacklashConfig(StrictModel):
 
 
 class Backlash:
-    """The encoders of one control loop; see runner/sensing/kinds.py."""
+    """The encoders of one control loop; see runner/sensing/__init__.py."""
 
     def __init__(self, config, joints, ticks, period, generator):
         self.config, self.period = config, period

@@ -38,7 +38,7 @@ class CableConfig(StrictModel):
 
 
 class Cable:
-    """The cable; see runner/environments/environment.py."""
+    """The cable; see runner/environments/__init__.py."""
 
     def __init__(self, config):
         self.config = config

@@ -23,7 +23,7 @@ class CrosstalkConfig(StrictModel):
 
 
 class Crosstalk:
-    """The sensor; see runner/sensing/kinds.py."""
+    """The sensor; see runner/sensing/__init__.py."""
 
     def __init__(self, config, ticks, generator):
         mixed = np.full((3, 3), config.share) + (1.0 - config.share) * np.eye(3)

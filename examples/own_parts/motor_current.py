@@ -24,7 +24,7 @@ class MotorCurrentConfig(StrictModel):
 
 
 class MotorCurrent:
-    """The sensors; see runner/sensing/kinds.py."""
+    """The sensors; see runner/sensing/__init__.py."""
 
     def __init__(self, config):
         self.config = config

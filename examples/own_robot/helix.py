@@ -7,8 +7,8 @@ import numpy as np
 from pydantic import Field, PositiveFloat, PositiveInt
 
 from runner.schema.model import StrictModel
-from runner.trajectories.blend import quintic_blend
-from runner.trajectories.nearest import distance_to_curve
+from runner.trajectories.geometry import distance_to_curve
+from runner.trajectories.motion import quintic_blend
 
 
 class HelixConfig(StrictModel):

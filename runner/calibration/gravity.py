@@ -1,4 +1,4 @@
-"""Gravity calibration (Meca500 report, section 4): identified tool and sensor, and compensated readings."""
+"""Gravity calibration (Meca500 report, section 4): tool as a rigid body, identification, and compensated readings."""
 
 from dataclasses import dataclass
 
@@ -6,9 +6,64 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.lazy_modules import pin
 from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
-from runner.calibration.tool import Motion, Tool
 from runner.sensing.wrench import cross_matrix
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Motion of the sensor's frame against an inertial frame, along the sensor's axes.
+
+    Attributes:
+        angular_velocity: Shape (3,), in rad/s.
+        angular_acceleration: Shape (3,), in rad/s^2.
+        linear_acceleration: Acceleration of its origin, shape (3,), in m/s^2.
+    """
+
+    angular_velocity: FloatArray
+    angular_acceleration: FloatArray
+    linear_acceleration: FloatArray
+
+
+REST = Motion(np.zeros(3), np.zeros(3), np.zeros(3))
+
+
+@dataclass(frozen=True)
+class Tool:
+    """Mass properties of what hangs on the sensor, in the sensor's frame.
+
+    Attributes:
+        mass: In kg.
+        centre_of_mass: r, shape (3,), in m.
+        inertia: I about the centre of mass, shape (3, 3), in kg m^2.
+    """
+
+    mass: float
+    centre_of_mass: FloatArray
+    inertia: FloatArray
+
+    def load(self, gravity: FloatArray, motion: Motion) -> FloatArray:
+        r"""Return the wrench that the tool puts on the sensor by its weight and inertia, by its rigid-body balance.
+
+        .. math::
+
+            F = m (g - a_c), \qquad M = r \times F - I \dot\omega - \omega \times I \omega, \qquad
+            a_c = a + \dot\omega \times r + \omega \times (\omega \times r)
+
+        Args:
+            gravity: g along the sensor's axes, shape (3,), in m/s^2.
+            motion: The sensor's motion.
+
+        Returns:
+            Force in N and moment about the sensor's origin in N m, along its axes, shape (6,).
+        """
+        body = pin.Inertia(self.mass, self.centre_of_mass, self.inertia)
+        velocity = pin.Motion(np.zeros(3), motion.angular_velocity)
+        acceleration = pin.Motion(motion.linear_acceleration - gravity, motion.angular_acceleration)
+        held = body * acceleration + body.vxiv(velocity)  # by the sensor on the tool
+        return -np.asarray(held.vector)
+
 
 PARAMETERS = ("mass", "theta", "r_x", "r_y", "r_z", "F_x0", "F_y0", "F_z0", "M_x0", "M_y0", "M_z0")
 """Order of the covariance's rows; in kg, rad, m, N and N m."""

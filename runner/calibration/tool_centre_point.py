@@ -1,12 +1,15 @@
-"""Tool centre point from poses with the tip on one fixed point (Meca500 report, section 2)."""
+"""Tool centre point from poses with the tip on one fixed point (Meca500 report, section 2), and its procedure."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
+from runner.calibration.procedure import Bench, Outcome, TouchingConfig, touching_postures
 from runner.sensing.wrench import cross_matrix
 
 MIN_SINGULAR_VALUE = 0.01
@@ -97,3 +100,41 @@ def _refusal(R: FloatArray, singular_values: FloatArray, smallest: float) -> str
         f"calibration.poses: {why} ({found}); allowed: {MIN_SINGULAR_VALUE:g} or more. Turn the flange about two axes "
         f"that are not parallel, by 30 deg or more"
     )
+
+
+class TouchedPointConfig(TouchingConfig):
+    """Config of the procedure.
+
+    Attributes:
+        kind: Its name in the registry.
+    """
+
+    kind: Literal["tool_centre_point"]
+
+
+class TouchedPoint:
+    """The procedure; its measures are the condition of the poses, and their distance from one point.
+
+    Args:
+        config: The poses.
+        bench: The arm.
+    """
+
+    estimates: ClassVar[Mapping[str, str]] = {"x": "m", "y": "m", "z": "m"}
+    errors: ClassVar[Mapping[str, str]] = estimates
+    measures: ClassVar[Mapping[str, str]] = {"condition_number": "1", "smallest_singular_value": "1", "residual": "m"}
+
+    def __init__(self, config: TouchedPointConfig, bench: Bench) -> None:
+        self.truth = bench.tip
+        self.postures = touching_postures(bench, bench.tip, config)
+        self._bench, self._repeatability = bench, config.repeatability
+
+    def repeat(self, generator: np.random.Generator) -> Outcome:
+        """Calibrate once; see Procedure."""
+        found = identify_tool_centre_point(*self._bench.read_poses(self.postures, self._repeatability, generator))
+        measures = {name: float(getattr(found, name)) for name in self.measures}
+        return Outcome(found.position, found.position - self.truth, found.covariance, measures)
+
+
+CONFIG = TouchedPointConfig
+build = TouchedPoint

@@ -188,7 +188,7 @@ def _rows(run: "Run", at_most: float | None) -> Iterator[list[str]]:
 
 
 def _judged(one: "Kept", row: Sequence[str], at_most: float | None) -> list[str]:
-    from runner.statistics.spec.kept import judge_share
+    from runner.statistics.spec import judge_share
 
     assert one.share is not None  # noqa: S101 - `_rows` rejects runs that lack a metric
     verdict = judge_share(one.share, at_most)

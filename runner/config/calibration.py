@@ -10,8 +10,9 @@ from pydantic import Field, NonNegativeInt, PositiveFloat, PositiveInt
 from runner.base.dotted_keys import split_override
 from runner.base.errors import ConfigError, nearest
 from runner.base.sanitize import quoted
-from runner.calibration import Tool
-from runner.calibration.procedures import CALIBRATIONS, Bench, Procedure
+from runner.calibration import CALIBRATIONS
+from runner.calibration.gravity import Tool
+from runner.calibration.procedure import Bench, Procedure
 from runner.config.arms import build_robot, read_outline
 from runner.config.composed import Composed
 from runner.config.parsing import Problems, group_of, parse, parse_kind, parse_robot, require

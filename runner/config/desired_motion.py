@@ -16,9 +16,8 @@ from runner.robots.inverse_kinematics import solve_tip_position
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, end_points
 from runner.robots.task_space import distance_beside, task_basis
-from runner.trajectories import Trajectory
+from runner.trajectories import HasGoal, HasStart, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
-from runner.trajectories.kinds import HasGoal, HasStart
 
 _ROUNDING = 1e-12  # of the reach
 _BESIDE = 1e-9  # of the reach: largest distance of a path from the plane of a planar arm

@@ -16,9 +16,8 @@ from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import Hertz
 from runner.trajectories import Trajectory
-from runner.trajectories.impulses import in_turn, zero_vibration
 from runner.trajectories.joint_motion import TipOfJoints
-from runner.trajectories.shaped import Shaped
+from runner.trajectories.shaped import Shaped, in_turn, zero_vibration
 
 _KEY = "input_shaper.frequency"
 _MODE = re.compile(r"mode_([1-9]\d?)")

@@ -36,9 +36,8 @@ from runner.plugins.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig, check_links
 from runner.robots.robot import Robot, end_points
 from runner.sensing import ForceTorqueConfig, JointTorqueConfig, NoiseConfig
-from runner.trajectories import TRAJECTORIES, Trajectory
+from runner.trajectories import TRAJECTORIES, HasStart, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
-from runner.trajectories.kinds import HasStart
 
 _MEMORY = Memory(4096)
 

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from runner.environments.environment import Environment
+from runner.environments import Environment
 from runner.schema.model import StrictModel
 
 

@@ -6,10 +6,10 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.environments.environment import Environment
+from runner.environments import Environment
 from runner.schema.model import StrictModel
 from runner.schema.units import Damping, Metres, Seconds, Stiffness
-from runner.trajectories.blend import quintic_blend
+from runner.trajectories.motion import quintic_blend
 
 
 class HandConfig(StrictModel):

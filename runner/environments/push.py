@@ -9,7 +9,7 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.environments.environment import Environment
+from runner.environments import Environment
 from runner.schema.model import StrictModel
 from runner.schema.units import Hertz, NewtonMetres, Newtons, NewtonSeconds, Seconds
 

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat, field_validator
 
 from runner.base.arrays import FloatArray
-from runner.environments.environment import Environment
+from runner.environments import Environment
 from runner.schema.model import StrictModel
 from runner.schema.units import Damping, Metres, Stiffness
 

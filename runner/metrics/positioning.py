@@ -5,7 +5,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.trace import Trace
 from runner.metrics.family import MetricContext
-from runner.trajectories.vectors import component
+from runner.trajectories.geometry import component
 
 UNITS = {"settling_time": "s", "steady_state_error": "m", "overshoot": "m"}
 STEADY_WINDOW = 0.5  # s, at the end of the run

@@ -10,14 +10,66 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.recordings.columns_map import Signal, other_units, read_map
 from runner.recordings.friction import Friction, identify_friction
-from runner.recordings.metrics import both_metrics
 from runner.recordings.offset import Offset, find_offset
 from runner.recordings.recording import FEWEST_ROWS, Recording, read_recording
-from runner.recordings.residuals import Residual
-from runner.recordings.setting import setting_of
+from runner.recordings.setting import both_metrics, setting_of
 from runner.recordings.smoothing import cutoff, derivative, evenly, low_pass
 from runner.robots.model import RobotModel
 from runner.store import Run
+
+
+@dataclass(frozen=True)
+class Residual:
+    """A signal of the recording and that of the run, at the run's ticks.
+
+    Attributes:
+        signal: Which one.
+        unit: Its SI unit.
+        t: Times of the run, shape (T,), in s.
+        recorded: Shape (T,).
+        simulated: Shape (T,).
+    """
+
+    signal: Signal
+    unit: str
+    t: FloatArray
+    recorded: FloatArray
+    simulated: FloatArray
+
+    @property
+    def values(self) -> FloatArray:
+        """Recorded less simulated, shape (T,)."""
+        return self.recorded - self.simulated
+
+    @property
+    def mean(self) -> float:
+        """Its mean: what another zero of the encoder gives, or another load."""
+        return float(self.values.mean())
+
+    @property
+    def rms(self) -> float:
+        """Its root mean square."""
+        return float(np.sqrt(np.mean(self.values**2)))
+
+    @property
+    def largest(self) -> float:
+        """Its largest magnitude."""
+        return float(np.abs(self.values).max())
+
+    @property
+    def fit(self) -> float | None:
+        r"""One minus the normalised root mean square error; None of a constant signal.
+
+        From system identification (Ljung, System Identification, 2nd edition, 1999), with y the recorded and \hat y the
+        simulated signal:
+
+        .. math:: 1 - \frac{|y - \hat y|}{|y - \bar y|}
+
+        It is 1 if both are equal, and 0 if the mean of the recording would be as good an estimate.
+        """
+        swing = float(np.linalg.norm(self.recorded - self.recorded.mean()))
+        return None if swing == 0.0 else 1.0 - float(np.linalg.norm(self.values)) / swing
+
 
 _SLACK = 0.01  # of a recording's period: a tick so little beyond its ends is covered
 _SHORTEST = 2.0  # s, of a recording whose friction is identified: four blocks of friction.py

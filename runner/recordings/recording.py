@@ -11,8 +11,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.recordings import BAGS, is_bag
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
-from runner.recordings.csv_columns import read_csv_columns
-from runner.recordings.ros_bag import read_bag_columns
+from runner.recordings.files import read_bag_columns, read_csv_columns
 from runner.recordings.smoothing import CUTOFF, evenly
 from runner.schema.model import LARGEST
 

@@ -1,6 +1,7 @@
-"""Run for a comparison with recordings: its trace, and the context of its metrics."""
+"""Run for a comparison with recordings: its trace, and the metrics of both over the same times."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -9,7 +10,8 @@ from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.metrics import MetricContext
+from runner.metrics import MetricContext, effort, positioning, tracking
+from runner.metrics.summary import measure, of_run
 from runner.recordings.columns_map import Signal
 from runner.robots.robot import end_points
 from runner.simulation.assembly import metric_context
@@ -75,3 +77,62 @@ def _stored_trace(run: Run, config: RunConfig) -> Trace:
         tick_seconds=np.zeros(len(t) - 1),
         **describe(config.arm, config.ignore_base_rotation),
     )
+
+
+_OF_POSITIONS = ("max_joint_error", "rms_joint_error", "peak_joint_speed", "peak_sliding_speed")
+# From tick to tick: a recording of another rate has other ticks.
+_OF_TICKS = ("torque_chatter", "force_chatter")
+
+
+def both_metrics(
+    setting: Setting, ticks: slice, recorded: Mapping[Signal, FloatArray], speeds: FloatArray | None
+) -> dict[str, tuple[float | None, float | None]]:
+    """Return each metric of the run and of the recording, by name, over some ticks of the run.
+
+    A metric is left out where the recording lacks a signal that it is worked out from, and where it counts changes
+    from tick to tick. The tip is the recorded one, or follows from all joints by the run's model.
+
+    Args:
+        setting: The run.
+        ticks: The ticks of the run that the recording covers.
+        recorded: Its signals at these, shape (T,).
+        speeds: Its joint speeds there, shape (T, nq), in rad/s; None where not all positions are recorded.
+    """
+    run = setting.trace.during(ticks)
+    joints = run.joint_names
+    q, tau = (_all(recorded, [Signal(kind, joint) for joint in joints]) for kind in ("position", "torque"))
+    tip = _all(recorded, [Signal("tip", axis) for axis in AXES])
+    config = setting.config
+    points = run.end_points.copy() if q is None else end_points(config.arm, q, config.ignore_base_rotation)
+    if tip is not None:
+        points[-1] = tip
+    known = {
+        **dict.fromkeys((*positioning.UNITS, *tracking.UNITS), tip is not None or q is not None),
+        **dict.fromkeys(effort.UNITS, q is not None and tau is not None),
+        **dict.fromkeys(_OF_POSITIONS, q is not None),
+        **dict.fromkeys(_OF_TICKS, False),
+        "saturation_fraction": tau is not None and bool(np.isfinite(run.limits).any()),
+    }
+    other = replace(
+        run,
+        q=run.q if q is None else q,
+        dq=run.dq if speeds is None else speeds,
+        tau=run.tau if tau is None else tau,
+        end_points=points,
+    )
+    of_both = [of_run(measure(trace[None], setting.context), 0) for trace in (run, other)]
+    return {
+        name: (value, of_both[1][name])
+        for name, value in of_both[0].items()
+        if known.get(_base(name, known), q is not None)
+    }
+
+
+def _base(name: str, known: Mapping[str, bool]) -> str:
+    """Return the metric that a name is of; the name itself where it is of a stage or of none of these."""
+    return max((base for base in known if f"{name}_".startswith(f"{base}_")), key=len, default=name)
+
+
+def _all(recorded: Mapping[Signal, FloatArray], signals: list[Signal]) -> FloatArray | None:
+    found = [recorded[signal] for signal in signals if signal in recorded]
+    return np.column_stack(found) if len(found) == len(signals) else None

@@ -8,9 +8,8 @@ import numpy as np
 from runner.base.quantities import above_rounding, label_with_unit, quantity
 from runner.plugins.metric_units import unit_of
 from runner.recordings import files_of, words
-from runner.recordings.compare import RecordingComparison
+from runner.recordings.compare import RecordingComparison, Residual
 from runner.recordings.recording import Recording
-from runner.recordings.residuals import Residual
 from runner.reporting.charts.figure import spaced_indices
 from runner.reporting.document import Block, Curves, Document, Notice, Panel, Provenance, Section, Series, Table, Text
 from runner.reporting.figures import origin

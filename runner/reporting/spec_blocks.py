@@ -11,7 +11,7 @@ from runner.reporting.document import Block, Notice, Table
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import title
 from runner.reporting.table import numbers
-from runner.statistics.spec.history import History, ends_of, set_after
+from runner.statistics.spec import History, ends_of, set_after
 from runner.store import Run
 
 if TYPE_CHECKING:

@@ -1,10 +1,17 @@
 """Sensors: encoders, joint torques, wrist force/torque and tip position."""
 
+from typing import Any, Protocol
+
+import numpy as np
+
+from runner.base.arrays import FloatArray
+from runner.base.errors import SimulationError
+from runner.plugins.guard import Asked, Guard, Method, checked, like, place
+from runner.plugins.registry import KindConfig, Registry
 from runner.sensing.encoders import EncoderNoise, JointEncoders, NoiseConfig, encoder_errors
 from runner.sensing.endpoint import EndpointSensorConfig
 from runner.sensing.force_torque import ForceTorqueConfig, ForceTorqueSensor
 from runner.sensing.joint_torque import JointTorqueConfig, JointTorqueSensor
-from runner.sensing.kinds import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, Encoders, TorqueSensors, WristSensor
 
 __all__ = [
     "JOINT_TORQUE_SENSORS",
@@ -23,3 +30,68 @@ __all__ = [
     "WristSensor",
     "encoder_errors",
 ]
+
+
+class Encoders(Protocol):
+    """Joint measurement of one control loop."""
+
+    def measure(self, tick: int, q: FloatArray, dq: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return measured joint positions and velocities from the true ones.
+
+        Args:
+            tick: Index of the measurement, from 0.
+            q: True joint positions, shape (nq,), in rad; m for prismatic joints.
+            dq: True joint velocities, shape (nq,), in rad/s; m/s for prismatic joints.
+        """
+        ...
+
+
+class WristSensor(Protocol):
+    """Force/torque sensor between flange and tool."""
+
+    def read(self, tick: int, wrench: FloatArray) -> FloatArray:
+        """Return the reading of a load on the flange; see ForceTorqueSensor.read."""
+        ...
+
+
+class TorqueSensors(Protocol):
+    """Torque sensors in the joints."""
+
+    def read(self, tick: int, torque: FloatArray) -> FloatArray:
+        """Return the readings of the mean torques on the links; see JointTorqueSensor.read."""
+        ...
+
+
+def _check_measurement(
+    answer: Any, asked: Asked, _: int, q: FloatArray, dq: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the checked positions and velocities of a measurement."""
+    if not isinstance(answer, tuple | list) or len(answer) != 2:
+        at = place(asked.part.measure)
+        raise SimulationError(f"{at} gave {answer!r:.200}; it must be positions and velocities")
+    return checked(answer[0], q.shape, asked), checked(answer[1], dq.shape, asked)
+
+
+NOISES = Registry[KindConfig, [tuple[str, ...], int, float, np.random.Generator], Encoders](
+    "noise",
+    {"encoders": "runner.sensing.encoders"},
+    Guard("noise", measure=Method(_check_measurement)),
+    default="encoders",
+)
+"""`build` takes the joint names, the number of measurements, the time between two in s, and a random generator."""
+
+WRIST_SENSORS = Registry[KindConfig, [int, float, np.random.Generator], WristSensor](
+    "wrist_sensor",
+    {"force_torque": "runner.sensing.force_torque"},
+    Guard("wrist_sensor", read=Method(like(1))),
+    default="force_torque",
+)
+"""`build` takes the number of readings, the time between two in s, and a random generator."""
+
+JOINT_TORQUE_SENSORS = Registry[KindConfig, [tuple[str, ...], int, np.random.Generator], TorqueSensors](
+    "joint_torque_sensor",
+    {"joint_torque": "runner.sensing.joint_torque"},
+    Guard("joint_torque_sensor", read=Method(like(1))),
+    default="joint_torque",
+)
+"""`build` takes the joint names, the number of readings, and a random generator."""

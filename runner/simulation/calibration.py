@@ -9,8 +9,8 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.ticks import add_ticks
-from runner.calibration import consistency
-from runner.calibration.procedures import Outcome
+from runner.calibration.procedure import Outcome
+from runner.calibration.uncertainty import consistency
 from runner.config.calibration import CalibrationConfig
 from runner.simulation import provenance
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from runner.base.engines import STAND_IN, installed_versions
 from runner.base.paths import package_dir
 from runner.plugins import discovery
-from runner.statistics.spec.history import today
+from runner.statistics.spec import today
 from runner.symbolic.engine import evaluator
 
 if TYPE_CHECKING:

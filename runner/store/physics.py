@@ -21,11 +21,9 @@ from runner.symbolic.cache import read_answer, write_answer
 # Folders and their modules. A module's id follows "="; without "=" it is the module's name.
 _TABLE = """
     base: trace
-    calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations tool
+    calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations procedure
         tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
-        uncertainty=repeatability
-    calibration/procedures: __init__=procedures.__init__ bench gravity=procedures.gravity procedure
-        tool_centre_point=procedures.tool_centre_point tool_direction=procedures.tool_direction touching
+        uncertainty=repeatability weighing
     config: arms calibration cross_checks desired_motion flexibility groups input_shaper parsing
         robot=config.robot run settings timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
@@ -38,7 +36,7 @@ _TABLE = """
     controllers/kinematic: differential_inverse_kinematics limited_motion resolved_rate
     controllers/macro_mini: inertial_damping macro_mini stage_loops
     controllers/operational_space: operational_space tip_task whole_body
-    environments: __init__=environments.__init__ environment=environments.environment external_wrench=interaction free
+    environments: __init__=environments.__init__ external_wrench=interaction free
         hand push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary
         tracking
@@ -53,16 +51,16 @@ _TABLE = """
         modes mounting robot=robots.robot task_space tree workspace
     schema: values
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
-        kinds=sensing.kinds streams velocity wrench
+         streams velocity wrench
     simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop
         contact=loop.contact drawn_loops loop=simulation recorder results run=job sensors
     simulation/compiled: commands law loop_program loops maths=compiled.maths
     symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
         program regressor structure tangent vectors=compiled.vectors
-    trajectories: __init__=trajectories.__init__ blend circle from_file goal impulses
-        joint_motion=trajectories.joint_motion joint_quintic joint_sinusoids joint_waypoints kinds=trajectories.kinds
-        line lissajous motion nearest quintic sampled_curve shaped splines square table
-        trajectory=trajectories.trajectory vectors=trajectories.vectors waypoints
+    trajectories: __init__=trajectories.__init__ circle from_file goal
+        joint_motion=trajectories.joint_motion joint_quintic joint_sinusoids joint_waypoints
+        line lissajous motion quintic shaped splines square table
+        trajectory=trajectories.trajectory geometry waypoints
 """  # fmt: skip
 
 

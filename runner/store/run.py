@@ -24,8 +24,7 @@ if TYPE_CHECKING:
 
     from runner.config.judgement import Bound
     from runner.robots import RobotModel
-    from runner.statistics.spec import Spec
-    from runner.statistics.spec.history import Histories
+    from runner.statistics.spec import Histories, Spec
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,8 +150,7 @@ class Run(Stored):
             bounds: The bounds, one or more.
             later: Dates on which bounds were set; the run's original bounds were set before.
         """
-        from runner.statistics.spec import bounds_of, judge
-        from runner.statistics.spec.history import merge_histories, settings
+        from runner.statistics.spec import bounds_of, judge, merge_histories, settings
 
         spec = judge(bounds, self.record["repetitions"], self.record["metrics"], self.values)
         made_with = settings({**dict.fromkeys(later), **bounds_of(self.config)}, self.provenance["date"])
@@ -282,7 +280,7 @@ def judge_run(run: Run, bounds: "Mapping[str, Bound]", date: str = "") -> Run:
     Raises:
         StoreError: if they cannot be written.
     """
-    from runner.statistics.spec.history import settings, today
+    from runner.statistics.spec import settings, today
 
     before = run.spec
     if not bounds or (before is not None and before.config == bounds):

@@ -22,7 +22,7 @@ from runner.store.seal import DamagedError, digest, head, read_file, read_json, 
 
 if TYPE_CHECKING:
     from runner.config.judgement import Bound
-    from runner.statistics.spec.history import Histories
+    from runner.statistics.spec import Histories
 
 _FILE = "sweep.json"
 _RUNS = "runs.bin"  # hashes of the runs of a grid, 12 bytes for each cell
@@ -160,7 +160,7 @@ def write_jobs(folder: Path, jobs: Sequence[tuple[Sequence[str], str]], command:
 
 def _head(folder: Path, command: str, spec: "Mapping[str, Bound]", date: str = "") -> dict[str, Any]:
     """Return the first entries of the file of a sweep; the history includes the bounds of the file that it replaces."""
-    from runner.statistics.spec.history import merge_histories, settings, today
+    from runner.statistics.spec import merge_histories, settings, today
 
     try:
         known = read_json(folder / _FILE, _REMEDY).get("history", {})
@@ -219,7 +219,7 @@ def _read_spec(path: Path, content: Mapping[str, Any]) -> "tuple[dict[str, Bound
     if not content.keys() & {"spec", "history"}:
         return {}, {}
     from runner.config.judgement import Bound
-    from runner.statistics.spec.history import merge_histories
+    from runner.statistics.spec import merge_histories
 
     try:
         bounds = {metric: Bound.model_validate(bound) for metric, bound in content.get("spec", {}).items()}

@@ -25,7 +25,7 @@ from runner.reporting.published_claims import (
     verdict_on,
 )
 from runner.reporting.words import PLANT
-from runner.statistics.spec.history import merge_histories, set_after, today
+from runner.statistics.spec import merge_histories, set_after, today
 from runner.store import Run
 from runner.store.atomic import write_atomically
 from runner.store.seal import read_json, sealed_json

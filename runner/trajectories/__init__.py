@@ -1,7 +1,121 @@
 """Trajectories: desired motions of the tip or of the joints."""
 
-from runner.trajectories.kinds import Trajectories, guard_trajectory
-from runner.trajectories.trajectory import Trajectory
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from runner.base.arrays import FloatArray
+from runner.base.errors import ConfigError, RunnerError
+from runner.plugins.features import Features, read_features
+from runner.plugins.guard import Asked, Guard, Method, checked, describe_fault, find_fault, read_only
+from runner.plugins.registry import KindConfig, Registry
+from runner.trajectories.trajectory import OfTip, Trajectory
+
+if TYPE_CHECKING:  # these modules import Pinocchio, which readers of stored runs do not need
+    from runner.robots.robot import Robot
+    from runner.trajectories.joint_motion import JointMotion
+
+
+@runtime_checkable
+class HasStart(Protocol):
+    """Config of a trajectory with an optional start."""
+
+    start: list[float] | None
+    """Tip position at t = 0, in m; None is the tip at home."""
+
+
+@runtime_checkable
+class HasGoal(Protocol):
+    """Config of a trajectory with a goal, which must be within reach."""
+
+    goal: list[float] | None
+    """Tip position at the end, in m."""
+
+
+@dataclass(frozen=True)
+class TrajectoryFeatures(Features):
+    """Optional members of the module of a trajectory.
+
+    Attributes:
+        joint_motion: Function of the config and the robot; returns the motion of the joints, or None if the config
+            describes a motion of the tip.
+    """
+
+    joint_motion: "Callable[[Any, Robot], JointMotion | None]" = lambda config, robot: None
+
+
+class _ByRun(Method):
+    """Rule for a method that is called once for each run if it receives the points of several runs."""
+
+    def bind(self, asked: Asked) -> Any:
+        """Return the member of the proxy."""
+        ask = super().bind(asked)
+
+        def by_run(points: FloatArray) -> Any:
+            return ask(points) if points.ndim < 3 else np.stack([by_run(np.ascontiguousarray(own)) for own in points])
+
+        return by_run
+
+
+_GUARD = Guard(
+    "trajectory",
+    OfTip,
+    sample=Method(lambda motion, asked, times: checked(motion, (len(times), 3, 3), asked)),
+    distance_to_path=_ByRun(lambda distances, asked, points: checked(distances, (len(points),), asked)),
+)
+
+
+def guard_trajectory(trajectory: Any, *_: object) -> Any:
+    """Return a guarded user-supplied trajectory, with copies of its points and times.
+
+    Raises:
+        ConfigError: if the points, the times or the motion are invalid; the message contains the line of the method.
+    """
+    guarded, problems = _GUARD(trajectory), list[str]()
+    try:
+        for name in ("duration", "run_duration"):
+            value = getattr(trajectory, name)
+            if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value < np.inf:
+                problems.append(f"its {name} is {value!r}; it must be a time in s, 0 or more")
+            else:
+                setattr(guarded, name, float(value))
+        has_times = not problems
+        for name in ("start", "goal"):
+            point = getattr(trajectory, name)
+            fault = None if point is None and name == "goal" else find_fault(point, (3,))
+            if fault:
+                problems.append(f"its {name} is {fault}")
+            else:
+                setattr(guarded, name, None if point is None else read_only(np.array(point, dtype=float)))
+        guarded.tracked = bool(trajectory.tracked)
+        if has_times:
+            guarded.distance_to_path(guarded.sample(np.linspace(0.0, trajectory.duration, 1001))[:, 0])
+    except RunnerError:
+        raise
+    except Exception as error:
+        problems.append(describe_fault(error))
+    if problems:
+        raise ConfigError(f"trajectory: {type(trajectory).__name__}: {problem}" for problem in problems)
+    return guarded
+
+
+class Trajectories(Registry[KindConfig, [FloatArray], Trajectory]):
+    """Kinds of trajectories; `build` also takes the tip position at t = 0, shape (3,), in m."""
+
+    def features(self, kind: str) -> TrajectoryFeatures:
+        """Return the optional members of the module of a kind."""
+        return read_features(TrajectoryFeatures, self.module(kind))
+
+    def joint_motion(self, config: KindConfig, robot: "Robot") -> "JointMotion | None":
+        """Return the joint motion of a built-in kind, or None; see TrajectoryFeatures.
+
+        Raises:
+            ConfigError: if the config does not match the robot.
+        """
+        return self.features(config.kind).joint_motion(config, robot) if self.is_ours(config.kind) else None
+
 
 TRAJECTORIES = Trajectories(
     "trajectory",

@@ -9,9 +9,9 @@ from pydantic import PositiveFloat, PositiveInt
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
+from runner.trajectories.geometry import Direction, InPlane, Point, component, plane_axes
 from runner.trajectories.motion import ClosedCurve, Easing, PathMotion
 from runner.trajectories.trajectory import Trajectory
-from runner.trajectories.vectors import Direction, InPlane, Point, component, plane_axes
 
 
 class CircleConfig(StrictModel):

@@ -8,9 +8,8 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres
-from runner.trajectories.nearest import distance_to_segment
+from runner.trajectories.geometry import Point, distance_to_segment
 from runner.trajectories.trajectory import OfTip, Trajectory
-from runner.trajectories.vectors import Point
 
 
 class GoalConfig(StrictModel):

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from math import comb
 from typing import Annotated, Any, Protocol
 
 import numpy as np
@@ -13,9 +14,52 @@ from runner.base.lazy_modules import pin
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, StageBase
 from runner.schema.values import expand
-from runner.trajectories.nearest import distance_to_curve
-from runner.trajectories.sampled_curve import SampledCurve
+from runner.trajectories.geometry import distance_to_curve
 from runner.trajectories.trajectory import TrackedMotion
+
+_DEGREE = 5
+
+
+class SampledCurve:
+    """Curve that interpolates the positions and first two derivatives of samples.
+
+    The curve between two samples is a Bezier curve (Farin, Curves and Surfaces for CAGD, 2002, chapter 5). The
+    derivatives are Bezier curves of the differences of its control points.
+
+    Args:
+        times: Times of the samples, ascending, shape (N,), in s.
+        samples: Position and two derivatives at each sample, shape (N, 3, k).
+    """
+
+    def __init__(self, times: FloatArray, samples: FloatArray) -> None:
+        self._times, self._steps = times, np.diff(times)
+        h = self._steps[:, None]
+        before, after = samples[:-1], samples[1:]
+        self._controls = np.stack(
+            [
+                before[:, 0],
+                before[:, 0] + h * before[:, 1] / 5.0,
+                before[:, 0] + 2.0 * h * before[:, 1] / 5.0 + h**2 * before[:, 2] / 20.0,
+                after[:, 0] - 2.0 * h * after[:, 1] / 5.0 + h**2 * after[:, 2] / 20.0,
+                after[:, 0] - h * after[:, 1] / 5.0,
+                after[:, 0],
+            ],
+            axis=1,
+        )
+
+    def sample(self, times: FloatArray) -> FloatArray:
+        """Return position and two derivatives at times from the first sample to the last, shapes (T,) to (T, 3, k)."""
+        place = np.clip(np.searchsorted(self._times, times, side="right") - 1, 0, len(self._steps) - 1)
+        step = self._steps[place][:, None]
+        share = (times - self._times[place])[:, None] / step
+        controls, scale, orders = self._controls[place], np.ones_like(step), []
+        for degree in range(_DEGREE, _DEGREE - 3, -1):
+            powers = np.arange(degree + 1)
+            weights = np.array([comb(degree, power) for power in powers.tolist()])
+            weights = weights * share**powers * (1.0 - share) ** (degree - powers)
+            orders.append(scale * (weights[:, :, None] * controls).sum(axis=1))
+            controls, scale = np.diff(controls, axis=1), scale * degree / step
+        return np.stack(orders, axis=1)
 
 
 def _configuration(value: Any) -> float | list[float]:

@@ -12,8 +12,8 @@ from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import Hertz, JointPosition, Seconds
 from runner.schema.values import NonNegativePerJoint, expand
-from runner.trajectories.blend import quintic_blend
 from runner.trajectories.joint_motion import Configuration, JointMotion, start_of
+from runner.trajectories.motion import quintic_blend
 
 _SAMPLES = 64  # in a period of the highest harmonic
 _AT_ONCE = 2_000_000  # sines in memory at the same time

@@ -9,9 +9,9 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
+from runner.trajectories.geometry import Point
 from runner.trajectories.motion import PathMotion, Segment
 from runner.trajectories.trajectory import Trajectory
-from runner.trajectories.vectors import Point
 
 
 class LineConfig(StrictModel):

@@ -9,10 +9,9 @@ from pydantic import Field, NonNegativeFloat, PositiveFloat, ValidationInfo, fie
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Radians, Seconds
+from runner.trajectories.geometry import Point, distance_to_curve
 from runner.trajectories.motion import ClosedCurve, Easing, PathMotion
-from runner.trajectories.nearest import distance_to_curve
 from runner.trajectories.trajectory import Trajectory
-from runner.trajectories.vectors import Point
 
 _SAMPLES = 64  # per sine of the highest frequency, from which the nearest point is refined
 

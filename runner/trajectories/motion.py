@@ -1,4 +1,4 @@
-"""Motions in R^n, of the tip or of the joints: a path times a time scaling."""
+"""Motions in R^n, of the tip or of the joints: a path times a time scaling, such as the quintic blend."""
 
 from dataclasses import dataclass
 from typing import Literal, Protocol
@@ -6,9 +6,24 @@ from typing import Literal, Protocol
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.trajectories.blend import quintic_blend
-from runner.trajectories.nearest import distance_to_segment
+from runner.trajectories.geometry import distance_to_segment
 from runner.trajectories.trajectory import TrackedMotion
+
+
+def quintic_blend(u: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    r"""Return s and its first two derivatives by u, each of shape (T,); u below 0 or above 1 counts as 0 or 1.
+
+    .. math:: s(u) = 10 u^3 - 15 u^4 + 6 u^5
+
+    is the only quintic with s(0) = 0, s(1) = 1 and zero first and second derivatives at both ends (thesis eq. 3.39).
+    """
+    u = np.clip(u, 0.0, 1.0)
+    return (
+        u**3 * (10.0 + u * (-15.0 + 6.0 * u)),
+        30.0 * u**2 * (1.0 - u) ** 2,
+        60.0 * u * (1.0 - u) * (1.0 - 2.0 * u),
+    )
+
 
 Easing = Literal["quintic", "none"]
 """Time scaling of a closed curve in a config."""

@@ -8,9 +8,9 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
+from runner.trajectories.geometry import Point
 from runner.trajectories.motion import quintic_motion
 from runner.trajectories.trajectory import Trajectory
-from runner.trajectories.vectors import Point
 
 
 class QuinticConfig(StrictModel):

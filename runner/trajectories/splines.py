@@ -11,7 +11,7 @@ from pydantic import ValidationInfo
 
 from runner.base.arrays import FloatArray
 from runner.base.lazy_modules import splines
-from runner.trajectories.nearest import distance_to_curve
+from runner.trajectories.geometry import distance_to_curve
 from runner.trajectories.trajectory import TrackedMotion
 
 Interpolation = Literal["spline", "hermite"]

@@ -9,10 +9,9 @@ from pydantic import PositiveFloat
 from runner.base.arrays import FloatArray
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
-from runner.trajectories.blend import quintic_blend
-from runner.trajectories.nearest import distance_to_segment
+from runner.trajectories.geometry import Direction, InPlane, Point, distance_to_segment, plane_axes
+from runner.trajectories.motion import quintic_blend
 from runner.trajectories.trajectory import TrackedMotion, Trajectory
-from runner.trajectories.vectors import Direction, InPlane, Point, plane_axes
 
 
 class SquareConfig(StrictModel):

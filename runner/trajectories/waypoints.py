@@ -9,9 +9,9 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Seconds
+from runner.trajectories.geometry import Point
 from runner.trajectories.splines import check_time_shares, find_repeated, minimum_jerk, passing_times
 from runner.trajectories.trajectory import Trajectory
-from runner.trajectories.vectors import Point
 
 
 class WaypointsConfig(StrictModel):

@@ -15,7 +15,7 @@ from typing import Any, get_origin
 import yaml
 
 from runner.base.paths import conf_dir
-from runner.calibration.procedures import CALIBRATIONS
+from runner.calibration import CALIBRATIONS
 from runner.cli.main import COMMANDS, COMMON, build_parser
 from runner.config.calibration import CalibrationSettings
 from runner.config.compose.files import group_options

@@ -142,7 +142,7 @@ def _models(group: str, rest: Sequence[str], chosen: str | None = None) -> Itera
 
     known = GROUPS.get(group)
     if group == "calibration":
-        from runner.calibration.procedures import CALIBRATIONS  # for few commands
+        from runner.calibration import CALIBRATIONS  # for few commands
 
         known = CALIBRATIONS
     if not group:

@@ -7,7 +7,7 @@ from runner.base.errors import ConfigError
 from runner.base.lazy_modules import pin
 from runner.controllers.kinematic.resolved_rate import ResolvedRate
 from runner.robots.model import RobotModel
-from runner.trajectories.blend import quintic_blend
+from runner.trajectories.motion import quintic_blend
 
 _DAMPED_BELOW = 0.02  # singular value below which the inverse is damped, as a fraction of the reach
 _FREE = 1e-6  # m and rad; distance from the desired pose above which the tip is held back

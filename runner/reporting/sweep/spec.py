@@ -15,9 +15,7 @@ from runner.reporting.markup import literal
 from runner.reporting.spec_blocks import RULE, bound_text, late_text, probability
 from runner.reporting.sweep import maps
 from runner.reporting.sweep.subject import Subject, key_label, spans_decades
-from runner.statistics.spec import bounds_of
-from runner.statistics.spec.history import merge_histories, settings
-from runner.statistics.spec.kept import within
+from runner.statistics.spec import bounds_of, merge_histories, settings, within
 from runner.store import Sweep
 from runner.store.axes import Axis
 

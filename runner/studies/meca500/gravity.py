@@ -5,9 +5,9 @@ import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity, with_interval
-from runner.calibration import identify_gravity
+from runner.calibration.gravity import identify_gravity
 from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
-from runner.calibration.procedures.gravity import even_postures
+from runner.calibration.weighing import even_postures
 from runner.reporting.document import Panel, Series, Table
 from runner.reporting.figures import origin
 from runner.reporting.table import Column as TableColumn

@@ -4,7 +4,8 @@ import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
-from runner.calibration import consistency, identify_tool_centre_point, joint_deviation, pose_covariances
+from runner.calibration.tool_centre_point import identify_tool_centre_point
+from runner.calibration.uncertainty import consistency, joint_deviation, pose_covariances
 from runner.reporting.document import Table
 from runner.sensing.wrench import cross_matrix
 from runner.store import Calibration

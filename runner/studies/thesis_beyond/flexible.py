@@ -15,7 +15,7 @@ from runner.studies.thesis_beyond.flexible_map import stable_and_not
 from runner.study.prose.plots import points
 from runner.study.prose.signals import moved, norm, vector
 from runner.study.results import Runs
-from runner.trajectories.impulses import zero_vibration
+from runner.trajectories.shaped import zero_vibration
 
 _MACRO = 3  # its joints
 _STIFFNESSES = (200.0, 500.0, 1000.0, 2000.0, 5000.0, 10000.0)  # N m/rad

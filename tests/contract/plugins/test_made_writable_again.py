@@ -191,7 +191,7 @@ METRIC = """
 CALIBRATION = """
     from typing import Literal
     import numpy as np
-    from runner.calibration.procedures import Outcome
+    from runner.calibration.procedure import Outcome
     from runner.plugins.registry import StrictModel
     class CONFIG(StrictModel):
         kind: Literal["NAME"]

@@ -5,7 +5,7 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.base.limits import Limit
-from runner.recordings import csv_columns
+from runner.recordings import files
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
 from runner.recordings.recording import read_recording
 
@@ -100,9 +100,9 @@ def test_a_file_that_is_not_there(tmp_path):
 
 def test_rows_are_counted_while_they_are_read(tmp_path, monkeypatch):
     path = write(tmp_path, rows(range(60)))
-    monkeypatch.setattr(csv_columns, "RECORDING_ROWS", Limit(61, "rows"))
+    monkeypatch.setattr(files, "RECORDING_ROWS", Limit(61, "rows"))
     assert len(read_recording(path, said(), FACTORS).t) == 60
-    monkeypatch.setattr(csv_columns, "RECORDING_ROWS", Limit(60, "rows"))
+    monkeypatch.setattr(files, "RECORDING_ROWS", Limit(60, "rows"))
     with pytest.raises(RunnerError, match=r"cannot read .*recording.csv: it has 61 rows; allowed: up to 60"):
         read_recording(path, said(), FACTORS)
 

@@ -7,10 +7,10 @@ import pytest
 
 from runner.base.errors import RunnerError
 from runner.base.limits import Limit
-from runner.recordings import is_bag, ros_bag
+from runner.recordings import files, is_bag
 from runner.recordings.columns_map import ColumnsMap, Factor, Signal
+from runner.recordings.files import read_bag_columns
 from runner.recordings.recording import read_recording
-from runner.recordings.ros_bag import read_bag_columns
 
 WANTED = ["stamp", "a.position", "b.effort"]
 COUNT, START = 60, 1_700_000_000_123_456_789  # ns
@@ -109,7 +109,7 @@ def test_a_bag_that_unpacks_to_more_than_allowed_is_not_held(write, monkeypatch,
     zeros = [(START, ["a"], np.zeros(8_000_000), [])]  # 64 MB
     folder = write({"/joint_states": zeros}, compressed=compressed).parent
     assert sum(file.stat().st_size for file in folder.iterdir()) < 1_000_000
-    monkeypatch.setattr(ros_bag, "BAG_MEMORY", Limit(1_000_000, "bytes"))
+    monkeypatch.setattr(files, "BAG_MEMORY", Limit(1_000_000, "bytes"))
     with pytest.raises(RunnerError, match=r"cannot read .*(takes more than 1,000,000 bytes|memory|File too large)"):
         read_bag_columns(folder, None, ["a.position"])
 

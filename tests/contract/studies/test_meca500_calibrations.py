@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 from support.engines import DEFAULT_PLANT
 from support.study_sections import blocks
 
-from runner.calibration import REST, GravityCalibration, Tool, WrenchCompensation
+from runner.calibration.gravity import REST, GravityCalibration, Tool, WrenchCompensation
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.reporting.document import Curves, Table
 from runner.studies.meca500.figures import consistency, error, fit, predicted, refusal

@@ -5,7 +5,7 @@ import pytest
 from support.arms import model_of
 from support.turns import rotation
 
-from runner.calibration import joint_deviation
+from runner.calibration.uncertainty import joint_deviation
 from runner.robots import RobotModel
 from runner.robots.inverse_kinematics import solve_tip_pose
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from support.turns import rotation
 
-from runner.calibration import REST, GravityCalibration, Motion, Tool, WrenchCompensation, identify_gravity
+from runner.calibration.gravity import REST, GravityCalibration, Motion, Tool, WrenchCompensation, identify_gravity
 
 GRAVITY = 9.81
 INERTIA = np.diag([2e-4, 3e-4, 1e-4])

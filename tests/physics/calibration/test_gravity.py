@@ -8,8 +8,9 @@ from scipy.spatial.transform import Rotation
 from support.turns import rotation
 
 from runner.base.errors import ConfigError
-from runner.calibration import REST, Tool, choose_orientations, consistency, identify_gravity, pose_covariances
-from runner.calibration.gravity import PARAMETERS
+from runner.calibration.gravity import PARAMETERS, REST, Tool, identify_gravity
+from runner.calibration.orientations import choose_orientations
+from runner.calibration.uncertainty import consistency, pose_covariances
 from runner.sensing.force_torque import ForceTorqueConfig, ForceTorqueSensor
 from runner.sensing.wrench import wrench_transform
 

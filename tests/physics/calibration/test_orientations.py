@@ -6,10 +6,10 @@ from scipy.spatial.transform import Rotation
 from support.turns import rotation
 
 from runner.base.errors import ConfigError
-from runner.calibration import choose_orientations
 from runner.calibration.orientations import (
     MAX_CONDITION_NUMBER,
     check_orientations,
+    choose_orientations,
     condition_numbers,
     force_matrix,
     moment_matrix,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.calibration.procedures.gravity import even_postures
+from runner.calibration.weighing import even_postures
 from runner.config.calibration import validate_calibration
 from runner.config.compose.compose import compose
 from runner.simulation.calibration import LEVEL, judge

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.calibration import REST, Motion, Tool
+from runner.calibration.gravity import REST, Motion, Tool
 
 GRAVITY = np.array([0.0, 0.0, -9.81])
 # Point masses: a tool whose balance is Newton's law for each of them.

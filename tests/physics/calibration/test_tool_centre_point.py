@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from support.turns import rotation
 
 from runner.base.errors import ConfigError
-from runner.calibration import consistency, identify_tool_centre_point, pose_covariances
-from runner.calibration.tool_centre_point import MIN_SINGULAR_VALUE
+from runner.calibration.tool_centre_point import MIN_SINGULAR_VALUE, identify_tool_centre_point
+from runner.calibration.uncertainty import consistency, pose_covariances
 
 TIP = np.array([0.012, -0.007, 0.093])
 EXACT = np.zeros((6, 6))

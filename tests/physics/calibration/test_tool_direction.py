@@ -6,14 +6,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.base.errors import ConfigError
-from runner.calibration import (
-    ToolCentrePoint,
-    consistency,
-    identify_tool_centre_point,
-    identify_tool_direction,
-    pose_covariances,
-)
-from runner.calibration.tool_direction import alignment, alignment_angles
+from runner.calibration.tool_centre_point import ToolCentrePoint, identify_tool_centre_point
+from runner.calibration.tool_direction import alignment, alignment_angles, identify_tool_direction
+from runner.calibration.uncertainty import consistency, pose_covariances
 
 directions = (
     st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3)

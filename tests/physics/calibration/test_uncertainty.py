@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.calibration import consistency, joint_deviation, pose_covariances
+from runner.calibration.uncertainty import consistency, joint_deviation, pose_covariances
 
 REPEATABILITY = 5e-6
 POSTURES = np.array([[0.0, 0.3, -0.2, 0.1, 1.2, 0.0], [0.5, 0.1, 0.4, -1.0, 0.6, 2.0]])

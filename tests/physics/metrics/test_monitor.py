@@ -14,7 +14,7 @@ from runner.config.judgement import THRESHOLDS, CaveatsConfig
 from runner.metrics.caveats import Signals, Watch, changes_since, look_together, plant_error, setting_of, signals_of
 from runner.metrics.caveats.setting_rules import SETTING_RULES
 from runner.metrics.caveats.trace_rules import TRACE_RULES
-from runner.metrics.caveats.versions import our_thresholds
+from runner.metrics.caveats.versions import our_thresholds, rules_digest
 from runner.store import run_hash
 
 ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini", "meca500", "meca500_r4")
@@ -209,7 +209,7 @@ def test_a_threshold_out_of_range_is_refused(cli, override, problem):
 
 
 def test_what_is_different_today_is_named():
-    today = registry.rules_digest()
+    today = rules_digest()
     assert changes_since(None) == []
     stored = {"digest": "x", "thresholds": {**our_thresholds(), "chatter": {"share": 0.5}, "gone": {"key": 1.0}}}
     assert changes_since(stored) == [

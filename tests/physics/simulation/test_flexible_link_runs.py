@@ -16,7 +16,7 @@ from runner.robots.robot import with_armature
 from runner.simulation.assembly import assemble
 from runner.store import simulated_part
 from runner.studies.thesis_beyond.cantilever import cantilever_roots
-from runner.trajectories.impulses import zero_vibration
+from runner.trajectories.shaped import zero_vibration
 
 MACRO = ("robot=macro", "plant=rk4_flexible_links", "noise=none", "torque_limits=none")
 MOVE = ("trajectory=quintic", "trajectory.duration=1", "trajectory.goal=[0.4,0.7,0.6]", "duration=1.5")

@@ -10,7 +10,7 @@ from runner.config.validation import validate
 from runner.plants import PLANTS
 from runner.robots.modes import Mode
 from runner.store import simulated_part
-from runner.trajectories.impulses import zero_vibration
+from runner.trajectories.shaped import zero_vibration
 
 FLEXIBLE = ("robot=macro", "plant=rk4_flexible", "noise=none", "torque_limits=none")
 # Motors so heavy that their law leads them as if nothing pulled at them; only joint 1 turns, and rings on its own.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runner.recordings.columns_map import Signal
-from runner.recordings.residuals import Residual
+from runner.recordings.compare import Residual
 
 T = np.linspace(0.0, 1.0, 1001)
 SINE = np.sin(2.0 * np.pi * T)

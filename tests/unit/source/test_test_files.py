@@ -31,9 +31,8 @@ MODULES = [
     if path.name != "__init__.py"
 ]
 SHARED = {
-    "calibration/procedures/bench": "physics/calibration/test_procedures.py",
-    "calibration/procedures/procedure": "physics/calibration/test_procedures.py",
-    "calibration/procedures/touching": "physics/calibration/test_procedures.py",
+    "calibration/procedure": "physics/calibration/test_procedures.py",
+    "calibration/weighing": "physics/calibration/test_procedures.py",
     "config/composed": "contract/config/test_compose.py",
     "config/calibration": "contract/calibration/test_calibration_job.py",
     "config/compose/files": "contract/config/test_options.py",
@@ -68,7 +67,6 @@ SHARED = {
     "plants/rk4_flexible_links": "physics/plants/test_flexible_links.py",
     "robots/mjcf_urdf": "physics/robots/test_mjcf.py",
     "sensing/endpoint": "physics/simulation/test_endpoint_sensing.py",
-    "sensing/kinds": "physics/sensing/test_force_torque.py",
     "schema/units": "contract/config/test_units_of_keys.py",
     "simulation/assembly": "physics/simulation/test_simulation.py",
     "simulation/closed_loop": "physics/simulation/test_simulation.py",
@@ -93,10 +91,10 @@ SHARED = {
     "symbolic/arm": "physics/symbolic/test_algebra.py",
     "symbolic/end_points": "physics/symbolic/test_tick.py",
     "symbolic/program": "physics/symbolic/test_code.py",
+    "symbolic/vectors": "physics/symbolic/test_algebra.py",
     "symbolic/regressor": "physics/symbolic/test_algebra.py",
     "symbolic/structure": "physics/symbolic/test_law.py",
     "trajectories/splines": "physics/trajectories/test_waypoints.py",
-    "trajectories/kinds": "physics/trajectories/test_trajectory_kinds.py",
 }
 """Test file of each module that has none of its name: that of the module to which it belongs."""
 

@@ -1,10 +1,30 @@
-"""Closed figures: a circle of unit radius traced once from rest to rest, or evenly."""
+"""Motions along a path, and the quintic blend."""
 
 import numpy as np
 import pytest
 
 from runner.trajectories.circle import Circle
-from runner.trajectories.motion import PathMotion
+from runner.trajectories.motion import PathMotion, quintic_blend
+
+
+def test_it_goes_from_0_to_1_and_rests_at_and_beyond_both():
+    np.testing.assert_array_equal(quintic_blend(np.array([-1.0, 0.0, 1.0, 2.0])), [[0, 0, 1, 1], [0] * 4, [0] * 4])
+
+
+def test_it_is_odd_about_the_middle_where_its_slope_is_largest():
+    u = np.linspace(0.0, 1.0, 101)
+    s, s_prime, s_second = quintic_blend(u)
+    np.testing.assert_allclose(s + s[::-1], 1.0, atol=1e-15)
+    assert (s_prime.argmax(), s_prime.max()) == (50, 1.875)
+    assert (np.diff(s) > 0.0).all()
+    np.testing.assert_allclose(s_second, -s_second[::-1], atol=1e-14)
+
+
+def test_each_is_the_derivative_of_the_one_before():
+    u = np.linspace(0.0, 1.0, 7)[1:-1]
+    before, here, after = (np.array(quintic_blend(u + h)) for h in (-1e-5, 0.0, 1e-5))
+    np.testing.assert_allclose((after - before)[:2] / 2e-5, here[1:], atol=1e-8)
+
 
 CIRCLE = Circle(np.zeros(3), 1.0, np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]), 1)
 T_F = 2.0

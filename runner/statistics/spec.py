@@ -1,6 +1,7 @@
-"""Number of a run's repetitions within each bound of a spec, and the verdict on a bound."""
+"""Number of a run's repetitions within each bound of a spec, verdicts, and the history of bounds."""
 
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -9,10 +10,44 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.config.judgement import Bound
-from runner.statistics.spec.history import History
 
 if TYPE_CHECKING:
     from runner.statistics.proportion import Share
+
+History = Sequence[Sequence[Any]]
+"""Dates on which bounds or claims were first set, each with its value; the first stood when the result was made."""
+Histories = Mapping[str, History]
+
+
+def today() -> str:
+    """Return the date as it is stored, such as "2026-11-24", in UTC."""
+    return time.strftime("%Y-%m-%d", time.gmtime())
+
+
+def ends_of(bound: Bound | None) -> list[float | None]:
+    """Return the ends of a bound as a history has them; None is no bound."""
+    return [None, None] if bound is None else [bound.min, bound.max]
+
+
+def settings(bounds: Mapping[str, Bound | None], date: str) -> Histories:
+    """Return histories that begin with some bounds."""
+    return {metric: [[date, ends_of(bound)]] for metric, bound in bounds.items()}
+
+
+def merge_histories(*histories: Histories) -> dict[str, list[Sequence[Any]]]:
+    """Return histories one after the other, each value with the date on which it was first set."""
+    found: dict[str, list[Sequence[Any]]] = {}
+    for name, history in (item for each in histories for item in each.items()):
+        known = found.setdefault(name, [])
+        known += [[date, value] for date, value in history if value not in [old for _, old in known]]
+    return found
+
+
+def set_after(history: History, value: Any) -> tuple[str, Sequence[Any]]:
+    """Return when a value was set after the result was known, and what stood before; no date where it was not."""
+    values = [old for _, old in history]
+    place = values.index(value) if value in values else 0
+    return (str(history[place][0]), values[:place]) if place else ("", ())
 
 
 @dataclass(frozen=True)

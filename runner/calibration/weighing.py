@@ -10,11 +10,9 @@ from pydantic import Field, NonNegativeFloat
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.limits import READINGS
-from runner.calibration.gravity import PARAMETERS, GravityCalibration, WrenchCompensation, identify_gravity
+from runner.calibration.gravity import PARAMETERS, REST, GravityCalibration, WrenchCompensation, identify_gravity
 from runner.calibration.orientations import choose_orientations
-from runner.calibration.procedures.bench import Bench
-from runner.calibration.procedures.procedure import Outcome
-from runner.calibration.tool import REST
+from runner.calibration.procedure import Bench, Outcome
 from runner.robots.model import RobotModel
 from runner.schema.model import StrictModel
 from runner.schema.units import Metres, Radians
