@@ -5,8 +5,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from runner.analysis.sensitivity import GROUPS
-from runner.analysis.sensitivity.analysis import slopes_of
+from runner.analysis import GROUPS
+from runner.analysis.sensitivity import slopes_of
 from runner.config.compose.compose import compose
 from runner.simulation.compiled.loop_program import run_all, tangents
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
 
-    from runner.analysis.sensitivity import Sensitivity
+    from runner.analysis import Sensitivity
     from runner.recordings.compare import RecordingComparison
     from runner.reporting.metric_titles import KeyMetric
 
@@ -89,7 +89,7 @@ class Run(store.Run):
         Raises:
             RunnerError: if the run has no derivatives, or no such repetition or parameter.
         """
-        from runner.analysis.sensitivity import GROUPS, of_run
+        from runner.analysis import GROUPS, of_run
 
         groups = [parameters] if isinstance(parameters, str) else parameters
         return of_run(self, groups or GROUPS, repetition)

@@ -98,13 +98,6 @@ class GravityCalibration:
             [[self.mass, self.theta], self.centre_of_mass, self.force_bias, self.moment_bias], dtype=np.float64
         )
 
-    def confidence_intervals(self, level: float) -> FloatArray:
-        """Return lower and upper end of each parameter's interval at a level such as 0.95, shape (2, 11)."""
-        from scipy.special import ndtri  # for few configs
-
-        half = ndtri(0.5 * (1.0 + level)) * np.sqrt(np.diagonal(self.covariance))
-        return np.array([self.values - half, self.values + half])
-
 
 def identify_gravity(
     readings: FloatArray,

@@ -18,8 +18,8 @@ from runner.cli.arguments import Names, Parser, Stored
 from runner.reporting.table import Cell, Number, Table, numbers, terminal
 
 if TYPE_CHECKING:
-    from runner.analysis.sensitivity import Sensitivity
-    from runner.analysis.sensitivity.differences import Differences
+    from runner.analysis import Sensitivity
+    from runner.analysis.sensitivity import Differences
     from runner.store import Run
 
 _SHOWN = (
@@ -47,7 +47,7 @@ def add_arguments(parser: Parser) -> None:
 def run(options: Namespace) -> int:
     """Print a table for each metric; return 1 if differences disagree."""
     from runner import store
-    from runner.analysis.sensitivity import check_smooth, differences, of_run
+    from runner.analysis import check_smooth, differences, of_run
 
     stored = store.open_run(options.folder)
     progress.begin("differentiating", unit="parameters")

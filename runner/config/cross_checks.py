@@ -8,9 +8,8 @@ from runner.base.errors import ConfigError, nearest
 from runner.config.run import RunConfig
 from runner.controllers import Loop
 from runner.controllers.force.hybrid_force import HybridForceConfig
-from runner.plants import PLANTS, PlantConfig
+from runner.plants import PLANTS, PlantConfig, options_of
 from runner.plants.decoupled import TorquePlantConfig
-from runner.plants.kinds import options_of
 from runner.sensing.endpoint import EndpointTicks
 
 

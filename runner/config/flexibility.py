@@ -5,14 +5,13 @@ import numpy as np
 from runner.base.errors import ConfigError
 from runner.config.run import RunConfig
 from runner.controllers.joint_space.motor_pd import MotorPdConfig
-from runner.plants import Plant
+from runner.plants import Plant, options_of
 from runner.plants.decoupled import TorquePlantConfig, find_motion
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints, MotorSide, links_of
-from runner.plants.kinds import options_of
 from runner.plants.plant import unwrapped
 from runner.plants.rk4_flexible_links import Rk4FlexibleLinksConfig
-from runner.robots.chain import stiffen_robot
 from runner.robots.robot import Robot, with_armature
+from runner.robots.vibration import stiffen_robot
 from runner.sensing.joint_torque import JointTorqueNoise
 
 _FASTEST = 0.5  # step h times largest rate: numerical damping ratio, (rate h)^5/144, is 2.2e-4 there

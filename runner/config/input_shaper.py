@@ -11,8 +11,8 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.controllers import Loop
 from runner.plants import PLANTS, PlantConfig
-from runner.robots.modes import Mode
 from runner.robots.robot import Robot
+from runner.robots.vibration import Mode
 from runner.schema.model import StrictModel
 from runner.schema.units import Hertz
 from runner.trajectories import Trajectory

@@ -8,8 +8,7 @@ from runner.base.errors import ConfigError
 from runner.config.arms import RobotOutline
 from runner.config.settings import RunSettings
 from runner.controllers import CONTROLLERS, ControllerConfig
-from runner.plants import PLANTS, PlantConfig
-from runner.plants.kinds import options_of
+from runner.plants import PLANTS, PlantConfig, options_of
 from runner.schema.values import by_stage
 from runner.trajectories import Trajectory
 

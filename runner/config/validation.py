@@ -30,8 +30,7 @@ from runner.config.run import RunConfig
 from runner.config.timing import Steps, Timing, count_steps, count_ticks
 from runner.config.torque_limits import TorqueLimitsConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, Loop
-from runner.plants import PLANTS, PlantConfig
-from runner.plants.kinds import options_of
+from runner.plants import PLANTS, PlantConfig, options_of
 from runner.plugins.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig, check_links
 from runner.robots.robot import Robot, end_points

@@ -8,8 +8,7 @@ from runner.plants.friction_law import JointFriction
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import to_scalars
 from runner.symbolic.code import SCRATCH, STATE, Block, Part, Repeat, Slots
-from runner.symbolic.elementary import decay
-from runner.symbolic.expression import Value, absolute, both, equal, less, places, select
+from runner.symbolic.expression import Value, absolute, both, decay, equal, less, places, select
 from runner.symbolic.vectors import Matrix, Vector, add, product, scale, subtract
 
 _PIVOTS, _ROUNDING = 100, 1e-12  # as in runner/plants/friction.py

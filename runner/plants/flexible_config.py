@@ -9,8 +9,8 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, nearest
 from runner.base.sanitize import quoted
 from runner.plants.flexible_joints import Flexibility, links_of
-from runner.robots.modes import Mode, find_modes
 from runner.robots.robot import Robot, by_joint
+from runner.robots.vibration import Mode, find_modes
 from runner.schema.model import StrictModel
 from runner.schema.units import MomentOfInertia, RotaryStiffness, Seconds
 from runner.schema.values import SpringPerStage

@@ -13,7 +13,7 @@ from runner.base.lazy_modules import pin
 from runner.plants.compiled_motion import CompiledStep
 from runner.plants.plant import Plant
 from runner.robots.model import RobotModel
-from runner.robots.modes import largest_rate
+from runner.robots.vibration import largest_rate
 
 
 @dataclass(frozen=True)

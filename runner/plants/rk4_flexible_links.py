@@ -12,9 +12,8 @@ from runner.base.lazy_modules import pin
 from runner.plants.computation import ComputationConfig
 from runner.plants.flexible_joints import runge_kutta
 from runner.plants.plant import Plant
-from runner.robots.chain import Beam, Chain, cut, moving_links, span
-from runner.robots.modes import Mode, find_modes, largest_rate
 from runner.robots.robot import Robot, by_joint
+from runner.robots.vibration import Beam, Chain, Mode, cut, find_modes, largest_rate, moving_links, span
 from runner.schema.model import StrictModel
 from runner.schema.units import Kilograms, MomentOfInertia, Newtons, Seconds
 from runner.schema.values import MotorPerStage

@@ -8,7 +8,7 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
 from runner.base.trace import ContactSignals
 from runner.config.run import RunConfig
-from runner.controllers.kinds import ChecksStability
+from runner.controllers import ChecksStability
 from runner.controllers.stability import check_wall
 from runner.environments import Environment
 from runner.environments.external_wrench import Interaction

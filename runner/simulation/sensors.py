@@ -9,8 +9,7 @@ from runner.base.arrays import FloatArray
 from runner.config.cross_checks import endpoint_ticks
 from runner.config.run import RunConfig
 from runner.controllers.controller import ControlLaw
-from runner.plants import Plant
-from runner.plants.kinds import options_of
+from runner.plants import Plant, options_of
 from runner.plugins.registry import KindConfig
 from runner.robots.model import RobotModel
 from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, Encoders, TorqueSensors, WristSensor

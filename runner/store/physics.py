@@ -24,48 +24,42 @@ _TABLE = """
     calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations procedure
         tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
         uncertainty=repeatability weighing
-    config: arms calibration cross_checks desired_motion flexibility groups input_shaper parsing
-        robot=config.robot run settings timing torque_limits validation
+    config: arms calibration cross_checks desired_motion flexibility groups input_shaper parsing robot=config.robot run
+        settings timing torque_limits validation
     controllers: __init__=controllers.__init__ controller=controllers.controller
-        disturbance_observer=controllers.disturbance_observer kinds=controllers.kinds notch=controllers.notch
-        torque_filter torque_law
-    controllers/force: admittance admittance_filter force_reading=controllers.force_reading hybrid_force
-        impedance tip_force
+        disturbance_observer=controllers.disturbance_observer notch=controllers.notch torque_filter torque_law
+    controllers/force: admittance admittance_filter force_reading=controllers.force_reading hybrid_force impedance
+        tip_force
     controllers/joint_space: adaptive computed_torque function_law iterative_learning joint_law joint_pd joint_pid
         motor_pd passivity sliding_mode
     controllers/kinematic: differential_inverse_kinematics limited_motion resolved_rate
     controllers/macro_mini: inertial_damping macro_mini stage_loops
     controllers/operational_space: operational_space tip_task whole_body
-    environments: __init__=environments.__init__ external_wrench=interaction free
-        hand push wall
+    environments: __init__=environments.__init__ external_wrench=interaction free hand push wall
     metrics: __init__=metrics.__init__ contact=metrics.contact effort family plant_error positioning reaching summary
         tracking
-    plants: __init__=plants.__init__ bullet bullet_servers compiled_friction
-        compiled_motion=compiled.motion
-        computation=plants.computation decoupled flexible_config
-        flexible_joints=plants.flexible_joints friction friction_law kinds=plants.kinds kinematic motor_limits mujoco
-        plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched
+    plants: __init__=plants.__init__ bullet bullet_servers compiled_friction compiled_motion=compiled.motion
+        computation=plants.computation decoupled flexible_config flexible_joints=plants.flexible_joints friction
+        friction_law kinematic motor_limits mujoco plant=plants.plant rk4 rk4_flexible_links servo wrappers=touched
     plugins: features guard metric_units registry
-    robots: __init__=robots.__init__ chain description drawn
-        inertials inverse_kinematics joint_dynamics mismatch mjcf mjcf_files mjcf_urdf model
-        modes mounting robot=robots.robot task_space tree workspace
+    robots: __init__=robots.__init__ description drawn inertials inverse_kinematics joint_dynamics mismatch mjcf
+        mjcf_files mjcf_urdf model mounting robot=robots.robot task_space tree vibration workspace
     schema: values
-    sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque
-         streams velocity wrench
-    simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop
-        contact=loop.contact drawn_loops loop=simulation recorder results run=job sensors
-    simulation/compiled: commands law loop_program loops maths=compiled.maths
-    symbolic: algebra arm code elementary end_points=compiled.end_points engine expression maths=controllers.maths
-        program regressor structure tangent vectors=compiled.vectors
-    trajectories: __init__=trajectories.__init__ circle from_file goal
-        joint_motion=trajectories.joint_motion joint_quintic joint_sinusoids joint_waypoints
-        line lissajous motion quintic shaped splines square table
-        trajectory=trajectories.trajectory geometry waypoints
+    sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque streams velocity
+        wrench
+    simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop contact=loop.contact
+        loop=simulation recorder results run=job sensors
+    simulation/compiled: commands law loop_program loops
+    symbolic: algebra arm code engine expression maths=controllers.maths program regressor structure tangent
+        vectors=compiled.vectors
+    trajectories: __init__=trajectories.__init__ circle from_file geometry goal joint_motion=trajectories.joint_motion
+        joint_quintic joint_sinusoids joint_waypoints line lissajous motion quintic shaped splines square table
+        trajectory=trajectories.trajectory waypoints
 """  # fmt: skip
 
 
 def module_ids() -> dict[str, str]:
-    """Return the id of each physics module by its file in the package, such as "robots/chain.py"."""
+    """Return the id of each physics module by its file in the package, such as "robots/vibration.py"."""
     ids, folder = {}, ""
     for word in _TABLE.split():
         name, _, own = word.partition("=")

@@ -132,7 +132,7 @@ MUTANTS = [
         ("differences of true positions", "self._period, measured, state)", "self._period, q, state)"),
     ),
     *_of(
-        "statistics/permutation.py",
+        "statistics/effects.py",
         "statistics/test_effects.py",
         ("p without its + 1", "(1 + as_large) / (1 + self._permutations)", "as_large / self._permutations"),
         (

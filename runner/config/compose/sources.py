@@ -2,6 +2,8 @@
 
 Hydra would instantiate the objects that some of its keys name, and import the modules on its search path. A file of the
 user must therefore not set Hydra's own keys, whatever package it has.
+
+The options of controllers that are one function have a source of their own; their keys need no YAML file.
 """
 
 import contextlib
@@ -29,7 +31,47 @@ from runner.base.limits import ExcessError, read_text
 from runner.base.paths import check_inside, conf_dir, ships
 from runner.base.sanitize import quoted
 from runner.config.compose.files import place_in, refuse_settings, settings_error
-from runner.config.compose.functions import FunctionSource
+from runner.controllers import CONTROLLERS
+
+
+class FunctionSource(ConfigSource):
+    """The options of functions in the group of controllers; see Hydra's ConfigSource for the methods."""
+
+    @staticmethod
+    def scheme() -> str:
+        """Return the URL scheme of paths of this source."""
+        return "functions"
+
+    def available(self) -> bool:
+        """Return True, also without functions."""
+        return True
+
+    def is_group(self, config_path: str) -> bool:
+        """Return True for the group of controllers."""
+        return config_path in ("", CONTROLLERS.group)
+
+    def is_config(self, config_path: str) -> bool:
+        """Return True if a config is the option of a function.
+
+        Raises:
+            ConfigError: if a function cannot be a controller.
+        """
+        return self._option(config_path) in CONTROLLERS.of_functions()
+
+    def list(self, config_path: str, results_filter: ObjectType | None) -> list[str]:
+        """Return the options of a group."""
+        return sorted(CONTROLLERS.of_functions()) if config_path == CONTROLLERS.group else []
+
+    def load_config(self, config_path: str) -> ConfigResult:
+        """Return the keys of a function: those of conf/function_law.yaml, then its own with their defaults."""
+        own = CONTROLLERS.of_functions()[self._option(config_path)]
+        content = OmegaConf.merge(OmegaConf.load(conf_dir() / "function_law.yaml"), own.VALUES)
+        return ConfigResult(self.provider, self.full_path(), content, {"package": None})
+
+    def _option(self, config_path: str) -> str:
+        group, _, name = config_path.partition("/")
+        return name.removesuffix(".yaml") if group == CONTROLLERS.group else ""
+
 
 _SCHEME = "checked"
 _USERS = "command-line"  # Hydra's name of where such a folder comes from

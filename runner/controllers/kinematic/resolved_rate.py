@@ -76,11 +76,6 @@ class NullSpaceTask:
         return velocity
 
 
-def manipulability(J: FloatArray) -> float:
-    """Return Yoshikawa's w = sqrt(det J J^T) of a Jacobian, shape (m, nq)."""
-    return float(np.sqrt(max(np.linalg.det(J @ J.T), 0.0)))
-
-
 def log_manipulability_gradient(J: FloatArray, directions: FloatArray) -> FloatArray:
     r"""Return the gradient of ln w with respect to the joint positions, shape (nq,), in 1/rad.
 

@@ -9,12 +9,11 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.config.run import RunConfig
+from runner.controllers import CommandsForce
 from runner.controllers.force.hybrid_force import HybridForceConfig
-from runner.controllers.kinds import CommandsForce
 from runner.controllers.stability import touch_radius
 from runner.environments.wall import WallConfig
-from runner.plants import PLANTS
-from runner.plants.kinds import options_of
+from runner.plants import PLANTS, options_of
 from runner.plants.servo import ServoLaw
 from runner.plants.servo_contact_stability import ServoContact
 from runner.robots.task_space import mass_along, tip_mobility

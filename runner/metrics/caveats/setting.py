@@ -89,7 +89,7 @@ def setting_of(config: "RunConfig", q_start: FloatArray | None = None) -> Settin
     from runner.controllers.stability import velocity_loop
     from runner.metrics.caveats.contact_stability import force_contact, servo_contact
     from runner.metrics.caveats.time_constants import slowest_part
-    from runner.plants.kinds import options_of
+    from runner.plants import options_of
 
     model = config.arm.model
     units, position_limits, mass = _of_model(model)

@@ -20,10 +20,9 @@ from runner.robots.drawn import DrawnModel, by_run, over_runs
 from runner.robots.robot import Robot
 from runner.sensing import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
-from runner.simulation.compiled.law import LawScalars, expressed_torque, law_cache_key, law_scalars
-from runner.simulation.compiled.maths import SymbolicBackend
+from runner.simulation.compiled.law import LawScalars, SymbolicBackend, expressed_torque, law_cache_key, law_scalars
+from runner.symbolic.algebra import PointScalars, expressed_points, point_scalars
 from runner.symbolic.code import GIVEN, ROWS, STATE, Block, Slots
-from runner.symbolic.end_points import PointScalars, expressed_points, point_scalars
 from runner.symbolic.engine import MOST_JOINTS, evaluator
 from runner.symbolic.expression import Value, both, equal, less, round_to_even, select
 from runner.symbolic.maths import Array

@@ -7,9 +7,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from runner.base.arrays import FloatArray
-from runner.robots.chain import Beam, Chain, cut
 from runner.robots.model import RobotModel
-from runner.robots.modes import find_modes
+from runner.robots.vibration import Beam, Chain, cut, find_modes
 
 _NONE = '<inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/>'
 

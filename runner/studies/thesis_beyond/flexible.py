@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.reporting.document import Series
-from runner.robots.modes import Mode
+from runner.robots.vibration import Mode
 from runner.store import Run
 from runner.studies.thesis_beyond.cantilever import frequency_errors
 from runner.studies.thesis_beyond.flexible_map import stable_and_not

@@ -6,7 +6,7 @@ import pytest
 
 import runner
 from runner import store
-from runner.analysis.sensitivity import GROUPS, of_run
+from runner.analysis import GROUPS, of_run
 from runner.base.errors import RunnerError
 
 MACRO = ("robot=macro", "plant=rk4", "trajectory=quintic", "duration=0.05")

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import ConfigError, SimulationError
-from runner.controllers import CONTROLLERS, Loop
-from runner.controllers.kinds import guard_law
+from runner.controllers import CONTROLLERS, Loop, guard_law
 from runner.plugins.guard import Guarded
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import simulate

@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from runner.analysis.sensitivity import GROUPS, analyse
+from runner.analysis import GROUPS, analyse
 from runner.config.compose.compose import compose
 
 

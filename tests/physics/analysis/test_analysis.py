@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.analysis.sensitivity import differences
+from runner.analysis import differences
 
 OWN = ("gains", "masses", "armature", "lengths", "gravity", "limits", "noise", "friction", "payload")
 MACRO = ("robot=macro", "plant=rk4", "trajectory=quintic", "noise=thesis", "duration=0.3")

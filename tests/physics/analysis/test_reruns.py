@@ -9,7 +9,7 @@ from operator import getitem
 import numpy as np
 import pytest
 
-from runner.analysis.sensitivity import differences
+from runner.analysis import differences
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.metrics import measure

@@ -4,12 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import approx_fprime
 
-from runner.controllers.kinematic.resolved_rate import (
-    NullSpaceConfig,
-    NullSpaceTask,
-    log_manipulability_gradient,
-    manipulability,
-)
+from runner.controllers.kinematic.resolved_rate import NullSpaceConfig, NullSpaceTask, log_manipulability_gradient
+from runner.robots.workspace import manipulability
 
 
 def random_postures(model, count: int) -> np.ndarray:
@@ -23,12 +19,6 @@ def test_the_gradient_of_manipulability_is_that_of_finite_differences(xarm7, row
         expected = approx_fprime(q, lambda p: np.log(manipulability(xarm7.model.tip_jacobian(p)[:rows])), 1e-7)
         gradient = log_manipulability_gradient(xarm7.model.tip_jacobian(q), np.eye(rows))
         np.testing.assert_allclose(gradient, expected, rtol=1e-4, atol=1e-5)
-
-
-def test_manipulability_of_the_macro_is_its_determinant(macro):
-    for q in random_postures(macro, 20):
-        J = macro.tip_jacobian(q)[:3]
-        assert manipulability(J) == pytest.approx(abs(np.linalg.det(J)), rel=1e-9)
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import pytest
 
 from runner.base.errors import SimulationError
 from runner.plants.rk4_flexible_links import FlexibleLinks
-from runner.robots.chain import Beam, cut
+from runner.robots.vibration import Beam, cut
 from runner.studies.thesis_beyond.cantilever import clamped_arm
 
 TICK = 1e-3  # s, of two steps

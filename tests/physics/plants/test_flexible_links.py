@@ -12,7 +12,7 @@ from runner.plants import PLANTS
 from runner.plants.computation import EXACT
 from runner.plants.rk4 import Rk4
 from runner.plants.rk4_flexible_links import BeamConfig, FlexibleLinks, Rk4FlexibleLinksConfig
-from runner.robots.chain import Beam, cut, stiffen_robot
+from runner.robots.vibration import Beam, cut, stiffen_robot
 from runner.studies.thesis_beyond.cantilever import clamped_arm
 
 LENGTH = 1.5  # m

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.plants.kinds import GUARD
+from runner.plants import GUARD
 from runner.store import open_run
 
 TORQUE_PLANT = """

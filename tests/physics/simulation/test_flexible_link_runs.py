@@ -10,9 +10,8 @@ from support.physics import assert_order
 from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.plants import PLANTS
-from runner.robots.chain import stiffen_robot
-from runner.robots.modes import Mode
 from runner.robots.robot import with_armature
+from runner.robots.vibration import Mode, stiffen_robot
 from runner.simulation.assembly import assemble
 from runner.store import simulated_part
 from runner.studies.thesis_beyond.cantilever import cantilever_roots

@@ -8,7 +8,7 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.plants import PLANTS
-from runner.robots.modes import Mode
+from runner.robots.vibration import Mode
 from runner.store import simulated_part
 from runner.trajectories.shaped import zero_vibration
 

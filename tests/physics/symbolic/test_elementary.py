@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.symbolic.code import GIVEN, ROWS, Block, Slots
-from runner.symbolic.elementary import angle_of, decay, sine_cosine
+from runner.symbolic.expression import angle_of, decay, sine_cosine
 from runner.symbolic.program import Expressed, program
 
 

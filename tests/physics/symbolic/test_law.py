@@ -9,8 +9,7 @@ from support import strangers
 from support.arms import checked
 
 from runner.base.errors import SimulationError
-from runner.controllers import Loop
-from runner.controllers.kinds import guard_law
+from runner.controllers import Loop, guard_law
 from runner.controllers.torque_law import TorqueLaw
 from runner.plants import compiled_motion
 from runner.plants.motor_limits import TorqueLimits

@@ -4,8 +4,17 @@ import numpy as np
 import pytest
 
 from runner.symbolic.code import ACTING, GIVEN, PARS, ROWS, STATE, Block, Repeat
-from runner.symbolic.elementary import sine_cosine
-from runner.symbolic.expression import absolute, expression, floor, less, place, round_to_even, select, sqrt
+from runner.symbolic.expression import (
+    absolute,
+    expression,
+    floor,
+    less,
+    place,
+    round_to_even,
+    select,
+    sine_cosine,
+    sqrt,
+)
 from runner.symbolic.program import Expressed, program
 from runner.symbolic.tangent import with_tangents
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.analysis.sensitivity.differences import differences
+from runner.analysis.sensitivity import differences
 from runner.simulation.batch import BatchResult
 
 MODULE = import_module(differences.__module__)

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from runner.analysis.sensitivity.slopes import _PART, NoDerivativeError, Scene
+from runner.analysis.slopes import _PART, NoDerivativeError, Scene
 from runner.simulation.compiled.loop_program import Setting
 
 VALUE = 2.0

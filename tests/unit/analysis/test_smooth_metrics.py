@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from runner.analysis.sensitivity.smooth_metrics import WITHOUT, derivatives
+from runner.analysis.smooth_metrics import WITHOUT, derivatives
 from runner.metrics import MetricContext, evaluate
 from runner.simulation.compiled.loops import Rows
 from runner.trajectories.motion import quintic_motion

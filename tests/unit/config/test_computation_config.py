@@ -8,8 +8,8 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.cross_checks import count_late
 from runner.config.validation import validate
+from runner.plants import options_of
 from runner.plants.computation import EXACT
-from runner.plants.kinds import options_of
 
 ARM = ("robot=macro", "trajectory=goal", "duration=0.1")
 

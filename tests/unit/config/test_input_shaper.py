@@ -7,7 +7,7 @@ from runner.base.errors import ConfigError
 from runner.config.compose.compose import compose
 from runner.config.input_shaper import InputShaperConfig
 from runner.config.validation import validate
-from runner.robots.modes import Mode
+from runner.robots.vibration import Mode
 
 MODES = [Mode(2.0, 0.01), Mode(5.0, 0.02)]
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from runner.analysis.sensitivity.parameters import Key, Parameter
+from runner.analysis.parameters import Key, Parameter
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, RunnerError
 from runner.config.run import RunConfig
