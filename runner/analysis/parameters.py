@@ -110,7 +110,6 @@ def find_keys(config: RunConfig, groups: Sequence[str], recomposed: Callable[[st
 
 
 def _numbers(config: RunConfig) -> dict[Place, float]:
-    """Return the numbers of a config by their paths."""
     own = simulated_part(config.resolved)
     own["robot"] = own.pop("robot")  # last, because the first of two keys with the same effect is listed
     numbers = ((place, value) for place, value in leaves(own) if isinstance(value, int | float))

@@ -118,7 +118,6 @@ def _of_joints(trace: Trace, change: Rows, period: float) -> dict[str, FloatArra
 def _over_joints(
     name: str, derivative: Callable[..., FloatArray], signal: FloatArray, changed: FloatArray, joints: NDArray[np.intp]
 ) -> dict[str, FloatArray]:
-    """Return the derivatives of a metric over all given joints and of each joint."""
     alone = {f"{name}_q{j + 1}": derivative(signal[:, [j]], changed[:, :, [j]]) for j in joints}
     return {name: derivative(signal[:, joints], changed[:, :, joints]), **alone}
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 from typing import Protocol, cast, runtime_checkable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError, SimulationError
@@ -226,12 +227,15 @@ def check_feasible(
         q, stuck = _roll_out(loop, trajectory.sample(times), q_start)
     except SimulationError:  # of a user-supplied component: the run stops there and reports it
         return
-    problem = (
-        _find_end(times, q, stuck)
-        or _find_stop(arm.model, trajectory, times, q, tolerance)
-        or _check_speed(arm.model, trajectory, times, q)
-        or _find_departure(arm.model, trajectory, times, q, tolerance)
-    )
+    if stuck:
+        raise ConfigError(f"trajectory: the arm cannot follow it beyond t = {times[len(q) - 1]:.4g} s: {stuck}")
+    distance = trajectory.distance_to_path(arm.model.tip_positions(q))
+    far = np.flatnonzero(~(distance <= tolerance))
+    left = f"the tip leaves the path, by {distance.max():.4g} m at most"
+    problem = _find_stop(arm.model, times, q, far, left) or _check_speed(arm.model, trajectory, times, q)
+    if not problem and len(far):
+        why = "no joint is at a limit; controller.period is too long for it, or controller.gain too low"
+        problem = f"trajectory: at t = {times[far[0]]:.4g} s {left}: {why}"
     if problem:
         raise ConfigError(problem)
 
@@ -250,12 +254,16 @@ def _roll_out(loop: Loop, desired: FloatArray, q_start: FloatArray) -> tuple[Flo
     return np.array(rows), ""
 
 
-def _find_end(times: FloatArray, q: FloatArray, stuck: str) -> str:
-    return f"trajectory: the arm cannot follow it beyond t = {times[len(q) - 1]:.4g} s: {stuck}" if stuck else ""
+def _find_stop(model: RobotModel, times: FloatArray, q: FloatArray, far: NDArray[np.intp], left: str) -> str:
+    """Return the joint limit or the singular configuration that keeps the tip from the path; "" for none.
 
-
-def _find_stop(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: FloatArray, tolerance: float) -> str:
-    """Return the joint limit or the singular configuration that keeps the tip from the path; "" for none."""
+    Args:
+        model: The arm.
+        times: Times, shape (T,), in s.
+        q: Joint positions at these times, shape (T, nq), in rad.
+        far: Indices of the times at which the tip is too far from the path.
+        left: How far the tip leaves the path.
+    """
     lower, upper = model.position_limits
     outside = (q < lower - _AT_LIMIT) | (q > upper + _AT_LIMIT)
     if outside.any():
@@ -265,10 +273,9 @@ def _find_stop(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: 
             f"{model.joint_units[joint]}; its limits are {lower[joint]:.4g} to {upper[joint]:.4g} "
             f"{model.joint_units[joint]}"
         )
-    distance = trajectory.distance_to_path(model.tip_positions(q))
-    if distance.max() <= tolerance:
+    if not len(far):
         return ""
-    row = int(np.argmax(distance > tolerance))
+    row = far[0]
     reasons = [
         f"{name} stands at its limit of {limit:.4g} {unit}"
         for name, unit, *limits, value in zip(model.joint_names, model.joint_units, lower, upper, q[row], strict=True)
@@ -282,21 +289,7 @@ def _find_stop(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: 
             f"the posture is singular, or nearly so (smallest singular value {smallest:.3g} m; reach "
             f"{model.reach:.4g} m)"
         )
-    return f"{_departure(times[row], distance)}: {' and '.join(reasons)}" if reasons else ""
-
-
-def _find_departure(
-    model: RobotModel, trajectory: Trajectory, times: FloatArray, q: FloatArray, tolerance: float
-) -> str:
-    distance = trajectory.distance_to_path(model.tip_positions(q))
-    if distance.max() <= tolerance:
-        return ""
-    when = _departure(times[int(np.argmax(distance > tolerance))], distance)
-    return f"{when}: no joint is at a limit; controller.period is too long for it, or controller.gain too low"
-
-
-def _departure(time: float, distance: FloatArray) -> str:
-    return f"trajectory: at t = {time:.4g} s the tip leaves the path, by {distance.max():.4g} m at most"
+    return f"trajectory: at t = {times[row]:.4g} s {left}: {' and '.join(reasons)}" if reasons else ""
 
 
 def _check_speed(model: RobotModel, trajectory: Trajectory, times: FloatArray, q: FloatArray) -> str:

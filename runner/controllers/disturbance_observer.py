@@ -1,6 +1,6 @@
 """Momentum-based disturbance observer for any torque controller."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal, NamedTuple, cast
 
@@ -8,13 +8,13 @@ import numpy as np
 from pydantic import PositiveFloat
 
 from runner.base.arrays import FloatArray
-from runner.base.errors import ConfigError
 from runner.controllers.controller import Controller, Loop
 from runner.controllers.torque_filter import TorqueFilter, with_filter
 from runner.controllers.torque_law import Arm, clip
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import RadiansPerSecond
+from runner.schema.values import by_name
 from runner.symbolic.maths import Array, Scalar
 
 
@@ -39,15 +39,10 @@ class DisturbanceObserverConfig(StrictModel):
         """
         if self.bandwidth is None:
             return None
-        names = [loop.name for loop in loops]
-        if not isinstance(self.bandwidth, Mapping):
-            return [self.bandwidth] * len(loops)
-        if set(self.bandwidth) != set(names):
-            raise ConfigError(
-                f"disturbance_observer.bandwidth: values for {', '.join(self.bandwidth)} found; allowed: one "
-                f"number, or one for each control loop ({', '.join(names)})"
-            )
-        return [self.bandwidth[name] for name in names]
+        if isinstance(self.bandwidth, dict):
+            names = [loop.name for loop in loops]
+            return by_name("disturbance_observer.bandwidth", self.bandwidth, names, "loop")
+        return [self.bandwidth] * len(loops)
 
 
 class ObserverParameters(NamedTuple):

@@ -38,7 +38,6 @@ def compare_engines(urdf: str, model: RobotModel, generator: np.random.Generator
 def _compare(
     name: str, make: "Callable[[], Bullet | Mujoco]", model: RobotModel, generator: np.random.Generator
 ) -> Finding:
-    """Compare an engine with Pinocchio."""
     try:
         plant = make()
     except ConfigError as error:

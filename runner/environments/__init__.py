@@ -74,7 +74,6 @@ class Environment:
 
 
 def _check_points(points: Any, _: Asked) -> dict[str, FloatArray]:
-    """Return the checked points of an environment by link."""
     found = dict(points)
     for link, point in found.items():
         if fault := find_fault(point, (3,)):

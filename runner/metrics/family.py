@@ -1,11 +1,10 @@
-"""Interface of a metric family, built-in or from a plug-in, context of its metrics, and evaluation of plug-ins."""
+"""Context of the metrics of a run, and evaluation of metric families from plug-ins."""
 
 import copy
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from types import ModuleType
 
-from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.trace import Trace
 from runner.plugins import metric_units
@@ -29,35 +28,6 @@ class MetricContext:
     settling_band: float
     period: float
     reach: float | None = None
-
-
-class OwnFamily(Protocol):
-    """Built-in family of metrics, evaluated for several runs together."""
-
-    @property
-    def UNITS(self) -> Mapping[str, str]:  # noqa: N802 - a constant of the module
-        """Unit of each metric by name, without the suffixes of joints and axes."""
-        ...
-
-    def evaluate(self, traces: Trace, context: MetricContext) -> Mapping[str, FloatArray]:
-        """Return the metrics by name, each of shape (runs,); NaN for a run without a value."""
-        ...
-
-
-@runtime_checkable
-class MetricFamily(Protocol):
-    """Family of metrics from a plug-in."""
-
-    __name__: str
-
-    @property
-    def UNITS(self) -> Mapping[str, str]:  # noqa: N802 - a constant of the module
-        """Unit of each metric by name, without the suffixes of joints and axes."""
-        ...
-
-    def evaluate(self, trace: Trace, context: MetricContext) -> Mapping[str, float | None]:
-        """Return the metrics of one run by name; None for a metric without a value."""
-        ...
 
 
 def evaluate_added(trace: Trace, context: MetricContext, notices: list[str]) -> dict[str, float | None]:
@@ -85,7 +55,7 @@ def evaluate_added(trace: Trace, context: MetricContext, notices: list[str]) -> 
 
 
 def _evaluate_family(
-    family: MetricFamily, trace: Trace, context: MetricContext, notices: list[str]
+    family: ModuleType, trace: Trace, context: MetricContext, notices: list[str]
 ) -> Iterator[tuple[str, float | None]]:
     """Yield names and values of the metrics of a family that have a unit; a value with a fault is None."""
     for name, value in dict(family.evaluate(read_only(trace), copy.deepcopy(context))).items():

@@ -1,7 +1,7 @@
 """Metrics of runs, and their summary over the repetitions of a run."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,11 +9,11 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.trace import Trace
 from runner.metrics import positioning, tracking
-from runner.metrics.family import MetricContext, OwnFamily, evaluate_added
+from runner.metrics.family import MetricContext, evaluate_added
 from runner.plugins import metric_units
 from runner.trajectories.shaped import Shifted
 
-_FAMILIES: Sequence[OwnFamily] = metric_units.METRICS.built_in()
+_FAMILIES = metric_units.METRICS.built_in()
 MOST_LISTED = 2000
 """Largest number of repetitions whose values a record lists; above it, the record has their quantiles."""
 
@@ -116,7 +116,6 @@ def summarize_arrays(names: tuple[str, ...], values: FloatArray) -> dict[str, Su
 
 
 def _summarize(unit: str, values: FloatArray) -> Summary:
-    """Return the summary of one metric, shape (repetitions,)."""
     ordered = _ordered(values)
     quantiles = _quantiles(ordered) if len(values) > MOST_LISTED else {}
     return Summary(unit, values, *_present_ends(ordered), quantiles)

@@ -81,7 +81,6 @@ class PlantFeatures(Features):
 
 
 def _check_state(_: Any, asked: Asked, q: FloatArray, dq: FloatArray) -> None:
-    """Check the shapes of a plant's state after a reset."""
     for name in ("q", "dq"):
         found = np.shape(getattr(asked.part, name))
         if found != q.shape:
@@ -89,7 +88,6 @@ def _check_state(_: Any, asked: Asked, q: FloatArray, dq: FloatArray) -> None:
 
 
 def _check_wrench(answer: Any, asked: Asked) -> FloatArray | None:
-    """Return a checked wrench, or None if there is none."""
     return None if answer is None else checked(answer, (6,), asked)
 
 

@@ -219,8 +219,6 @@ class ArmCode(ABC):
 
     @cached_property
     def _frame(self) -> Frame:
-        """The code with its arrays."""
-
         def express() -> Expressed:
             at = Slots()
             return Expressed([], self._express(at), at.widths, [])

@@ -1,14 +1,14 @@
 """Computation delay, jitter and missed commands in a control loop."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field, NonNegativeInt, model_validator
 
-from runner.base.errors import ConfigError, nearest
 from runner.schema.model import StrictModel
+from runner.schema.values import by_name
 
 Probability = Annotated[float, Field(ge=0.0, le=1.0)]
 Rows = NDArray[np.int64]
@@ -57,18 +57,9 @@ class ComputationConfig(StrictModel):
         Raises:
             ConfigError: if a mapping names unknown loops or lacks a loop.
         """
-        if not isinstance(self.delay, Mapping):
-            return [self.delay] * len(loops)
-        known, key = ", ".join(loops), "plant.computation.delay"
-        problems = [
-            f"{key}.{name}: no such loop{nearest(name, loops)}; loops: {known}"
-            for name in self.delay
-            if name not in loops
-        ]
-        problems += [f"{key}.{name}: missing; loops: {known}" for name in loops if name not in self.delay]
-        if problems:
-            raise ConfigError(problems)
-        return [self.delay[name] for name in loops]
+        if isinstance(self.delay, dict):
+            return by_name("plant.computation.delay", self.delay, loops, "loop")
+        return [self.delay] * len(loops)
 
     def arrivals(self, delay: int, every: int, ticks: int, generator: np.random.Generator) -> Rows:
         """Return the tick whose command acts in each tick, shape (ticks,); the first command acts from the start.

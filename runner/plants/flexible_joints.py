@@ -147,7 +147,6 @@ class FlexibleJoints(Plant):
         self.theta[on], self.dtheta[on] = places[nq:], speeds[nq:]
 
     def _brake(self, on: np.ndarray) -> None:
-        """Stop the motors whose brakes close in the current tick."""
         now, self._ticks = self._ticks * self._steps_per_tick * self._step, self._ticks + 1
         self._free = now < self.flexibility.brake_time[on] - 1e-9
         self.dtheta[on] *= self._free

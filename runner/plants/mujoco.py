@@ -267,7 +267,6 @@ def _add_wall(spec: Any) -> None:
 
 
 def _add_tool_sensors(spec: Any, tool: str) -> None:
-    """Add reaction sensors to a tool's mount, at its origin."""
     spec.body(tool).add_site(name=TOOL_MOUNT)
     for name, kind in ((_FORCE, mujoco.mjtSensor.mjSENS_FORCE), (_MOMENT, mujoco.mjtSensor.mjSENS_TORQUE)):
         spec.add_sensor(name=name, type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname=TOOL_MOUNT)

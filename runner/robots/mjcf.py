@@ -271,7 +271,6 @@ def _listed(text: str, elements: Sequence[Any], remedy: str) -> Iterator[str]:
 
 
 def _called(element: Any) -> str:
-    """Return the label of an element in messages: its name, or that of its body."""
     if element.name:
         return f"'{element.name}'"
     on = getattr(getattr(element, "parent", None), "name", "")

@@ -106,7 +106,6 @@ def _write_joints(
     robot: ET.Element, model: Any, body: int, efforts: Mapping[int, float], dynamics: Mapping[str, FloatArray],
     names: _Names,
 ) -> None:  # fmt: skip
-    """Write the joints between a body and its parent, with massless links between them."""
     parent, name = body_name(model, int(model.body_parentid[body])), body_name(model, body)
     place = _frame(model.body_pos, model.body_quat, body)
     first, offset = int(model.body_jntadr[body]), np.zeros(3)

@@ -49,7 +49,7 @@ class RobotModel:
         self.tip_name = tip
         self.tip_frame: int = self.pin_model.getFrameId(tip)
         self.nq: int = self.pin_model.nq
-        self.prismatic = np.array([_is_prismatic(joint) for joint in joints], dtype=bool)
+        self.prismatic = np.array([joint.shortname().startswith("JointModelP") for joint in joints], dtype=bool)
         """True for each prismatic joint, shape (nq,)."""
         endless = self.prismatic & ~np.isfinite(self.position_limits).all(axis=0)
         if endless.any():
@@ -295,10 +295,6 @@ def _without_shapes(urdf: str) -> str:
         for shape in (*link.findall("visual"), *link.findall("collision")):
             link.remove(shape)
     return ET.tostring(robot, encoding="unicode")
-
-
-def _is_prismatic(joint: "pin.JointModel") -> bool:
-    return bool(joint.shortname().startswith("JointModelP"))
 
 
 def _check_joints(model: "pin.Model", names: Sequence[str]) -> None:

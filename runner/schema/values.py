@@ -228,10 +228,18 @@ def by_stage(key: str, value: T | Mapping[str, T], stages: Sequence[str]) -> lis
         raise ConfigError(
             f"{key}: the robot has one stage ({names}) and takes one value; found {quoted(dict(value))} by stage"
         )
-    problems = [
-        f"{key}.{name}: no such stage{nearest(name, stages)}; stages: {names}" for name in value if name not in stages
-    ]
-    problems += [f"{key}.{name}: missing; stages: {names}" for name in stages if name not in value]
+    return by_name(key, value, stages, "stage")
+
+
+def by_name(key: str, value: Mapping[str, T], names: Sequence[str], what: str) -> list[T]:
+    """Return the value of each name, in their order; `what` is what has the names, such as stage.
+
+    Raises:
+        ConfigError: for missing or unknown names.
+    """
+    known = f"{what}s: {', '.join(names)}"
+    problems = [f"{key}.{name}: no such {what}{nearest(name, names)}; {known}" for name in value if name not in names]
+    problems += [f"{key}.{name}: missing; {known}" for name in names if name not in value]
     if problems:
         raise ConfigError(problems)
-    return [value[name] for name in stages]
+    return [value[name] for name in names]

@@ -65,7 +65,6 @@ class TorqueSensors(Protocol):
 def _check_measurement(
     answer: Any, asked: Asked, _: int, q: FloatArray, dq: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the checked positions and velocities of a measurement."""
     if not isinstance(answer, tuple | list) or len(answer) != 2:
         at = place(asked.part.measure)
         raise SimulationError(f"{at} gave {answer!r:.200}; it must be positions and velocities")

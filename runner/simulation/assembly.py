@@ -139,7 +139,6 @@ def find_start(config: RunConfig) -> FloatArray:
 
 
 def _build_nominal(config: RunConfig, repetition: int) -> tuple[Robot, tuple[Loop, ...]]:
-    """Return the nominal robot of the controllers, and their loops."""
     draw = np.random.default_rng([config.settings.seed, repetition, MISMATCH])
     robot = with_nominal_links(config, with_nominal_motors(config, MISMATCHES.build(config.mismatch, config.arm, draw)))
     return robot, build_loops(config, robot)

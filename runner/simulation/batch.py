@@ -215,7 +215,6 @@ class BatchSimulator:
         times: FloatArray,
         seconds: float,
     ) -> Trace:
-        """Return the traces of runs with the same scene."""
         one = runs[places[0]]
         config, own = one.config, slice(None) if len(places) == len(runs) else list(places)
         t = times[: one.rows]
@@ -306,7 +305,6 @@ def _find_failure(
 
 
 def _grouped(places: Sequence[int], key: Callable[[int], Hashable]) -> list[list[int]]:
-    """Return groups of indices with the same key, each group in order."""
     groups: dict[Hashable, list[int]] = {}
     for place in places:
         groups.setdefault(key(place), []).append(place)

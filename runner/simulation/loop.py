@@ -18,8 +18,6 @@ from runner.simulation.contact import Contact
 from runner.simulation.recorder import CHECK_EVERY, CommandTiming, Recorder, constant_delay
 from runner.simulation.sensors import JointTorques, MeasuredTip
 
-__all__ = ["ClosedLoop", "simulate"]
-
 
 def simulate(
     closed: ClosedLoop,
@@ -98,7 +96,6 @@ class ControlLoops(Protocol):
 
 
 def _run(closed: ClosedLoop, laws: ControlLoops, contact: Contact | None, recorder: Recorder) -> None:
-    """Run the control loops and the plant tick by tick."""
     plant, update, now, acting, torques = closed.plant, laws.update, recorder.now, recorder.timing.at, recorder.torques
     kept_q, kept_dq, commands, _, end_points = recorder.rows
     times, clock, asked, bends, load, k = recorder.times, recorder.clock, recorder.asked, plant.bends, None, 0
@@ -222,7 +219,6 @@ class _Command:
 
 
 def _reset(closed: ClosedLoop, loop: Loop) -> Law:
-    """Reset a loop's controller; return its control law."""
     if closed.commands == "torque":
         controller = cast(Controller, loop.controller)
         controller.reset()

@@ -27,7 +27,8 @@ from runner.sensing import ForceTorqueSensor
 from runner.sensing.streams import ENVIRONMENT
 from runner.simulation.assembly import assemble, metric_context, with_drawn
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
-from runner.simulation.loop import ClosedLoop, simulate
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.loop import simulate
 from runner.simulation.results import Collector, RunResult
 from runner.simulation.sensors import make_sensors
 
@@ -157,7 +158,6 @@ def simulate_blocks(config: RunConfig, threads: int = 1, ticks: int = TICKS) -> 
 
 
 def _simulate_block(config: RunConfig, batcher: BatchSimulator, block: range) -> Collector | None:
-    """Simulate some repetitions of a run; None if one of them is not compiled as a whole."""
     runs = batcher.repetitions(config, block)
     if runs is None:
         return None

@@ -106,7 +106,6 @@ class Sample:
         return bool((level == level[self._first][self._blocks]).all())
 
     def _means(self) -> "Sample":
-        """Return the means of the blocks as a separate sample."""
         means = np.bincount(self._blocks, self._y) / self._sizes
         return Sample(means, np.arange(len(means)), self._rng, self._permutations)
 
@@ -265,12 +264,8 @@ def axis_effects(
     coarse = {name: _grouped(level) for name, level in levels.items()}
     pairs = itertools.combinations(levels, 2)
     both = [((a, b), list(levels.values()), recode_levels(coarse[a] * MOST_GROUPS + coarse[b])) for a, b in pairs]
-    effects = [_effect(names, sample.test(others, level)) for names, others, level in [*tests, *both]]
+    effects = [Effect(**vars(sample.test(others, level)), axes=names) for names, others, level in [*tests, *both]]
     return EffectAnalysis(effects, len(y), left_out, logarithmic, sample.shared())
-
-
-def _effect(axes: tuple[str, ...], tested: Tested) -> Effect:
-    return Effect(tested.share, tested.p_value, tested.remark, axes)
 
 
 def _drawn(blocks: Levels, rng: np.random.Generator) -> Levels:

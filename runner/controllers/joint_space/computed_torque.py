@@ -48,13 +48,9 @@ class ComputedTorque(JointLaw[ComputedTorqueParameters, ComputedTorqueConfig]):
         self, model: RobotModel, config: ComputedTorqueConfig, inertia: FloatArray
     ) -> ComputedTorqueParameters:
         """Return the parameters of the law above; see JointLaw."""
-        k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
         self._state_size = model.nq if config.integral_gain > 0.0 else 0
-        return ComputedTorqueParameters(
-            k_p=k_p,
-            k_v=k_v,
-            k_i=config.integral_gain,
-        )
+        gains = second_order(config.natural_frequency, config.damping_ratio)
+        return ComputedTorqueParameters(*gains, config.integral_gain)
 
     @property
     def velocity_gain(self) -> VelocityGain:

@@ -111,7 +111,11 @@ class FunctionLaw(TorqueLaw[JointMotionParameters]):
         joints: bool = False,
     ) -> None:
         self._function, self._joints, self._feedforward = function, joints, config.feedforward
-        self._keys = {name: _argument(getattr(config, name)) for name in names}
+        self._keys = {
+            name: read_only(np.array(key)) if isinstance(key, list) else key
+            for name in names
+            for key in [getattr(config, name)]
+        }
         self._motion = JointMotion(model, config, rest, joints)
         super().__init__([model], config.gravity_compensation, self._motion.parameters)
 
@@ -146,10 +150,6 @@ class FunctionLaw(TorqueLaw[JointMotionParameters]):
         if fault := find_fault(torque, q.shape):
             raise SimulationError(f"{place(self._function)} gave {fault}")
         return np.array(torque, dtype=np.float64), goes_on
-
-
-def _argument(value: Any) -> Any:
-    return read_only(np.array(value)) if isinstance(value, list) else value
 
 
 @lru_cache(maxsize=64)
@@ -202,7 +202,6 @@ def _keys(function: Callable[..., Any]) -> list[inspect.Parameter]:
 
 
 def _faults(function: Callable[..., Any]) -> Iterator[str]:
-    """Yield what is wrong with the arguments of a function."""
     given = list(inspect.signature(function, follow_wrapped=False).parameters.values())
     first = tuple(each.name for each in given[: len(ARGUMENTS)])
     if first != ARGUMENTS or any(each.default is not each.empty for each in given[: len(ARGUMENTS)]):

@@ -123,7 +123,6 @@ class IterativeLearning(Controller):
         return asked
 
     def _learn(self) -> None:
-        """Update the learned torques from the cycle that ends."""
         learned = self.learned + self._gain * self._feedback
         self.learned = np.fft.irfft(self._Q * np.fft.rfft(learned, axis=0), self._ticks, axis=0)
 

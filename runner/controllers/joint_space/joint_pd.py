@@ -50,13 +50,8 @@ class JointPd(JointLaw[JointPdParameters, JointPdConfig]):
 
     def choose_parameters(self, model: RobotModel, config: JointPdConfig, inertia: FloatArray) -> JointPdParameters:
         """Return the parameters of the law above; see JointLaw."""
-        k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
         self._at_home = config.inertia == "home"
-        return JointPdParameters(
-            k_p=k_p,
-            k_v=k_v,
-            inertia=inertia,
-        )
+        return JointPdParameters(*second_order(config.natural_frequency, config.damping_ratio), inertia)
 
     @property
     def velocity_gain(self) -> VelocityGain:

@@ -56,16 +56,10 @@ class JointPid(JointLaw[JointPidParameters, JointPidConfig]):
 
     def choose_parameters(self, model: RobotModel, config: JointPidConfig, inertia: FloatArray) -> JointPidParameters:
         """Return the parameters of the law above; see JointLaw."""
-        k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
-        self._anti_windup = config.anti_windup
-        self._state_size = model.nq
-        return JointPidParameters(
-            k_p=k_p,
-            k_v=k_v,
-            k_i=config.integral_share * config.natural_frequency**3,
-            inertia=inertia,
-            limits=model.effort_limits,
-        )
+        self._anti_windup, self._state_size = config.anti_windup, model.nq
+        gains = second_order(config.natural_frequency, config.damping_ratio)
+        k_i = config.integral_share * config.natural_frequency**3
+        return JointPidParameters(*gains, k_i, inertia, model.effort_limits)
 
     @property
     def velocity_gain(self) -> VelocityGain:

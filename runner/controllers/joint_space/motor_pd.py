@@ -51,14 +51,9 @@ class MotorPd(JointLaw[MotorPdParameters, MotorPdConfig]):
 
     def choose_parameters(self, model: RobotModel, config: MotorPdConfig, inertia: FloatArray) -> MotorPdParameters:
         """Return the parameters of the law above; see JointLaw."""
-        k_p, k_v = second_order(config.natural_frequency, config.damping_ratio)
+        gains = second_order(config.natural_frequency, config.damping_ratio)
         stiffness = expand("controller.joint_stiffness", config.joint_stiffness, model.joint_names)
-        return MotorPdParameters(
-            k_p=k_p,
-            k_v=k_v,
-            inertia=inertia,
-            compliance=1.0 / np.array(stiffness),
-        )
+        return MotorPdParameters(*gains, inertia, 1.0 / np.array(stiffness))
 
     @property
     def velocity_gain(self) -> VelocityGain:

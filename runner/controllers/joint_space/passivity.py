@@ -47,10 +47,7 @@ class Passivity(JointLaw[PassivityParameters, PassivityConfig]):
 
     def choose_parameters(self, model: RobotModel, config: PassivityConfig, inertia: FloatArray) -> PassivityParameters:
         """Return the parameters of the law above; see JointLaw."""
-        return PassivityParameters(
-            rate=config.natural_frequency,
-            damping=config.natural_frequency * inertia,
-        )
+        return PassivityParameters(config.natural_frequency, config.natural_frequency * inertia)
 
     @property
     def velocity_gain(self) -> VelocityGain:

@@ -92,8 +92,8 @@ class DifferentialInverseKinematics(PositionController):
         self._rule = tuple(zip(*_RULES[config.integration], strict=True))
         weights = np.array(expand("controller.weights", config.weights, model.joint_names))
         self._resolved_rate = ResolvedRate(weights, config.damping * model.reach)
-        posture = config.null_space.posture
-        rest = home if posture is None else np.array(_expand_posture(posture, model))
+        posture, key = config.null_space.posture, "controller.null_space.posture"
+        rest = home if posture is None else np.array(expand(key, posture, model.joint_names))
         self._null_space = NullSpaceTask(config.null_space, rest, model.position_limits)
         self._speed_limits = model.velocity_limits
         self._position_limits = model.position_limits
@@ -117,7 +117,6 @@ class DifferentialInverseKinematics(PositionController):
         return self._command
 
     def _tip_offset(self, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return translation and rotation from the commanded tip to the measured one."""
         x, R, _ = self._tip_at(self._command)
         x_measured, R_measured, _ = self._tip_at(q)
         return x_measured - x, R_measured @ R.T
@@ -140,14 +139,9 @@ class DifferentialInverseKinematics(PositionController):
         return self._resolved_rate.solve(task, wanted, dq0, *bounds)
 
     def _tip_at(self, q: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return position, orientation and basic Jacobian of the tip in the base frame."""
         J = pin.computeFrameJacobian(self._model, self._data, q, self._tip, pin.LOCAL_WORLD_ALIGNED)
         placement = self._data.oMf[self._tip]
         return placement.translation.copy(), placement.rotation.copy(), J
-
-
-def _expand_posture(posture: list[float], model: RobotModel) -> list[float]:
-    return expand("controller.null_space.posture", posture, model.joint_names)
 
 
 def _check_gain(config: DifferentialInverseKinematicsConfig) -> None:

@@ -96,7 +96,6 @@ class Watch:
 
 
 def _of_setting(setting: Setting, thresholds: Mapping[str, Mapping[str, float]]) -> list[Caveat]:
-    """Return the caveats on the config of a run."""
     caveats = []
     for rule in SETTING_RULES:
         value = rule.measure(setting)

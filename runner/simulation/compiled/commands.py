@@ -239,12 +239,10 @@ def compiled(commands: Commands | None) -> Commands | None:
 
 @lru_cache(maxsize=64)
 def _tell(text: str) -> None:
-    """Print a message once in a process."""
     print(f"runner: {text}", file=sys.stderr)
 
 
 def _parts(law: TorqueLaw[Any]) -> Iterator[TorqueLaw[Any]]:
-    """Yield a law and the laws inside it."""
     yield law
     for part in vars(law).values():
         if isinstance(part, TorqueLaw):
@@ -364,7 +362,6 @@ def _at(space: str, first: int, values: Sequence[Any]) -> list[tuple[str, int, A
 
 
 def _bounds(numbers: CommandScalars, joint: int, dq: Sequence[Value]) -> tuple[Value, Value]:
-    """Return the lowest and the highest torque of a joint."""
     limit = numbers.limits[joint]
     if joint not in numbers.no_load_speeds:
         return -limit, limit
