@@ -16,7 +16,7 @@ from runner.base.errors import ConfigError, nearest
 from runner.base.lazy_modules import pin
 from runner.base.limits import ExcessError, read_text
 from runner.base.sanitize import quoted
-from runner.robots.tree import UrdfTree, vector_text
+from runner.robots.tree import TENSOR, UrdfTree, vector_text
 from runner.schema.model import StrictModel
 from runner.schema.values import expand
 
@@ -185,8 +185,7 @@ def fix_inertia(link: ET.Element) -> None:
     fixed = axes @ np.diag(spread.sum() - spread) @ axes.T
     inertia = link.find("inertial/inertia")
     if inertia is not None:
-        for row, column in _UPPER:
-            inertia.set(f"i{'xyz'[row]}{'xyz'[column]}", repr(float(fixed[row, column])))
+        inertia.attrib.update({key: repr(float(fixed[place])) for key, place in _UPPER.items()})
 
 
 def make_massless(link: ET.Element) -> None:
@@ -195,7 +194,7 @@ def make_massless(link: ET.Element) -> None:
 
 
 _ROUNDING = 1e-6  # of the largest moment, because files have few digits
-_UPPER = tuple(itertools.combinations_with_replacement(range(3), 2))
+_UPPER = dict(zip(TENSOR, itertools.combinations_with_replacement(range(3), 2), strict=True))
 
 
 def _own_inertia(link: ET.Element) -> "pin.Inertia":
@@ -207,9 +206,8 @@ def _own_inertia(link: ET.Element) -> "pin.Inertia":
 def _tensor(link: ET.Element) -> np.ndarray:
     """Return a link's inertia about its centre of mass in the axes of its inertial frame, shape (3, 3), in kg m^2."""
     inertia, tensor = link.find("inertial/inertia"), np.zeros((3, 3))
-    for row, column in _UPPER:
-        value = "0" if inertia is None else inertia.get(f"i{'xyz'[row]}{'xyz'[column]}", "0")
-        tensor[row, column] = tensor[column, row] = float(value)
+    for key, place in _UPPER.items():
+        tensor[place] = tensor[place[::-1]] = float("0" if inertia is None else inertia.get(key, "0"))
     return tensor
 
 
@@ -229,7 +227,7 @@ def write_inertial(link: ET.Element, mass: float, centre_of_mass: np.ndarray, te
         centre_of_mass: Centre of mass, shape (3,), in m.
         tensor: Inertia about the centre of mass, shape (3, 3), in kg m^2.
     """
-    _write(link, mass, centre_of_mass.tolist(), {f"i{'xyz'[row]}{'xyz'[col]}": tensor[row, col] for row, col in _UPPER})
+    _write(link, mass, centre_of_mass.tolist(), {key: tensor[place] for key, place in _UPPER.items()})
 
 
 def _write(link: ET.Element, mass: float, centre_of_mass: Sequence[float], tensor: Mapping[str, float]) -> None:

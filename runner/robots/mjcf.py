@@ -105,7 +105,9 @@ def _convert(path: Path) -> Mjcf:
         slim = spec.copy()
         ties = take_out_ties(slim)
         _leave_shapes_that_weigh(slim)
-        _refuse(path, refused_shapes(slim))
+        _refuse(
+            path, _listed("height fields that weigh", slim.hfields, "give their body an <inertial>, or take them out")
+        )
         meshes, missing = asset_files(path, spec.meshdir, _asset_names(spec), _asset_names(slim))
         try:
             model = slim.compile()
@@ -113,18 +115,13 @@ def _convert(path: Path) -> Mjcf:
             raise _refused(path, error) from error
     _refuse(path, refused_model(model))
     efforts, of_efforts = efforts_of(model)
-    lost = left_out(spec, model)
-    urdf, renamed = write_urdf(spec.modelname, model, efforts, dynamics_of(model), lost.motion)
-    rest = (
-        *of_efforts,
-        *renamed,
-        *lost.rest,
-        *missing,
-        *(f"MuJoCo's warning: {text.strip()}" for text in dict.fromkeys(said)),
-    )
+    lost = {**_of_gravity(spec), **dict.fromkeys(_of_motion(spec, model), "")}
+    urdf, renamed = write_urdf(spec.modelname, model, efforts, dynamics_of(model), lost)
+    warned = (f"MuJoCo's warning: {text.strip()}" for text in dict.fromkeys(said))
+    rest = (*of_efforts, *renamed, *_of_rest(spec, model), *missing, *warned)
     tied = dict((*other_ties(model), *((joint.id, text) for joint, text in ties)))
     named = {joint_name(model, joint): text for joint, text in tied.items()}
-    return Mjcf(urdf, named, home_of(spec, model), LeftOut(lost.motion, rest), (*texts, *meshes))
+    return Mjcf(urdf, named, home_of(spec, model), LeftOut(lost, rest), (*texts, *meshes))
 
 
 def _asset_names(spec: Any) -> list[str]:
@@ -194,21 +191,11 @@ def refused_parts(spec: Any) -> Iterator[str]:
     yield from _listed("ball joints", balls, "the joints of an arm are hinges and slides")
 
 
-def refused_shapes(spec: Any) -> Iterator[str]:
-    """Yield a message about unsupported shapes with mass, of a specification without other shapes."""
-    yield from _listed("height fields that weigh", spec.hfields, "give their body an <inertial>, or take them out")
-
-
 def refused_model(model: Any) -> Iterator[str]:
     """Yield a message about each unsupported property of a compiled model, with names and a remedy."""
     if not model.njnt:
         yield "has no joint: it is no arm"
     yield from _joints(model, ~np.isfinite(model.qpos0), "a ref that is no finite number:", "give a number")
-
-
-def left_out(spec: Any, model: Any) -> LeftOut:
-    """Return the omitted content of a file, from its specification and its compiled model."""
-    return LeftOut({**_of_gravity(spec), **dict.fromkeys(_of_motion(spec, model), "")}, tuple(_of_rest(spec, model)))
 
 
 def _of_gravity(spec: Any) -> dict[str, str]:

@@ -259,7 +259,8 @@ def take_out_ties(spec: Any) -> list[tuple[Any, str]]:
     Returns:
         Each constrained joint, as an element of the specification, with a message.
     """
-    found = (*_of_equalities(spec), *_of_tendons(spec), *_of_muscles(spec))
+    tendons = ((f"is tied by a tendon{_named(tendon)}", _pulled(tendon)) for tendon in spec.tendons)
+    found = (*_of_equalities(spec), *tendons, *_of_muscles(spec))
     ties = [(joint, text) for text, joints in found for joint in joints if joint.type != _FREE]
     free = free_joints(spec)
     names = [joint.name for joint in free if joint.name]
@@ -301,10 +302,6 @@ def _of_equalities(spec: Any) -> Iterator[tuple[str, Sequence[Any]]]:
             joints = _between([spec.body(name) for name in names] + [spec.worldbody] * (len(names) == 1))
         if equality.active:
             yield f"is tied by an equality constraint{_named(equality)}", joints
-
-
-def _of_tendons(spec: Any) -> Iterator[tuple[str, Sequence[Any]]]:
-    yield from ((f"is tied by a tendon{_named(tendon)}", _pulled(tendon)) for tendon in spec.tendons)
 
 
 def _of_muscles(spec: Any) -> Iterator[tuple[str, Sequence[Any]]]:

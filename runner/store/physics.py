@@ -53,7 +53,7 @@ _TABLE = """
     symbolic: algebra arm code engine expression maths=controllers.maths program regressor structure tangent
         vectors=compiled.vectors
     trajectories: __init__=trajectories.__init__ circle from_file geometry goal joint_motion=trajectories.joint_motion
-        joint_quintic joint_sinusoids joint_waypoints line lissajous motion quintic shaped splines square table
+        joint_quintic joint_sinusoids joint_waypoints line lissajous motion quintic shaped splines square
         trajectory=trajectories.trajectory waypoints
 """  # fmt: skip
 

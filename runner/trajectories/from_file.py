@@ -1,5 +1,11 @@
-"""Tip or joint motion from a data file."""
+"""Tip or joint motion from a CSV or Parquet file, whose error messages contain the line."""
 
+import csv
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import chain, pairwise
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
@@ -7,13 +13,162 @@ from pydantic import BeforeValidator, PositiveFloat, ValidationInfo, field_valid
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
+from runner.base.limits import TABLE, TABLE_NUMBERS, ExcessError, open_parquet
+from runner.base.sanitize import quoted
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import Seconds
 from runner.trajectories.joint_motion import JointMotion
 from runner.trajectories.splines import Interpolation, Spline, interpolate
-from runner.trajectories.table import parts_of, wrong_columns
 from runner.trajectories.trajectory import Trajectory
+
+Columns = Mapping[str, Sequence[float]]
+
+ALLOWED = (
+    "t,x,y,z or t,q1,q2,... with a column for each joint; velocities (vx,vy,vz or dq1,dq2,...) and then accelerations "
+    "(ax,ay,az or ddq1,ddq2,...) may follow"
+)
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+_ROUNDING = 1e-9  # of the largest speed
+_MOST_TOLD = 5  # problems of one file
+
+
+def read_table(path: Path) -> dict[str, list[float]]:
+    """Return the columns of a data file, without unit conversion.
+
+    Args:
+        path: A Parquet file if the name ends in .parquet; otherwise a CSV file.
+
+    Raises:
+        ConfigError: if the file cannot be read, is too large, or does not describe a motion; the message contains the
+            lines.
+    """
+    parquet = path.suffix.lower() == ".parquet"
+    try:
+        if excess := TABLE.excess(path.stat().st_size):
+            raise _refused(path, excess)
+        columns = _read_parquet(path) if parquet else _read_csv(path)
+    except (OSError, UnicodeDecodeError, ExcessError) as error:
+        raise _refused(path, f"cannot be read: {error}") from error
+
+    def place(row: int) -> str:
+        return f"row {row + 1}" if parquet else f"line {row + 2}"
+
+    problems = list(wrong_columns(columns, place))
+    if problems:
+        raise _refused(path, *problems)
+    return columns
+
+
+def parts_of(names: Sequence[str]) -> list[list[str]]:
+    """Return the column names in groups: positions, then velocities and accelerations if they exist.
+
+    The list is empty if the names do not describe a motion; see ALLOWED.
+    """
+    if list(names[:1]) != ["t"]:
+        return []
+    rest, tip = list(names[1:]), names[1:2] == ["x"]
+    count = 3 if tip else sum(name.startswith("q") for name in rest)
+    stems = ("", "v", "a") if tip else ("q", "dq", "ddq")
+    places = "xyz" if tip else [str(joint + 1) for joint in range(count)]
+    parts = [[f"{stem}{place}" for place in places] for stem in stems]
+    found = len(rest) // count if count else 0
+    return parts[:found] if 1 <= found <= len(stems) and rest == list(chain(*parts[:found])) else []
+
+
+def wrong_columns(columns: Columns, place: Callable[[int], str]) -> Iterator[str]:
+    """Yield a message for each problem in the columns of a motion from rest to rest.
+
+    Args:
+        columns: The columns.
+        place: Function of a row's index from 0; returns the row's label in messages.
+    """
+    parts = parts_of(list(columns))
+    if not parts:
+        yield f"has the columns {quoted(','.join(columns))}; allowed: {ALLOWED}"
+        return
+    t = columns["t"]
+    if len({len(column) for column in columns.values()}) > 1:
+        yield "has columns of unequal lengths"
+        return
+    if len(t) < 3:
+        yield f"has {len(t)} rows; a motion needs 3 or more"
+        return
+    if excess := TABLE_NUMBERS.excess(len(t) * len(columns)):
+        yield excess
+        return
+    if t[0] != 0.0:
+        yield f"{place(0)}: t is {t[0]:g} s; the first must be 0"
+    for row, (before, now) in enumerate(pairwise(t), start=1):
+        if now <= before:
+            yield f"{place(row)}: t is {now:g} s after {before:g} s; time must run forward"
+    for name in parts[1] if len(parts) > 1 else ():
+        largest = max(map(abs, columns[name]))
+        for row in (0, len(t) - 1):
+            if abs(columns[name][row]) > _ROUNDING * largest:
+                yield f"{place(row)}: {name} is {columns[name][row]:g}; the motion must start and end at rest, with 0"
+
+
+def _read_csv(path: Path) -> dict[str, list[float]]:
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        lines = list(csv.reader(file))
+    while lines and not any(cell.strip() for cell in lines[-1]):
+        lines.pop()
+    names = [name.strip() for name in lines[0]] if lines else []
+    if not parts_of(names):
+        raise _refused(path, f"line 1 has the columns {quoted(','.join(names))}; allowed: {ALLOWED}")
+    problems: list[str] = []
+    rows: list[list[float]] = []
+    for number, cells in enumerate(lines[1:], start=2):
+        if len(cells) != len(names):
+            problems.append(f"line {number}: {len(cells)} cells for {len(names)} columns")
+            continue
+        texts = [cell.strip() for cell in cells]
+        wrong = [(name, text) for name, text in zip(names, texts, strict=True) if not _is_number(text)]
+        problems += [
+            f"line {number}: {name} is {quoted(text) if text else 'missing'}; allowed: a finite number"
+            for name, text in wrong
+        ]
+        rows.append([math.nan if wrong else float(text) for text in texts])
+    if problems:
+        raise _refused(path, *problems)
+    return {name: [row[index] for row in rows] for index, name in enumerate(names)}
+
+
+def _is_number(text: str) -> bool:
+    return bool(_NUMBER.fullmatch(text)) and math.isfinite(float(text))
+
+
+def _read_parquet(path: Path) -> dict[str, list[float]]:
+    import pyarrow
+
+    try:
+        file = open_parquet(path, TABLE)
+        if excess := TABLE_NUMBERS.excess(file.metadata.num_rows * file.metadata.num_columns):
+            raise _refused(path, excess)
+        table = file.read()
+    except pyarrow.ArrowException as error:
+        raise _refused(path, f"is no Parquet file: {str(error).splitlines()[0]}") from error
+    columns: dict[str, list[float]] = {}
+    problems: list[str] = []
+    for name in table.column_names:
+        values = table[name].to_pylist()
+        for row, value in enumerate(values):
+            if not isinstance(value, int | float) or isinstance(value, bool) or not math.isfinite(value):
+                found = "missing" if value is None else quoted(value)
+                problems.append(f"row {row + 1}: {name} is {found}; allowed: a finite number")
+        columns[name] = values
+    if problems:
+        raise _refused(path, *problems)
+    return {name: [float(value) for value in values] for name, values in columns.items()}
+
+
+def _refused(path: Path, *problems: str) -> ConfigError:
+    told = [f"trajectory.file: {path.name}: {problem}" for problem in problems[:_MOST_TOLD]]
+    more = len(problems) - _MOST_TOLD
+    return ConfigError(
+        [*told, *([f"trajectory.file: {path.name}: {more} more problems like these"] if more > 0 else [])]
+    )
 
 
 def _check_interpolation(value: Any) -> Any:
