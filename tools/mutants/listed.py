@@ -133,7 +133,7 @@ MUTANTS = [
     ),
     *_of(
         "statistics/effects.py",
-        "statistics/test_effects.py",
+        "unit/statistics/test_effects.py",
         ("p without its + 1", "(1 + as_large) / (1 + self._permutations)", "as_large / self._permutations"),
         (
             "p with its + 1 only above",
@@ -144,7 +144,7 @@ MUTANTS = [
     ),
     *_of(
         "statistics/interval.py",
-        "statistics/test_interval.py",
+        "unit/statistics/test_interval.py",
         ("percentiles that are not expanded", "np.sqrt(n / (n - 1)) * stdtrit", "stdtrit"),
     ),
     *_of(
