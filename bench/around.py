@@ -14,10 +14,11 @@ import numpy as np
 from runner.base.trace import Trace
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.metrics import measure
-from runner.metrics.caveats import Watch, look_together, setting_of, signals_of
+from runner.metrics.caveats.monitor import Watch, look_together
+from runner.metrics.caveats.setting import setting_of, signals_of
+from runner.metrics.summary import measure
 from runner.plugins.metric_units import units_of
-from runner.sensing import encoder_errors
+from runner.sensing.encoders import encoder_errors
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.provenance import job_provenance

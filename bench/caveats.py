@@ -9,8 +9,9 @@ from collections.abc import Callable
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.metrics import evaluate
-from runner.metrics.caveats import Watch, setting_of, signals_of
+from runner.metrics.caveats.monitor import Watch
+from runner.metrics.caveats.setting import setting_of, signals_of
+from runner.metrics.summary import evaluate
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders, make_wrist_sensor

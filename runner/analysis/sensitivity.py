@@ -17,7 +17,8 @@ from runner.config.composed import Composed
 from runner.config.flexibility import find_flexibility, is_flexible
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.metrics import measure, summary
+from runner.metrics import summary
+from runner.metrics.summary import measure
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4Config
 from runner.simulation.assembly import assemble_program, metric_context

@@ -71,7 +71,7 @@ def signals_of(run: store.Run, repetition: int) -> Signals:
 
 
 def _simulated(run: store.Run, repetition: int) -> Signals:
-    from runner.metrics import evaluate
+    from runner.metrics.summary import evaluate
     from runner.simulation.assembly import metric_context
     from runner.simulation.run import simulate_repetition
     from runner.store.writing import trace_table

@@ -18,11 +18,11 @@ from runner.config.composed import Composed
 from runner.config.parsing import Problems, group_of, parse, parse_kind, parse_robot, require
 from runner.config.robot import RobotConfig
 from runner.plugins.registry import KindConfig
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
 from runner.schema.model import StrictModel
 from runner.schema.units import Acceleration
-from runner.sensing import ForceTorqueConfig
+from runner.sensing.force_torque import ForceTorqueConfig
 
 
 class CalibrationSettings(StrictModel):

@@ -18,7 +18,8 @@ from runner.plants import PLANTS
 from runner.plugins.registry import Kinds
 from runner.robots.mismatch import MISMATCHES
 from runner.schema.model import StrictModel
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, EndpointSensorConfig
+from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
+from runner.sensing.endpoint import EndpointSensorConfig
 from runner.trajectories import TRAJECTORIES
 
 GROUPS: Mapping[str, Kinds | type[StrictModel]] = {

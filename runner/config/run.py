@@ -20,8 +20,9 @@ from runner.plugins.registry import KindConfig, Kinds
 from runner.robots.mismatch import MISMATCHES, NONE, MismatchConfig
 from runner.robots.model import RobotModel
 from runner.robots.robot import Robot
-from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS, EncoderNoise, EndpointSensorConfig
-from runner.sensing.encoders import exact_encoders
+from runner.sensing import JOINT_TORQUE_SENSORS, NOISES, WRIST_SENSORS
+from runner.sensing.encoders import EncoderNoise, exact_encoders
+from runner.sensing.endpoint import EndpointSensorConfig
 from runner.trajectories import Trajectory
 
 # Fields that differ between configs of the same run, or that are new objects in each config.

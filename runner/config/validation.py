@@ -34,7 +34,9 @@ from runner.plants import PLANTS, PlantConfig, options_of
 from runner.plugins.registry import KindConfig
 from runner.robots.mismatch import MismatchConfig, check_links
 from runner.robots.robot import Robot, end_points
-from runner.sensing import ForceTorqueConfig, JointTorqueConfig, NoiseConfig
+from runner.sensing.encoders import NoiseConfig
+from runner.sensing.force_torque import ForceTorqueConfig
+from runner.sensing.joint_torque import JointTorqueConfig
 from runner.trajectories import TRAJECTORIES, HasStart, Trajectory
 from runner.trajectories.joint_motion import TipOfJoints
 

@@ -5,15 +5,3 @@ a plug-in takes one trace. The `evaluate` of a built-in family takes the traces 
 
 Metrics of single joints or axes have a suffix (`peak_torque_q1`, `max_tracking_error_x`) and the same unit.
 """
-
-from runner.metrics.family import MetricContext
-from runner.metrics.summary import Summary, evaluate, measure, of_run, summarize_arrays
-
-__all__ = [
-    "MetricContext",
-    "Summary",
-    "evaluate",
-    "measure",
-    "of_run",
-    "summarize_arrays",
-]

@@ -10,7 +10,8 @@ from runner.base.errors import ConfigError, RunnerError
 from runner.base.trace import Trace
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.metrics import MetricContext, effort, positioning, tracking
+from runner.metrics import effort, positioning, tracking
+from runner.metrics.family import MetricContext
 from runner.metrics.summary import measure, of_run
 from runner.recordings.columns_map import Signal
 from runner.robots.robot import end_points

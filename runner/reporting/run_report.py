@@ -12,7 +12,7 @@ from runner.base.dotted_keys import dotted, leaves
 from runner.base.errors import ConfigError, RunnerError
 from runner.base.quantities import above_rounding, number, quantity, with_powers
 from runner.config.compose.compose import compose
-from runner.metrics.caveats import changes_since
+from runner.metrics.caveats.versions import changes_since
 from runner.reporting.document import Block, Code, Cover, Document, Notice, Provenance, Section, Table, Text
 from runner.reporting.figures import cover, desired_motion, last_moments, playback, torque_and_error
 from runner.reporting.markup import literal

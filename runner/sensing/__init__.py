@@ -8,28 +8,6 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.plugins.guard import Asked, Guard, Method, checked, like, place
 from runner.plugins.registry import KindConfig, Registry
-from runner.sensing.encoders import EncoderNoise, JointEncoders, NoiseConfig, encoder_errors
-from runner.sensing.endpoint import EndpointSensorConfig
-from runner.sensing.force_torque import ForceTorqueConfig, ForceTorqueSensor
-from runner.sensing.joint_torque import JointTorqueConfig, JointTorqueSensor
-
-__all__ = [
-    "JOINT_TORQUE_SENSORS",
-    "NOISES",
-    "WRIST_SENSORS",
-    "EncoderNoise",
-    "Encoders",
-    "EndpointSensorConfig",
-    "ForceTorqueConfig",
-    "ForceTorqueSensor",
-    "JointEncoders",
-    "JointTorqueConfig",
-    "JointTorqueSensor",
-    "NoiseConfig",
-    "TorqueSensors",
-    "WristSensor",
-    "encoder_errors",
-]
 
 
 class Encoders(Protocol):

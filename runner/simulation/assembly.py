@@ -18,7 +18,7 @@ from runner.controllers.notch import add_notch
 from runner.environments import ENVIRONMENTS
 from runner.environments.external_wrench import Interaction
 from runner.environments.wall import Wall
-from runner.metrics import MetricContext
+from runner.metrics.family import MetricContext
 from runner.plants import PLANTS, Plant, options_of
 from runner.plants.servo import JointServo
 from runner.plants.wrappers import PayloadChanges, WithTipContact

@@ -11,7 +11,8 @@ from runner.base.ticks import track_ticks
 from runner.base.trace import Trace
 from runner.controllers import Controller, Loop, PositionController
 from runner.plants import PositionPlant
-from runner.sensing import Encoders, JointEncoders, TorqueSensors, WristSensor
+from runner.sensing import Encoders, TorqueSensors, WristSensor
+from runner.sensing.encoders import JointEncoders
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.compiled.loops import CompiledLoops, Rows
 from runner.simulation.contact import Contact

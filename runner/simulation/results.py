@@ -12,9 +12,13 @@ from runner.base.arrays import FloatArray
 from runner.base.errors import SimulationError
 from runner.base.trace import Failure, Trace
 from runner.config.run import RunConfig
-from runner.metrics import MetricContext, Summary, evaluate, summarize_arrays
-from runner.metrics.caveats import Found, PlantStep, Watch, signals_of
+from runner.metrics.caveats.monitor import Watch
+from runner.metrics.caveats.plant_error import PlantStep
+from runner.metrics.caveats.rule import Found
+from runner.metrics.caveats.setting import signals_of
+from runner.metrics.family import MetricContext
 from runner.metrics.plant_error import PlantError
+from runner.metrics.summary import Summary, evaluate, summarize_arrays
 from runner.simulation.provenance import job_provenance
 
 _CLOCKED_TICKS = 1_000_000  # limit of the ticks whose time is stored

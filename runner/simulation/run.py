@@ -20,10 +20,11 @@ from runner.base.trace import Trace
 from runner.config.limits import TICKS_AT_ONCE
 from runner.config.run import RunConfig
 from runner.config.validation import validate
-from runner.metrics.caveats import Watch, setting_of
+from runner.metrics.caveats.monitor import Watch
+from runner.metrics.caveats.setting import setting_of
 from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_kutta, reason_not_comparable
 from runner.plugins.discovery import has_users_parts
-from runner.sensing import ForceTorqueSensor
+from runner.sensing.force_torque import ForceTorqueSensor
 from runner.sensing.streams import ENVIRONMENT
 from runner.simulation.assembly import assemble, metric_context, with_drawn
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from runner.config.judgement import Bound
-    from runner.robots import RobotModel
+    from runner.robots.model import RobotModel
     from runner.statistics.spec import Histories, Spec
 
 
@@ -206,7 +206,7 @@ class Run(Stored):
     @cached_property
     def model(self) -> "RobotModel":
         """Rigid-body model of the simulated robot."""
-        from runner.robots import RobotModel
+        from runner.robots.model import RobotModel
 
         return RobotModel(self.urdf, self.provenance["tip_frame"], self.config["gravity"])
 

@@ -8,7 +8,8 @@ from runner.config.composed import Composed
 from runner.config.run import RunConfig
 from runner.config.validation import validate
 from runner.controllers.operational_space.whole_body import WholeBodyLaw
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 
 
 @functools.cache

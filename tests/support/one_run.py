@@ -1,6 +1,6 @@
 """A family of metrics of several runs, asked for one."""
 
-from runner.metrics import of_run
+from runner.metrics.summary import of_run
 
 
 def of_one(family):

@@ -12,7 +12,7 @@ from runner.plants.friction_law import JointFriction, joint_friction
 from runner.plants.rk4 import Rk4
 from runner.reporting.charts import palette
 from runner.reporting.charts.canvas import GREY, INK, drawing
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.schema.values import FrictionConfig, SigmoidConfig
 
 _INERTIA, _STIFFNESS, _SPEED, _TICK = 0.68, 50.0, 0.1, 1e-3  # kg m^2, N m/rad, rad/s, s

@@ -17,7 +17,7 @@ from runner.plants import PLANTS, options_of
 from runner.plants.servo import ServoLaw
 from runner.plants.servo_contact_stability import ServoContact
 from runner.robots.task_space import mass_along, tip_mobility
-from runner.sensing import ForceTorqueConfig
+from runner.sensing.force_torque import ForceTorqueConfig
 
 
 def servo_contact(config: RunConfig, q_start: FloatArray) -> ServoContact | None:

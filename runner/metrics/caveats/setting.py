@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from runner.plants.servo_contact_stability import ServoContact
     from runner.robots.mismatch import MismatchConfig
     from runner.robots.model import RobotModel
-    from runner.sensing import EncoderNoise
+    from runner.sensing.encoders import EncoderNoise
 
 IDEAL = "kinematic"
 """Plant with ideal joint motion; forces have no effect on it."""

@@ -18,7 +18,7 @@ from runner.plants.motor_limits import TorqueLimits, torque_bounds
 from runner.plugins.guard import Guarded, find_fault, place, unguarded
 from runner.robots.drawn import DrawnModel, by_run, over_runs
 from runner.robots.robot import Robot
-from runner.sensing import EncoderNoise
+from runner.sensing.encoders import EncoderNoise
 from runner.sensing.velocity import first_state, gains, next_velocity
 from runner.simulation.compiled.law import LawScalars, SymbolicBackend, expressed_torque, law_cache_key, law_scalars
 from runner.symbolic.algebra import PointScalars, expressed_points, point_scalars

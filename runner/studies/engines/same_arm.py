@@ -9,7 +9,7 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.plants.compiled_motion import CompiledStep
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.store import Run
 from runner.studies.engines.side_by_side import (
     STEP,

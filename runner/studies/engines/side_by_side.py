@@ -8,7 +8,7 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.plants.bullet import Bullet
 from runner.plants.mujoco import Mujoco
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.store import Run
 
 STEP = 1e-3  # s

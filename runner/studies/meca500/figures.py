@@ -16,7 +16,7 @@ from runner.controllers.force.admittance_filter import Admittance, AdmittanceFil
 from runner.reporting.document import Series, Verdicts
 from runner.reporting.equation import EquationVerdict
 from runner.reporting.published_claims import Verdict, load_statements
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.store import Calibration, Run
 from runner.studies.meca500.plan import law_in
 from runner.study.claims import judged_statements

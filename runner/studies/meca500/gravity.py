@@ -12,7 +12,7 @@ from runner.reporting.document import Panel, Series, Table
 from runner.reporting.figures import origin
 from runner.reporting.table import Column as TableColumn
 from runner.reporting.table import Number, numbers
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.store import Calibration
 from runner.studies.meca500.figures import Calibrations, degrees, error, flange_of, predicted, refusal, wrenches
 from runner.study.measured import ROUNDING

@@ -10,7 +10,8 @@ import numpy as np
 from runner.config.compose.compose import compose
 from runner.controllers.force.admittance_filter import Admittance
 from runner.controllers.stability import stiffest_wall
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 from runner.study.grid import Overrides
 from runner.study.grids import FILE, Grids
 from runner.study.results import Parts, parts_of

@@ -9,7 +9,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding, number
 from runner.reporting.document import Series
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.store import Run
 from runner.studies.xarm7.figures import ROWS, line_length, smallest_margin
 from runner.studies.xarm7.kinematics import random_postures

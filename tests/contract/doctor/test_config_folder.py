@@ -16,7 +16,7 @@ from runner.config.compose.files import group_options
 from runner.config.validation import validate
 from runner.doctor.config_folder import write_folder
 from runner.doctor.examination import examine
-from runner.robots import find_urdf
+from runner.robots.description import find_urdf
 
 OURS = sorted(group_options("robot"))
 

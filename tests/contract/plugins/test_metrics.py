@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import SimulationError
-from runner.metrics import evaluate
+from runner.metrics.summary import evaluate
 from runner.plugins import metric_units
 from runner.simulation.assembly import metric_context
 from runner.simulation.loop import simulate

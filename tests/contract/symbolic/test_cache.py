@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from runner.plants.compiled_motion import CompiledStep
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 from runner.symbolic import cache, program
 
 MACRO = RobotModel(read_urdf(find_urdf("macro.urdf"), {}), "tip")

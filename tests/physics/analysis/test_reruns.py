@@ -12,7 +12,7 @@ import pytest
 from runner.analysis import differences
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.metrics import measure
+from runner.metrics.summary import measure
 from runner.simulation.assembly import assemble_program
 from runner.simulation.batch import BatchSimulator, RunSpec
 from runner.store import simulated_part

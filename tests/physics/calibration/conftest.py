@@ -6,8 +6,8 @@ from support.arms import model_of
 from support.turns import rotation
 
 from runner.calibration.uncertainty import joint_deviation
-from runner.robots import RobotModel
 from runner.robots.inverse_kinematics import solve_tip_pose
+from runner.robots.model import RobotModel
 
 REPEATABILITY = 5e-6  # m, the Meca500's
 POINT = np.array([0.26, 0.0, 0.13])  # m, in the base frame, which the tip touches

@@ -17,7 +17,7 @@ from support.physics import (
 
 from runner.base.errors import ConfigError
 from runner.controllers.operational_space.operational_space import OperationalSpace, OperationalSpaceConfig, build
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 REST = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
 MODELS = {name: model_of(name) for name in ("macro", "mini")}

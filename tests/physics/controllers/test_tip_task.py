@@ -10,7 +10,7 @@ from support.strangers import X, Y, Z
 from runner.base.errors import ConfigError
 from runner.controllers.operational_space.tip_task import TipTask, held_orientation, task_start
 from runner.controllers.torque_law import PinocchioArm
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.symbolic.maths import NUMPY
 
 ROBOT = checked("robot=xarm7", "controller=operational_space").arm

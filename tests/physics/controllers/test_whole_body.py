@@ -12,7 +12,7 @@ from runner.base.errors import ConfigError
 from runner.controllers.operational_space.operational_space import OperationalSpace
 from runner.controllers.operational_space.whole_body import WholeBody, WholeBodyConfig, build
 from runner.plants.rk4 import Rk4
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 COMBINED = checked("robot=combined").arm
 MODEL = COMBINED.model

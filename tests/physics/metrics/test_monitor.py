@@ -11,10 +11,12 @@ from support.caveat_runs import signals, stacked
 from support.engines import ASKED
 
 from runner.config.judgement import THRESHOLDS, CaveatsConfig
-from runner.metrics.caveats import Signals, Watch, changes_since, look_together, plant_error, setting_of, signals_of
+from runner.metrics.caveats import plant_error
+from runner.metrics.caveats.monitor import Watch, look_together
+from runner.metrics.caveats.setting import Signals, setting_of, signals_of
 from runner.metrics.caveats.setting_rules import SETTING_RULES
 from runner.metrics.caveats.trace_rules import TRACE_RULES
-from runner.metrics.caveats.versions import our_thresholds, rules_digest
+from runner.metrics.caveats.versions import changes_since, our_thresholds, rules_digest
 from runner.store import run_hash
 
 ROBOTS = ("macro", "mini", "combined", "macro_mini_mini", "xarm7", "xarm7_mini", "meca500", "meca500_r4")

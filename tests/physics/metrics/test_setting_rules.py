@@ -9,7 +9,8 @@ from support.mjcf_arms import CHAIN, written
 
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
-from runner.metrics.caveats import Watch, setting_of
+from runner.metrics.caveats.monitor import Watch
+from runner.metrics.caveats.setting import setting_of
 from runner.robots.mjcf import read_mjcf
 
 

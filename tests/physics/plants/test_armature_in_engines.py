@@ -123,7 +123,7 @@ def test_one_joint_under_constant_torque_is_the_closed_form(one_joint):
 def one_joint():
     """Return every engine with a joint of inertia 3 and armature 1.5 kg m^2, and how far it is ahead, in steps."""
     from runner.plants.bullet import Bullet
-    from runner.robots import RobotModel
+    from runner.robots.model import RobotModel
 
     model = RobotModel(ONE_JOINT, "tip", 0.0).with_armature(np.array([1.5]))
 

@@ -6,7 +6,8 @@ from support import strangers
 from support.arms import urdf_of
 
 from runner.base.errors import ConfigError
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 
 pybullet = pytest.importorskip("pybullet", reason="PyBullet is not installed")
 

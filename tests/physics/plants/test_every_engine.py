@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from support.engines import ENGINES, FIRST_ORDER, FOURTH_ORDER
 
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 START = np.array([0.3, 0.5, -0.4]), np.array([1.0, 0.5, -0.5])
 TORQUES = np.array([[5.0, -3.0, 2.0], [-8.0, 10.0, -4.0], [2.0, 15.0, -9.0], [0.0, 4.0, 1.0]])

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 from support.arms import model_of
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 HOME = np.zeros(3)  # rad, of the thesis
 LOCKED = 1e12  # kg m^2, a motor that does not turn

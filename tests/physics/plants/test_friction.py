@@ -11,7 +11,7 @@ from support.physics import assert_order, assert_passive
 
 from runner.plants.friction import Frictional, stopping_torques, with_friction
 from runner.plants.rk4 import Rk4
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 
 @pytest.fixture(params=ENGINES)

@@ -14,7 +14,7 @@ from support.stick_slip import STIFFNESS, exact_coulomb_period, exact_period, pe
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
 from runner.plants.friction import Frictional, MotorFriction
 from runner.plants.rk4 import Rk4
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 GAZ = {
     "level": [0.54615, 0.87224, 0.64068, 1.2794, 0.83904, 0.30301, 0.56489],

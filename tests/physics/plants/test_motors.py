@@ -6,7 +6,7 @@ from support.friction import friction_law
 
 from runner.plants.flexible_joints import Flexibility, FlexibleJoints
 from runner.plants.friction import MotorFriction, stopping_torques
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 ONE_JOINT = """<robot name="one"><link name="base"/><link name="arm"><inertial><mass value="1"/><origin xyz="0 0 0"/>
 <inertia ixx="3" iyy="3" izz="3" ixy="0" ixz="0" iyz="0"/></inertial></link><joint name="q" type="revolute">

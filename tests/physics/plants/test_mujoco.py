@@ -8,7 +8,7 @@ from support import strangers
 
 from runner.base.errors import ConfigError
 from runner.plants.mujoco import Mujoco, build, default_step
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 POINT = """
 <robot name="pendulum"><link name="base"/><link name="rod"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>

@@ -8,7 +8,7 @@ from support.physics import assert_order
 
 from runner.plants import PLANTS
 from runner.plants.rk4 import Rk4, build
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 ARMS = [("macro", 1.0), ("mini", 0.1)]  # name, and by what all lengths, masses and times are scaled
 START = np.array([0.3, 0.5, -0.4]), np.array([1.0, 0.5, -0.5])

@@ -10,8 +10,9 @@ from support.physics import assert_energy_kept
 
 from runner.base.errors import ConfigError
 from runner.plants.rk4 import Rk4
-from runner.robots import RobotModel, read_urdf
+from runner.robots.description import read_urdf
 from runner.robots.inertials import armature_file
+from runner.robots.model import RobotModel
 
 EFFORT_TO_INERTIA = 0.008  # s^2: N times 8e-5 kg m^2 for each N m of motor torque, with N = 100
 

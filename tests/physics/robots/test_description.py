@@ -7,7 +7,8 @@ import pytest
 
 from runner.base.errors import ConfigError
 from runner.base.paths import robots_dir
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 
 MASS = '<mass value="{m}"/>'
 INERTIA = '<inertia ixx="{i}" ixy="0.01" ixz="0" iyy="{i}" iyz="0" izz="{i}"/>'

@@ -5,9 +5,9 @@ import pytest
 import yaml
 
 from runner.base.errors import ConfigError
-from runner.robots import RobotModel, find_urdf, read_urdf
-from runner.robots.description import with_payloads
+from runner.robots.description import find_urdf, read_urdf, with_payloads
 from runner.robots.inertials import Payload, set_file
+from runner.robots.model import RobotModel
 
 TENSOR = {"ixx": 0.2, "ixy": 0.0, "ixz": 0.0, "iyy": 0.3, "iyz": 0.0, "izz": 0.4}
 HAND = {"mass": 3.0, "centre_of_mass": [0.1, 0.0, 0.2], "inertia": TENSOR}

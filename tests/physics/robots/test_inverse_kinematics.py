@@ -9,8 +9,10 @@ from hypothesis import strategies as st
 from support.arms import model_of, urdf_of
 
 from runner.base.errors import ConfigError
-from runner.robots import RobotModel, inverse_kinematics, solve_tip_pose, solve_tip_position
+from runner.robots import inverse_kinematics
+from runner.robots.inverse_kinematics import solve_tip_pose, solve_tip_position
 from runner.robots.mismatch import MismatchConfig, build
+from runner.robots.model import RobotModel
 from runner.robots.robot import Robot, Stage
 
 MODELS = {name: model_of(name) for name in ("macro", "mini")}

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from runner.plants.mujoco import Mujoco
-from runner.robots import RobotModel, read_urdf
+from runner.robots.description import read_urdf
+from runner.robots.model import RobotModel
 
 HEAVY, TURNS, NOTHING = (2.0, 0.02), (0.0, 0.1), (0.0, 0.0)
 ARMS = {

@@ -8,7 +8,7 @@ from support import strangers
 from support.arms import model_of
 
 from runner.base.errors import ConfigError
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 
 MODELS = {name: model_of(name) for name in ("macro", "mini")}
 LENGTH = {"macro": 1.0, "mini": 0.1}

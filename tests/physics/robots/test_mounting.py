@@ -8,7 +8,7 @@ import pytest
 from support.arms import checked
 
 from runner.base.errors import ConfigError
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.mounting import mount
 from runner.schema.values import MountConfig
 from runner.studies.thesis.denavit_hartenberg import DenavitHartenbergRow, denavit_hartenberg, frames

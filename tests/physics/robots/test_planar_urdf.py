@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from support.arms import model_of, urdf_of
 
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.sweeps.job import run
 
 M1, L1, ME, I1, LC1, IE, LCE, DELTA_E = 1.0, 1.0, 2.0, 0.12, 0.5, 0.25, 0.6, np.radians(30.0)

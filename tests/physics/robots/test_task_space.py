@@ -5,8 +5,8 @@ import pytest
 from support import strangers
 from support.strangers import X, Y, Z
 
-from runner.robots import RobotModel
 from runner.robots.inverse_kinematics import solve_tip_pose, solve_tip_position
+from runner.robots.model import RobotModel
 from runner.robots.task_space import distance_beside, task_basis
 
 

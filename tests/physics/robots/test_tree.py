@@ -4,7 +4,7 @@ import pytest
 from support import strangers
 
 from runner.base.errors import ConfigError
-from runner.robots import read_urdf
+from runner.robots.description import read_urdf
 from runner.robots.tree import read_tree
 
 LINKS = '<link name="a"/><link name="b"/><link name="c"/>'

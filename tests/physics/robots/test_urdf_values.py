@@ -6,7 +6,8 @@ from support.strangers import Y, Z
 
 from runner.base.errors import ConfigError
 from runner.cli.main import dispatch
-from runner.robots import RobotModel, read_urdf
+from runner.robots.description import read_urdf
+from runner.robots.model import RobotModel
 
 ARM = strangers.chain("arm", [("revolute", Z), ("revolute", Y), ("revolute", Y)])
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.arms import model_of, urdf_of
 
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.workspace import analyse, manipulability
 
 ARMS = [("macro", 1.0), ("mini", 0.1)]

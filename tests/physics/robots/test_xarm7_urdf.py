@@ -8,9 +8,9 @@ import pytest
 from scipy.optimize import minimize
 from support.arms import urdf_of
 
-from runner.robots import RobotModel, find_urdf, read_urdf
-from runner.robots.description import with_payloads
+from runner.robots.description import find_urdf, read_urdf, with_payloads
 from runner.robots.inertials import Payload
+from runner.robots.model import RobotModel
 
 EXACT = (math.hypot(0.0775, 0.3425), math.atan2(0.0775, 0.3425), math.hypot(0.076, 0.097), math.atan2(0.076, 0.097))
 ROUNDED = (0.3512, 0.2225, 0.1232, 0.6646)  # as the report prints l4, theta1, l5, theta2

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.sensing import EncoderNoise, JointEncoders
+from runner.sensing.encoders import EncoderNoise, JointEncoders
 from runner.simulation.sensors import make_encoders
 
 PERIOD = 0.01

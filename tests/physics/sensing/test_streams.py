@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runner.sensing import EncoderNoise, JointEncoders, encoder_errors
+from runner.sensing.encoders import EncoderNoise, JointEncoders, encoder_errors
 from runner.sensing.streams import generators
 
 LARGE = [0, 1, 7, 2**31, 2**32 - 1, 2**32, 2**40 + 3, 2**64 - 1, 2**64, 2**70 + 5, 2**200 + 3]

@@ -6,7 +6,7 @@ from scipy.signal import dlsim, dlti
 from support.arms import checked
 
 from runner.base.errors import ConfigError
-from runner.sensing import EncoderNoise, JointEncoders
+from runner.sensing.encoders import EncoderNoise, JointEncoders
 from runner.sensing.velocity import gains
 
 H, W = 0.002, 150.0

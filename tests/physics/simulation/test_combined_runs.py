@@ -9,7 +9,7 @@ from support.arms import last_of_each
 from support.covers import name_of, pairwise
 from support.printed import without_caveats, without_results
 
-from runner.metrics import evaluate
+from runner.metrics.summary import evaluate
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders

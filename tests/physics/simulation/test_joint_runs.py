@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from support.physics import assert_order
 
-from runner.metrics import evaluate
+from runner.metrics.summary import evaluate
 from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.base.errors import ConfigError
-from runner.metrics import measure
+from runner.metrics.summary import measure
 from runner.simulation.assembly import metric_context
 from runner.simulation.loop import simulate
 from runner.simulation.sensors import make_encoders

@@ -14,9 +14,10 @@ from runner.controllers.macro_mini.stage_loops import MacroController, MiniContr
 from runner.controllers.operational_space.operational_space import OperationalSpace
 from runner.controllers.operational_space.whole_body import WholeBody
 from runner.controllers.torque_law import PinocchioArm
-from runner.metrics import evaluate
+from runner.metrics.summary import evaluate
 from runner.plugins.metric_units import units
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 from runner.robots.robot import end_points
 from runner.simulation.assembly import assemble, metric_context
 

@@ -11,7 +11,7 @@ import pytest
 from runner.controllers import Loop
 from runner.plants import Plant
 from runner.plants.motor_limits import TorqueLimits
-from runner.sensing import EncoderNoise, JointEncoders
+from runner.sensing.encoders import EncoderNoise, JointEncoders
 from runner.simulation.assembly import assemble
 from runner.simulation.loop import ClosedLoop, simulate
 from runner.simulation.sensors import make_encoders

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runner.plants.motor_limits import TorqueLimits
-from runner.sensing import EncoderNoise
+from runner.sensing.encoders import EncoderNoise
 from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.simulation.compiled.loops import CompiledLoops
 from runner.symbolic.engine import evaluator

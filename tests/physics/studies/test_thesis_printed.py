@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 from runner.studies.thesis.equations.derivations.thesis_printed import (
     compare,
     gravity_torque,

@@ -10,7 +10,7 @@ from support.arms import checked
 from support.strangers import X, Y, Z
 
 from runner.controllers.torque_law import PinocchioArm
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.symbolic.algebra import ArmAlgebra, Factors
 from runner.symbolic.arm import constants_of
 

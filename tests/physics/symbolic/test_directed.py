@@ -11,7 +11,7 @@ from runner.plants.decoupled import ArmMotion, Motion
 from runner.plants.motor_limits import TorqueLimits
 from runner.robots.mismatch import scale_model
 from runner.robots.model import RobotModel
-from runner.sensing import EncoderNoise
+from runner.sensing.encoders import EncoderNoise
 from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.simulation.compiled.loop_program import LoopProgram, Setting, tangents
 

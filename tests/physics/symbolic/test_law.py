@@ -14,7 +14,7 @@ from runner.controllers.torque_law import TorqueLaw
 from runner.plants import compiled_motion
 from runner.plants.motor_limits import TorqueLimits
 from runner.plugins.guard import unguarded
-from runner.sensing import EncoderNoise
+from runner.sensing.encoders import EncoderNoise
 from runner.simulation.compiled import commands as loops
 from runner.simulation.compiled.commands import Commands, LoopCode
 from runner.simulation.compiled.law import law_cache_key

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from runner.analysis.smooth_metrics import WITHOUT, derivatives
-from runner.metrics import MetricContext, evaluate
+from runner.metrics.family import MetricContext
+from runner.metrics.summary import evaluate
 from runner.simulation.compiled.loops import Rows
 from runner.trajectories.motion import quintic_motion
 

@@ -7,7 +7,7 @@ from pydantic import Field, NonNegativeInt, PositiveFloat
 
 from runner.config.json_schema import meanings
 from runner.schema.values import TorquePerStage
-from runner.sensing import NoiseConfig
+from runner.sensing.encoders import NoiseConfig
 from tools.docs.allowed_values import describe
 from tools.docs.reference import PAGE, reference_text
 

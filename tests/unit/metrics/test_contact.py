@@ -7,8 +7,9 @@ import pytest
 from support.one_run import of_one
 
 from runner.base.trace import ContactSignals
-from runner.metrics import MetricContext, contact
+from runner.metrics import contact
 from runner.metrics.contact import UNITS
+from runner.metrics.family import MetricContext
 from runner.trajectories.goal import Goal
 
 evaluate = of_one(contact)

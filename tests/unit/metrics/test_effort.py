@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from support.one_run import of_one
 
-from runner.metrics import MetricContext, effort
+from runner.metrics import effort
+from runner.metrics.family import MetricContext
 from runner.plugins.metric_units import unit_of
 from runner.trajectories.goal import Goal
 

@@ -7,7 +7,8 @@ import pytest
 
 from runner.base.errors import SimulationError
 from runner.base.trace import Trace
-from runner.metrics import MetricContext, evaluate, measure, of_run
+from runner.metrics.family import MetricContext
+from runner.metrics.summary import evaluate, measure, of_run
 from runner.trajectories import TRAJECTORIES
 from runner.trajectories.circle import Circle
 from runner.trajectories.goal import Goal

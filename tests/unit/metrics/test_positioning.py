@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from support.one_run import of_one
 
-from runner.metrics import MetricContext, positioning
+from runner.metrics import positioning
+from runner.metrics.family import MetricContext
 from runner.metrics.positioning import UNITS
 from runner.trajectories.goal import Goal
 from runner.trajectories.motion import quintic_motion

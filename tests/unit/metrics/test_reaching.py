@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from support.one_run import of_one
 
-from runner.metrics import MetricContext, reaching
+from runner.metrics import reaching
+from runner.metrics.family import MetricContext
 from runner.metrics.reaching import UNITS
 from runner.trajectories.goal import Goal
 

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runner.base.trace import Failure
-from runner.metrics import MetricContext, evaluate, summarize_arrays
-from runner.metrics.summary import MOST_LISTED
+from runner.metrics.family import MetricContext
+from runner.metrics.summary import MOST_LISTED, evaluate, summarize_arrays
 from runner.plugins.metric_units import units
 from runner.trajectories.goal import Goal
 from runner.trajectories.motion import quintic_motion

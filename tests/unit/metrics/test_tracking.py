@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from support.one_run import of_one
 
-from runner.metrics import MetricContext, tracking
+from runner.metrics import tracking
+from runner.metrics.family import MetricContext
 from runner.trajectories.circle import Circle
 from runner.trajectories.goal import Goal
 from runner.trajectories.motion import PathMotion, quintic_motion

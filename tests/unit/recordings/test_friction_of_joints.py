@@ -8,7 +8,8 @@ import pytest
 from scipy.signal import lfilter
 
 from runner.recordings.friction import identify_friction
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 
 H = 0.004
 T = np.arange(0.0, 10.0, H)

@@ -5,7 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from runner.reporting.playback import playback_bodies
-from runner.robots import RobotModel, find_urdf, read_urdf
+from runner.robots.description import find_urdf, read_urdf
+from runner.robots.model import RobotModel
 
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
 BOX_ARM = f"""

@@ -10,7 +10,7 @@ from support.arms import model_of, urdf_of
 
 from runner.reporting.charts.arm import arm_motion
 from runner.reporting.charts.canvas import Camera, circle
-from runner.robots import RobotModel
+from runner.robots.model import RobotModel
 from runner.robots.workspace import analyse
 from runner.studies.thesis.base_axis import distance_between
 from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram
