@@ -1,16 +1,13 @@
-"""Assembly of a closed loop from a checked config, also with the nominal models of several repetitions."""
+"""Assembly of a closed loop from a checked config."""
 
 import math
-from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import replace
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.config.desired_motion import check_feasible, start_posture
 from runner.config.flexibility import find_motor_side, is_flexible, with_nominal_links, with_nominal_motors
-from runner.config.parsing import require
 from runner.config.run import RunConfig
 from runner.controllers import CONTROLLERS, ControllerConfig, FollowsWithinReach, Loop, tell_limits
 from runner.controllers.disturbance_observer import add_observers
@@ -22,13 +19,12 @@ from runner.metrics.family import MetricContext
 from runner.plants import PLANTS, Plant, options_of
 from runner.plants.servo import JointServo
 from runner.plants.wrappers import PayloadChanges, WithTipContact
-from runner.robots.mismatch import MISMATCHES, build_drawn
+from runner.robots.mismatch import MISMATCHES
 from runner.robots.robot import Robot
-from runner.sensing.streams import MISMATCH, generators
+from runner.sensing.streams import MISMATCH
 from runner.simulation.closed_loop import ClosedLoop
 from runner.simulation.compiled.commands import Commands, compiled, find_commands
 from runner.simulation.compiled.loop_program import LoopProgram
-from runner.simulation.compiled.loops import DrawnRow
 from runner.simulation.contact import add_wall, touches_by_tip
 from runner.symbolic.structure import CannotCompileError
 from runner.trajectories.joint_motion import TipOfJoints
@@ -210,28 +206,3 @@ def metric_context(config: RunConfig) -> MetricContext:
 def reach_of(controller: ControllerConfig) -> float | None:
     """Return the distance up to which a mounted stage follows its target, in m; None without such a limit."""
     return controller.reach if isinstance(controller, FollowsWithinReach) else None
-
-
-def draws_together(config: RunConfig) -> bool:
-    """Return True if nominal models of several repetitions are drawn as arrays: built-in mismatch and built-in laws."""
-    return config.model_error.varies and CONTROLLERS.is_ours(config.controller.kind)
-
-
-def draw_commands(config: RunConfig, repetitions: Sequence[int]) -> Commands:
-    """Return the control loops with the nominal models of several repetitions, which are DrawnModels.
-
-    Args:
-        config: The checked config of a run with compiled control laws; see draws_together.
-        repetitions: Numbers of the repetitions.
-    """
-    streams = generators([(config.settings.seed, repetition, MISMATCH) for repetition in repetitions])
-    return require(find_commands(config, build_loops(config, build_drawn(config.model_error, config.arm, streams))))
-
-
-def with_drawn(closed: ClosedLoop, config: RunConfig, repetitions: Sequence[int]) -> list[ClosedLoop] | None:
-    """Return a closed loop with the nominal model of each repetition; None if they are not drawn together."""
-    if closed.compiled is None or not draws_together(config):
-        return None
-    drawn = draw_commands(config, repetitions)
-    values = closed.compiled.drawn_values(drawn)
-    return [replace(closed, drawn=DrawnRow(drawn, values, row)) for row in range(len(repetitions))]

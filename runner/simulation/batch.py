@@ -25,9 +25,10 @@ from runner.metrics.summary import measure
 from runner.plugins.discovery import added_parts
 from runner.robots.model import RobotModel
 from runner.sensing.encoders import encoder_errors
-from runner.simulation.assembly import assemble_program, draw_commands, draws_together, metric_context, reach_of
+from runner.simulation.assembly import assemble_program, metric_context, reach_of
 from runner.simulation.compiled.loop_program import LoopProgram, run_all
 from runner.simulation.compiled.loops import Rows
+from runner.simulation.drawn_loops import draw_commands, draws_together
 from runner.simulation.recorder import DIVERGED_SPEED, describe, failure_of, find_divergence
 from runner.simulation.results import Collector
 

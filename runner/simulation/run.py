@@ -26,9 +26,10 @@ from runner.metrics.plant_error import COMPARED, PlantError, compare, on_runge_k
 from runner.plugins.discovery import has_users_parts
 from runner.sensing.force_torque import ForceTorqueSensor
 from runner.sensing.streams import ENVIRONMENT
-from runner.simulation.assembly import assemble, metric_context, with_drawn
+from runner.simulation.assembly import assemble, metric_context
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
 from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.drawn_loops import with_drawn
 from runner.simulation.loop import simulate
 from runner.simulation.results import Collector, RunResult
 from runner.simulation.sensors import make_sensors

@@ -66,6 +66,7 @@ SHARED = {
     "sensing/endpoint": "physics/simulation/test_endpoint_sensing.py",
     "schema/units": "contract/config/test_units_of_keys.py",
     "simulation/assembly": "physics/simulation/test_simulation.py",
+    "simulation/drawn_loops": "physics/robots/test_drawn.py",
     "simulation/closed_loop": "physics/simulation/test_simulation.py",
     "simulation/compiled/loop_program": "physics/symbolic/test_tick.py",
     "simulation/compiled/commands": "physics/symbolic/test_law.py",

@@ -1,0 +1,39 @@
+"""Control loops with the nominal models of several repetitions, drawn as arrays."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from runner.config.parsing import require
+from runner.config.run import RunConfig
+from runner.controllers import CONTROLLERS
+from runner.robots.mismatch import build_drawn
+from runner.sensing.streams import MISMATCH, generators
+from runner.simulation.assembly import build_loops
+from runner.simulation.closed_loop import ClosedLoop
+from runner.simulation.compiled.commands import Commands, find_commands
+from runner.simulation.compiled.loops import DrawnRow
+
+
+def draws_together(config: RunConfig) -> bool:
+    """Return True if nominal models of several repetitions are drawn as arrays: built-in mismatch and built-in laws."""
+    return config.model_error.varies and CONTROLLERS.is_ours(config.controller.kind)
+
+
+def draw_commands(config: RunConfig, repetitions: Sequence[int]) -> Commands:
+    """Return the control loops with the nominal models of several repetitions, which are DrawnModels.
+
+    Args:
+        config: The checked config of a run with compiled control laws; see draws_together.
+        repetitions: Numbers of the repetitions.
+    """
+    streams = generators([(config.settings.seed, repetition, MISMATCH) for repetition in repetitions])
+    return require(find_commands(config, build_loops(config, build_drawn(config.model_error, config.arm, streams))))
+
+
+def with_drawn(closed: ClosedLoop, config: RunConfig, repetitions: Sequence[int]) -> list[ClosedLoop] | None:
+    """Return a closed loop with the nominal model of each repetition; None if they are not drawn together."""
+    if closed.compiled is None or not draws_together(config):
+        return None
+    drawn = draw_commands(config, repetitions)
+    values = closed.compiled.drawn_values(drawn)
+    return [replace(closed, drawn=DrawnRow(drawn, values, row)) for row in range(len(repetitions))]
