@@ -48,7 +48,7 @@ _TABLE = """
     sensing: __init__=sensing.__init__ encoders endpoint=sensing.endpoint force_torque joint_torque streams velocity
         wrench
     simulation: assembly batch calibration=calibration_job closed_loop=loop.closed_loop contact=loop.contact
-        loop=simulation recorder results run=job sensors
+        drawn_loops loop=simulation recorder results run=job sensors
     simulation/compiled: commands law loop_program loops
     symbolic: algebra arm code engine expression maths=controllers.maths program regressor structure tangent
         vectors=compiled.vectors

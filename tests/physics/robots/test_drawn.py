@@ -8,7 +8,8 @@ import pytest
 from runner.robots.drawn import DrawnModel, by_run, each_run, over_runs
 from runner.robots.mismatch import MismatchConfig, build, build_drawn
 from runner.sensing.streams import MISMATCH
-from runner.simulation.assembly import describe_program, draw_commands, find_start
+from runner.simulation.assembly import describe_program, find_start
+from runner.simulation.drawn_loops import draw_commands
 from runner.simulation.run import simulate_repetition, simulate_run
 from runner.symbolic.engine import evaluator
 
