@@ -158,7 +158,7 @@ REFUSED = {
     "robot=combined controller=whole_body plant.dynamics=decoupled": "take plant.dynamics=coupled",
     "controller.period=0.002 plant.step=0.001 controller=macro_mini robot=combined "
     "controller.period={macro: 0.01, mini: 0.001} plant.computation.delay=3": "no multiple",
-    "robot=macro disturbance_observer.bandwidth={mini: 3}": "one for each control loop (macro)",
+    "robot=macro disturbance_observer.bandwidth={mini: 3}": "no such loop",
     "robot=macro disturbance_observer.bandwidth=-1": "above 0",
 }
 
