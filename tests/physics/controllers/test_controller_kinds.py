@@ -135,7 +135,7 @@ def test_a_config_with_a_law_has_walls_refused_that_it_would_bounce_on(own_part,
     assert ending.code == 2
     assert "is unstable against a wall of 10000 N/m" in ending.err
     assert cli(*given, "controller.check_stability=false").code == 0
-    assert cli(*given, "plant=default").code == 0  # with servos the law does not decide by itself
+    assert cli(*given, "plant=default").code == 0  # with servos the law decides nothing
 
 
 LIMITED = TORQUES.replace(

@@ -81,6 +81,6 @@ def test_a_thin_layer_makes_the_torques_of_noisy_encoders_rough(simulated):
                         "noise.distribution=gaussian", "duration=0.5", *more)  # fmt: skip
         return np.abs(np.diff(run.tau[:-1], axis=0)).mean()
 
-    # Within the layer the gain of s is K_D + K / phi: K as it is at phi 0.05, in a layer of a tenth.
+    # Within the layer the gain of s is K_D + K / phi: K at phi 0.05, in a layer of a tenth.
     rough, smooth = roughness(0.005, "controller.switching_gain=10"), roughness(0.05)
     assert rough > 3.0 * smooth
