@@ -91,7 +91,7 @@ def _scaled(series: Series, axis: str, factor: float) -> Series:
     return replace(series, **changed)
 
 
-def marks(low: float, high: float, log: bool = False) -> Mark:
+def marks(low: float, high: float, log: bool) -> Mark:
     """Return the function that writes the labels of an axis that goes from one value to another.
 
     They are plain decimals where the largest of them is from 0.001 to 10,000; on a logarithmic axis the smallest, too.

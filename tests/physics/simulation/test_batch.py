@@ -5,12 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import yaml
 from support.arms import checked
 
+from runner.base.paths import conf_dir
 from runner.config.compose.compose import compose
 from runner.config.validation import validate
 from runner.simulation import batch
 from runner.simulation.batch import BatchResult, BatchSimulator, simulate_together
+from runner.simulation.drawn_loops import draws_together
 from runner.simulation.results import Collector
 from runner.simulation.run import simulate_repetition
 from runner.symbolic.engine import evaluator
@@ -185,3 +188,28 @@ def test_what_runs_have_in_common_is_worked_out_once(monkeypatch):
     for seed in range(5):
         batcher.repetitions(validate(replace(composed, resolved={**composed.resolved, "seed": seed})))
     assert len(made) == 1
+
+
+LAW = """
+    from typing import Literal
+
+    from runner.controllers.operational_space.operational_space import OperationalSpace, OperationalSpaceConfig
+    from runner.controllers.operational_space.operational_space import build, start_posture
+
+    class Config(OperationalSpaceConfig):
+        kind: Literal["same_law"]
+
+    CONFIG = Config
+"""
+
+
+def test_repetitions_of_a_compiled_law_of_a_plug_in_with_drawn_models_are_those_alone(own_part):
+    keys = yaml.safe_load((conf_dir() / "controller" / "operational_space.yaml").read_text())
+    folder = own_part("controller", "same_law", LAW, yaml.safe_dump({**keys, "kind": "same_law"}))
+    overrides = [*SCENE, "controller=same_law", "mismatch=sampled", "repetitions=3"]
+    config = validate(compose(overrides, [folder]))
+    assert not draws_together(config)
+    traces, _ = together([config])
+    for repetition, trace in enumerate(traces):
+        assert_same(trace, alone(config, repetition))
+    assert np.ptp([trace.q[-1, 0] for trace in traces]) > 0.0

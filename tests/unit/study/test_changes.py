@@ -107,7 +107,7 @@ def test_conclusions_are_read_from_a_file_or_a_report_s_folder(tmp_path):
     assert read_conclusions(tmp_path) == read_conclusions(tmp_path / FILE) == OLD
 
 
-@pytest.mark.parametrize("text", [None, "{", "[]", '{"a": 1}', '{"a": {"b": 1}}'])
+@pytest.mark.parametrize("text", [None, "{", "[]", '{"a": 1}', '{"a": {"b": 1}}', '{"a": {"title": "A"}, "b": 1}'])
 def test_what_is_none_is_refused(tmp_path, text):
     file = tmp_path / "other.json"
     if text is not None:
