@@ -6,6 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from runner.reporting.results import Row
+from runner.store.listing import Entry
+
 TASK = ("robot=macro", "duration=0.05", "noise=thesis", "repetitions=6", "hydra.sweeper.workers=0")
 
 
@@ -76,3 +79,10 @@ def test_bad_arguments_are_refused(cli, words, message):
     ending = cli("results", *words)
     assert (ending.code, ending.out) == (2, "")
     assert message in ending.err
+
+
+@pytest.mark.parametrize(
+    ("size", "shown"), [(0, "0 B"), (999, "999 B"), (1_000, "1 kB"), (12_345_678, "12.3 MB"), (5 * 10**15, "5e+03 TB")]
+)
+def test_a_size_has_the_largest_unit_of_which_it_has_one(size, shown):
+    assert Row(Entry("run", Path("a"), 0.0, size, True), "").size == shown

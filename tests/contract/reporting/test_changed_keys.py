@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from runner.config.compose.compose import compose
-from runner.reporting.run_report import changed_keys
+from runner.reporting.run_report import _yaml, changed_keys
 
 
 @dataclass
@@ -33,3 +33,8 @@ def test_nothing_is_named_where_nothing_was_set() -> None:
 
 def test_groups_that_are_not_here_are_told_by_none() -> None:
     assert changed_keys(_Run({}, {"choices": {"robot": "of_a_stranger"}})) is None
+
+
+def test_a_value_is_shown_as_it_is_typed():
+    values = (["Würfel", "鸡蛋"], "Würfel", True, None, 1000000000.0, [2000000000.0])
+    assert [_yaml(value) for value in values] == ['["Würfel", "鸡蛋"]', "Würfel", "true", "null", "1e9", "[2e9]"]

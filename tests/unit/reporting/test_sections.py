@@ -222,6 +222,8 @@ def test_failed_runs_are_listed_with_where_they_lie():
 def test_cells_that_differ_by_less_than_two_per_cent_do_not_fill_their_panel(apart, y_range):
     error = noisy(lambda step: 1.0 + apart * step, repetitions=1, scatter=0.0)
     figure = cells_with_intervals(choose(measurements({"plant.step": [1e-3, 2e-3]}, {"rms": error})), "rms")
+    (curve,) = figure.panels[0].series
+    assert list(curve.x) == [1e-3, 2e-3]
     assert figure.panels[0].y_range == (None if y_range is None else pytest.approx(y_range, abs=1e-5))
 
 

@@ -147,6 +147,7 @@ def test_quantities_of_runs_have_arithmetic():
     assert (2 * signals.metric_of("settling_time"))(run) is None
     assert signals.recorded("failure.time")(run) is None
     assert signals.total_of("t")(run) == signals.power_law(1.5, 2)(2.0) == 1.5
+    assert [signals.power_law(1.5, 2.0, power)(8.0) for power in (1.0, 2.0, -0.5)] == [6.0, 24.0, 0.75]
     with pytest.raises(TypeError, match="has a value for a run; write of_run"):
         str(error)
 
