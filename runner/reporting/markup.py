@@ -87,6 +87,16 @@ def spans(text: str) -> list[Span]:
     return [part for span in result for part in ([span] if span.math else _marks(span.text))]
 
 
+def without_marks(text: str) -> str:
+    """Return a string as plain text: code between backquotes, addresses in brackets, mathematics between dollars."""
+
+    def show(span: Span) -> str:
+        shown = f"${span.text}$" if span.math else f"`{span.text}`" if span.mark == "code" else span.text
+        return f"{shown} ({span.address})" if span.address else shown
+
+    return "".join(map(show, spans(text)))
+
+
 def _marks(text: str) -> list[Span]:
     found: list[Span] = []
     end = 0

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from runner.reporting.document import Claim, Document, Equations, Verdicts
+from runner.reporting.markup import without_marks
 from runner.reporting.outline import blocks
 from runner.store import Calibration, Run
 from runner.study.expected_caveats import ExpectedCaveat, caveats_as_data
@@ -40,7 +41,7 @@ def conclusions(
             {
                 "section": number,
                 "title": found.claim,
-                "text": found.sentences,
+                "text": without_marks(found.sentences),
                 "holds": found.holds,
                 "conditions": [vars(condition) for condition in found.conditions],
             }

@@ -3,7 +3,7 @@
 import pytest
 
 from runner.base.sanitize import plain
-from runner.reporting.markup import Span, spans
+from runner.reporting.markup import Span, link_text, mark_text, spans, without_marks
 
 
 def test_dollars_enclose_mathematics():
@@ -30,6 +30,13 @@ def test_claims_figures_and_tables_are_links():
         Span("figure 5.12", anchor="figure-5-12"),
         Span(", not figures 2"),
     ]
+
+
+def test_plain_text_has_no_marks():
+    link = link_text("a page", "https://example.org")
+    text = f"{mark_text('so', 'emphasis')}: {mark_text('a_b', 'code')} costs $$5, $x^2$, see {link}, §2.1 and claim 3"
+    plain_text = "so: `a_b` costs $5, $x^2$, see a page (https://example.org), section 2.1 and claim 3"
+    assert without_marks(text) == plain_text
 
 
 def test_plain_is_one_line():
