@@ -44,6 +44,7 @@ HEADER = ("difference", "interval", "n", "effect", "p")
 
 _SMALLEST = 1e-3  # p-value that is printed
 _EQUAL = 1e-9  # largest difference of a pair, relative to the larger median, that is rounding
+_TIMES = 3.0  # ratio of the medians from which it is given instead of the difference in per cent
 _SHARES = (0.05, SHARE)  # differences, relative to the larger median, for which pairs are counted
 _MOST_TURNS, _MOST_SENTENCES = 4, 6
 
@@ -180,6 +181,10 @@ class Answer(Asked):
         head = f"{capital(title(self.metric))}:"
         if self.equal:
             return f"{head} {first} and {second} are equal up to rounding ({self.comparison.n} pairs)."
+        one, other = self.comparison.medians
+        if self.sign > 0 and self.share and other >= _TIMES * one > 0.0:
+            times = number(other / one, 2)
+            return f"{head} {times} times as large with {second} as with {first}, {self._evidence()}.{turns}"
         if self.sign:
             share = f"{self.share} " if self.share else ""
             return f"{head} {share}{self.word} with {second} than with {first}, {self._evidence()}.{turns}"
@@ -233,7 +238,8 @@ class Answer(Asked):
             ends = tuple(-end for end in reversed(ends))
         size, *shown = self._alike([abs(found.difference) if self.sign else found.difference, *ends])
         told = [" to ".join([shown[0].partition(" ")[0], shown[1]])] if shown else []
-        told += [f"p = {_chance(self.p_value)}"] if self.sign and self.p_value is not None else []
+        if self.sign and self.p_value is not None:
+            told.append(f"p = {_chance(self.p_value)}".replace("= <", "<"))
         told += [f"no value in {a} and {b} of {found.n} draws" for a, b in [found.lost] if a or b]
         told += ["plant's own error not known"] if self.sign and found.error is None else []
         return f"{'by' if self.sign else 'difference'} {size} ({', '.join([*told, f'{found.n} pairs'])})"

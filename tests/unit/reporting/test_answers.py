@@ -99,6 +99,14 @@ def test_an_answer_tells_both_values_the_share_and_the_interval():
     assert one(-0.5 * APART).short_cells == ["1 m", "0.5 m", "-0.5 m (-50 %)", "yes"]
 
 
+def test_a_large_ratio_is_told_in_times_and_a_small_p_as_a_bound():
+    answer = judge([asked(np.linspace(4.4, 4.6, 20))], ["rms_tracking_error"])[0]
+    text = answer.sentence()
+    assert text.startswith("Rms tracking error: 5.5 times as large with B (5.5 m) as with A (1 m), by 4.5 m (")
+    assert ", p < 0.001, " in text
+    assert one(1.9 * APART).sentence().startswith("Rms tracking error: 190 % larger with B (2.9 m) than with A (1 m)")
+
+
 def test_a_metric_without_a_value_in_some_draws_says_in_how_many():
     a, b = np.ones(N), np.where(np.arange(N) < 3, np.inf, 1.5)
     (answer,) = judge([Asked("settling_time", "s", compare_paired(a, b))], [])
