@@ -36,7 +36,7 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument("folder", type=stored, metavar="DIR", help="folder of a run or a sweep, or latest")
     parser.add_shared(
         baseline="bands or a saved sweep (default: the spec, or the experiment's)",
-        save_baseline="write the baseline of a sweep, or set the bands in FILE",
+        save_baseline="write a baseline, or set the bands in FILE",
     )
     parser.add_argument(
         "--max-failure-probability",
