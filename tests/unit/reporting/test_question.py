@@ -71,7 +71,7 @@ def test_of_several_values_the_first_six_are_told():
     given = {"max_tracking_error": lambda law: 1.0 + law + drawn(20, law) / 100.0}
     subject = choose(measurements({"controller": laws}, given))
     told = sentences(find_answers(subject))
-    assert [text.split(" larger with ")[1][0] for text in told[:6]] == ["b", "c", "d", "e", "f", "g"]
+    assert [text.split(" with ")[1][0] for text in told[:6]] == ["b", "c", "d", "e", "f", "g"]
     assert told[6] == "2 more are in the tables."
     assert in_short(subject).startswith("largest tracking error: medians from ")
 
