@@ -150,16 +150,25 @@ def read_column(file: Any, path: Path, name: str) -> FloatArray:
     table = read_table(file, path, [name])
     if table.column_names != [name]:
         raise DamagedError(f"cannot read {path}: it has no column {name}; {MEND}")
-    return numbers(table[name].chunks)
+    return numbers(table[name])
 
 
-def numbers(chunks: Sequence[Any]) -> FloatArray:
-    """Return the chunks of a column of 64-bit numbers as an array, shape (rows,), NaN for null.
+def numbers(column: Any) -> FloatArray:
+    """Return numbers in Arrow, in chunks or not, as an array of shape (rows,), NaN for null.
 
     The `to_numpy` of pyarrow would import pandas.
+
+    Raises:
+        DamagedError: if the column has no numbers.
     """
+    import pyarrow
+
+    try:
+        column = column if column.type == pyarrow.float64() else column.cast(pyarrow.float64())
+    except pyarrow.ArrowException as error:
+        raise DamagedError(f"a column of type {column.type} has no numbers; {MEND}") from error
     parts = [np.empty(0)]
-    for chunk in filter(len, chunks):
+    for chunk in filter(len, getattr(column, "chunks", [column])):
         rows = slice(chunk.offset, chunk.offset + len(chunk))
         present, values = chunk.buffers()
         parts.append(np.frombuffer(values)[rows])

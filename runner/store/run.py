@@ -182,7 +182,7 @@ class Run(Stored):
         """
         if column not in (known := self._table.column_names):
             raise RunnerError(f"run {self.hash} has no signal '{column}'{nearest(column, known)}")
-        return numbers(self._table[column].chunks)
+        return numbers(self._table[column])
 
     def joints(self, signal: str = "q") -> FloatArray:
         """Return a signal of each joint in the trace, shape (T, nq): the columns signal1, signal2 and so on."""

@@ -247,7 +247,7 @@ def _values_in(path: Path, row: int, metric: str) -> FloatArray:
 
 def _list_at(column: Any, row: int) -> FloatArray:
     """Return the numbers of a list in a column, NaN for none."""
-    return numbers([column[row].values])
+    return numbers(column[row].values)
 
 
 def metric_columns(runs: Sequence[tuple[tuple[tuple[str, str], ...], FloatArray]]) -> Iterator[tuple[Any, Any]]:

@@ -246,7 +246,7 @@ def _metrics(table: Any) -> Iterator[tuple[str, str, Cells, FloatArray]]:
             counts = values.value_lengths().to_numpy(zero_copy_only=False)
             members = np.flatnonzero(~np.isnan(counts.astype(float)))
             sizes = counts[members].astype(int)
-            flat = numbers([values.flatten()])
+            flat = numbers(values.flatten())
             rows = np.full((len(members), int(sizes.max(initial=0))), np.nan)
             rows[np.arange(rows.shape[1]) < sizes[:, None]] = np.where(np.isnan(flat), np.inf, flat)
             yield field.name.removeprefix(METRIC), (field.metadata or {}).get(b"unit", b"").decode(), members, rows

@@ -9,6 +9,7 @@ import pytest
 
 from runner.store import parquet
 from runner.store.parquet import float_column, list_column, numbers, text_column, truth_column, whole_column
+from runner.store.seal import DamagedError
 
 
 @pytest.mark.parametrize("texts", [[], ["", "ä 中", "a" * 100]])
@@ -37,8 +38,16 @@ def test_lists_lack_numbers_and_may_lack_themselves():
 @pytest.mark.parametrize("chunks", [[], [[]], [[0.5, None, -2.0]], [[1.0], [None, None], [], [3.0, 4.0]]])
 def test_numbers_of_a_column_are_those_of_pyarrow(chunks):
     column = pyarrow.chunked_array(chunks, pyarrow.float64())
-    np.testing.assert_array_equal(numbers(column.chunks), column.to_numpy())
-    np.testing.assert_array_equal(numbers(column[1:].chunks), column.to_numpy()[1:])
+    np.testing.assert_array_equal(numbers(column), column.to_numpy())
+    np.testing.assert_array_equal(numbers(column[1:]), column.to_numpy()[1:])
+
+
+def test_numbers_of_another_type_are_converted_and_texts_are_refused():
+    column = pyarrow.chunked_array([[1, None], [3]])
+    np.testing.assert_array_equal(numbers(column), [1.0, np.nan, 3.0])
+    np.testing.assert_array_equal(numbers(column.cast(pyarrow.float32())), [1.0, np.nan, 3.0])
+    with pytest.raises(DamagedError, match="a column of type string has no numbers"):
+        numbers(pyarrow.chunked_array([["a"]]))
 
 
 def test_texts_beyond_what_a_column_addresses_are_refused(monkeypatch):
