@@ -173,7 +173,7 @@ def _check_ends(tuning: Tuning, composed: Composed, part: UserPlugin, found: Fit
 _LAW = ("controller", "disturbance_observer")
 
 
-def setting(config: Mapping[str, Any]) -> dict[str, str]:
+def setting(config: Mapping[str, Any]) -> dict[str, Any]:
     """Return the settings of a run without its law and disturbance observer, but with the period of the law.
 
     Args:
@@ -181,15 +181,17 @@ def setting(config: Mapping[str, Any]) -> dict[str, str]:
     """
     part = simulated_part(config)
     period = {"controller.period": part["controller"].get("period")}
-    return dict(entries({key: value for key, value in part.items() if key not in _LAW} | period))
+    return {key: value for key, value in part.items() if key not in _LAW} | period
 
 
-def difference(one: tuple[str, Mapping[str, str]], other: tuple[str, Mapping[str, str]]) -> str:
+def difference(one: tuple[str, Mapping[str, Any]], other: tuple[str, Mapping[str, Any]]) -> str:
     """Return in which key the settings of two laws differ, each given with the law's name; empty where in none."""
-    (law, ours), (their_law, theirs) = one, other
-    if ours == theirs:
+    if one[1] == other[1]:
         return ""
-    key = next(key for key in dict.fromkeys([*ours, *theirs]) if ours.get(key) != theirs.get(key))
+    (law, ours), (their_law, theirs) = ((name, dict(entries(own))) for name, own in (one, other))
+    key = next((key for key in dict.fromkeys([*ours, *theirs]) if ours.get(key) != theirs.get(key)), None)
+    if key is None:
+        return ""
     return (
         f"{key} is {ours.get(key, 'none')} for {law} and {theirs.get(key, 'none')} for {their_law}; laws are compared "
         "where nothing but they and their gains differ"

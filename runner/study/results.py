@@ -55,6 +55,10 @@ class Results(dict[str, Thing]):
         self.missing = dict(missing or {})
         self.dropped = dict(dropped or {})
         self.parts = dict(parts or {})
+        self._named: dict[tuple[int, int, str], dict[str, None]] = {}
+        for name, own in self.parts.items():
+            for place, (_, text) in enumerate(own):
+                self._named.setdefault((len(own), place, text), {})[name] = None
         self.derived: dict[object, Any] = {}
         """Values that a study computes from all results, by the keys that it chooses."""
 
@@ -63,6 +67,13 @@ class Results(dict[str, Thing]):
         names = (parts for name, parts in self.parts.items() if name in self or name in self.missing)
         levels = (level for (_, first), *rest in names if first == word for key, level in rest if _is_axis(axis, key))
         return list(dict.fromkeys(levels))
+
+    def with_words(self, wanted: Parts) -> list[str]:
+        """Return the names that have the words of a pattern in their places, in the order of the plan."""
+        words = [(len(wanted), place, text) for place, (axis, text) in enumerate(wanted) if not axis]
+        named: list[Mapping[str, object]] = [self._named.get(word, {}) for word in words] or [self.parts]
+        rarest, *others = sorted(named, key=len)
+        return [name for name in rarest if all(name in other for other in others)]
 
     def __missing__(self, name: str) -> Thing:
         if name in self.missing:
@@ -128,7 +139,7 @@ def found(runs: Runs, pattern: str, by: Sequence[str] = ()) -> list[Found]:
             raise RunnerError(f"the pattern {pattern} has no axis '{axis}'{nearest(axis, axes)}")
     if not axes:
         return [Found(pattern, runs[pattern], {})]
-    alike = {name: own for name, parts in runs.parts.items() if (own := _levels(wanted, parts))}
+    alike = {name: own for name in runs.with_words(wanted) if (own := _levels(wanted, runs.parts[name]))}
     if not alike:
         raise RunnerError(_unlike(runs, pattern, wanted))
     chosen = {axis: text.split("|") for axis, text in wanted if axis and text}

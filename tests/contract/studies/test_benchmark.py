@@ -214,7 +214,7 @@ def test_it_is_not_made_with_all_studies():
     }
 
 
-@pytest.mark.costs(2)
+@pytest.mark.costs(4)
 def test_all_findings_hold_of_such_errors(made):
     document = made("benchmark").document
     told = [finding for _, finding in findings(document)]
