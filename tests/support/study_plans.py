@@ -146,3 +146,8 @@ def recorded_jobs(study: str) -> dict[str, Overrides]:
 def chapter_files(study: str) -> list[str]:
     """Return the files of a study's chapters."""
     return list(load_study(study).manifest.files())
+
+
+def chapters_made(study: str) -> list[str]:
+    """Return the files of the chapters that are made of the thin plan."""
+    return [file for file in chapter_files(study) if file not in FULL_ALONE]

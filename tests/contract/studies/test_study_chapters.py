@@ -5,7 +5,8 @@ from collections.abc import Callable, Mapping
 
 import pytest
 from fixtures.studies import Made
-from support.study_plans import FULL_ALONE, STUDIES, chapter_files
+from support.recorded_chapters import changes
+from support.study_plans import STUDIES, chapters_made
 from support.study_sections import every_run, every_third, unfinished_texts
 
 from runner.reporting import outline
@@ -15,7 +16,7 @@ from runner.store import Run
 from runner.study.check import never_failing
 from runner.study.study import load_study
 
-FILES = {study: [file for file in chapter_files(study) if file not in FULL_ALONE] for study in STUDIES}
+FILES = {study: chapters_made(study) for study in STUDIES}
 NEEDS = {"engines": pytest.mark.bullet}  # its chapters load arms into PyBullet
 CHAPTERS = [
     pytest.param(study, file, id=f"{study}/{file}", marks=NEEDS.get(study, ()))
@@ -49,6 +50,7 @@ def test_a_chapter_has_its_sections_and_each_condition_can_fail(
     section = chapters.section(file)
     assert section.blocks or section.sections
     assert faults(section) == []
+    assert changes(study, file, section) == []  # if meant: python -m support.recorded_chapters STUDY
     if file.endswith(".md"):
         text = (load_study(study).folder / file).read_text(encoding="utf-8")
         written = re.findall(r"^## (.*)$", text, re.MULTILINE)

@@ -1,0 +1,34 @@
+"""What counts as a change of a chapter."""
+
+import pytest
+from support.recorded_chapters import _agree, lines
+
+from runner.reporting.document import Section, Text
+
+
+@pytest.mark.parametrize(
+    ("was", "now", "same"),
+    [
+        ("text: at most 1.24 mm", "text: at most 1.25 mm", True),
+        ("text: at most 1.24 mm", "text: at most 1.27 mm", False),
+        ("text: at most 1.24 mm", "text: at most 1.24 µm", False),
+        ("text: less than 1.7·10⁻¹² N", "text: less than 3.9·10⁻¹³ N", True),
+        ("text: less than 1.7·10⁻⁵ N", "text: less than 3.9·10⁻⁵ N", False),
+        ("y: (3,) 0 1e-17 2", "y: (3,) 0 -3e-16 2", True),
+        ("holds: True", "holds: False", False),
+    ],
+)
+def test_lines_agree_in_words_and_but_for_rounding_in_numbers(was, now, same):
+    assert _agree(was, now) is same
+
+
+def test_each_value_is_a_line():
+    said = lines(Section("Lag", [Text("It lags.")]))
+    assert said[:5] == [
+        "section: Section",
+        "  title: Lag",
+        "  blocks:",
+        "    -: Text",
+        "      text: It lags.",
+        "  sections:",
+    ]
