@@ -9,11 +9,24 @@ import numpy as np
 from matplotlib.mathtext import MathTextParser
 
 from runner.reporting.charts import canvas
-from runner.studies.thesis.diagrams.block_diagram import _box, _route, _text_width, block_diagram
+from runner.studies.thesis.diagrams.block_diagram import (
+    ControlGraph,
+    _box,
+    _route,
+    _structures,
+    _text_width,
+    block_diagram,
+)
 
 # The same few strings are in all graphs; each is set once.
 MathTextParser._parse_cached = functools.cache(MathTextParser._parse_cached.__wrapped__)
 sys.modules["runner.studies.thesis.diagrams.block_diagram"]._text_width = functools.cache(_text_width)
+
+
+def joined(*names):
+    """Return the graph of some parts of control_structures.yaml."""
+    parts = [_structures().parts[name] for name in names]
+    return ControlGraph(*(tuple(each for part in parts for each in getattr(part, kind)) for kind in ("nodes", "edges")))
 
 
 def check_structure(graph):

@@ -1,7 +1,6 @@
 """Draws the pictures of the docs into docs/pictures: `python -m tools.docs.pictures`.
 
-The control structure is that of the controller's own graph, and the pairs are those of a sweep made here, so that the
-pictures show what the runner does.
+The pairs are those of a sweep made here, so that the pictures show what the runner does.
 """
 
 import tempfile
@@ -19,8 +18,7 @@ from runner.reporting.charts.sheet import column
 from runner.reporting.document import Playback
 from runner.reporting.export.motion import write_motion
 from runner.reporting.figures import overlaid
-from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram
-from runner.studies.thesis.diagrams.operational_space import operational_space_graph
+from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram, control_graph
 from tools.docs.friction_picture import friction
 from tools.docs.robot_pictures import robots
 
@@ -31,9 +29,9 @@ CONTROLLERS = ["computed_torque", "passivity"]
 def way_of_a_run() -> str:
     """Draw what a run goes through, from its config to a report."""
     names = ("YAML files,\ncommand line", "Checked\nconfig", "Closed loop", "Trace", "Metrics,\ncaveats", "Stored run")
-    nodes = [Node(name, "block", name, 2.2 * place, 0.0) for place, name in enumerate(names)]
+    nodes = [Node(name, "block", 2.2 * place, 0.0, name) for place, name in enumerate(names)]
     nodes += [
-        Node(name, "block", name, 13.4, row)
+        Node(name, "block", 13.4, row, name)
         for name, row in (("Report", -1.2), ("Table, figures", 0.0), ("Check, compare", 1.2))
     ]
     edges = [Edge(*pair) for pair in pairwise(names)]
@@ -48,14 +46,14 @@ def way_of_a_run() -> str:
 def closed_loop() -> str:
     """Draw the parts of a closed loop, each a group of the config."""
     nodes = (
-        Node("trajectory", "source", "Trajectory", 0.0, 0.0),
-        Node("controller", "block", "Controller", 2.2, 0.0),
-        Node("limits", "block", "Torque limits", 4.6, 0.0),
-        Node("plant", "block", "Plant", 6.8, 0.0),
-        Node("environment", "source", "Environment", 6.8, -1.4),
-        Node("encoders", "block", "Encoders", 6.8, 1.4),
-        Node("noise", "source", "Noise", 9.0, 1.4),
-        Node("mismatch", "source", "Mismatch", 2.2, -1.4),
+        Node("trajectory", "source", 0.0, 0.0, "Trajectory"),
+        Node("controller", "block", 2.2, 0.0, "Controller"),
+        Node("limits", "block", 4.6, 0.0, "Torque limits"),
+        Node("plant", "block", 6.8, 0.0, "Plant"),
+        Node("environment", "source", 6.8, -1.4, "Environment"),
+        Node("encoders", "block", 6.8, 1.4, "Encoders"),
+        Node("noise", "source", 9.0, 1.4, "Noise"),
+        Node("mismatch", "source", 2.2, -1.4, "Mismatch"),
     )
     edges = (
         Edge("trajectory", "controller", "$x_d$"),
@@ -116,7 +114,7 @@ def pairs() -> Figure:
 
 def operational_space() -> str:
     """Draw the control structure of `controller=operational_space`."""
-    return block_diagram(operational_space_graph(True, True, True, False))
+    return block_diagram(control_graph("operational space"))
 
 
 def motion(path: Path) -> None:

@@ -11,11 +11,11 @@ from runner.reporting.document import Picture, Table
 from runner.reporting.figures import AXES, origin
 from runner.reporting.published_claims import load_claims
 from runner.reporting.table import numbers
+from runner.reporting.words import PRESET
 from runner.store import Run
 from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
-from runner.studies.thesis.diagrams.block_diagram import block_diagram
+from runner.studies.thesis.diagrams.block_diagram import block_diagram, control_graph, describe
 from runner.studies.thesis.diagrams.frames import frame_assignment
-from runner.studies.thesis.diagrams.operational_space import operational_space_graph
 from runner.studies.thesis.equations.derivations.thesis_printed import compare
 from runner.study.measured import Measured
 from runner.study.prose.signals import norm, vector
@@ -76,14 +76,9 @@ def printed_matrices(runs: Runs, run: str, caption: str, mini: bool, samples: in
     return Table(caption, ["symbol", "quantity", *numbers("largest difference")], rows, origin(runs[run]), prose=True)
 
 
-def law(runs: Runs, run: str, caption: str, number: str) -> Picture:
-    """Return the block diagram of the law of one arm that a run executed."""
-    controller, limited = runs[run].config["controller"], runs[run].config["torque_limits"]["max"] is not None
-    goal = runs[run].config["trajectory"]["kind"] == "goal"
-    graph = operational_space_graph(controller["gravity_compensation"], controller["feedforward"], limited, goal)
-    to, limit = "a goal at rest" if goal else "a moving target", "with" if limited else "without"
-    words = f"Block diagram of one arm's loop: {to}, operational-space controller, arm {limit} torque limits, encoders"
-    return Picture(caption, block_diagram(graph), words, 0.68, origin(runs[run], number))
+def control_structure(runs: Runs, run: str, caption: str, number: str, width: float = 0.68) -> Picture:
+    """Return the block diagram of a figure of the thesis; see control_structures.yaml."""
+    return Picture(caption, block_diagram(control_graph(number)), describe(number), width, origin(runs[run], number))
 
 
 def printed(claim: int, end: int, words: str) -> Measured:
@@ -129,6 +124,25 @@ def lost_from(run: Run) -> float | None:
     beyond = way_left(run) > run.config["controller"]["reach"]
     inside = np.flatnonzero(~beyond)
     return float(run.t[inside[-1] + 1 if len(inside) else 0]) if beyond[-1] else None
+
+
+def singular_value(run: Run) -> FloatArray:
+    """Return the smallest singular value of the Mini's columns of the whole arm's Jacobian, shape (T,), in m."""
+    positions = run.joints("q")
+    values, finite = np.full(len(positions), np.nan), np.isfinite(positions).all(axis=1)
+    jacobians = [run.model.tip_jacobian(q)[:3, 3:] for q in positions[finite]]
+    values[finite] = np.linalg.svd(np.reshape(jacobians, (-1, 3, 3)), compute_uv=False)[:, -1]
+    return values
+
+
+def folded(run: Run) -> float:
+    """Return the largest such value over the last half second, in m."""
+    return float(singular_value(run)[run.t >= run.t[-1] - 0.5].max())
+
+
+def spreads(runs: Runs, title: str, name: str, *metrics: str) -> list[str]:
+    """Return the metrics of an experiment under each preset behind its title, as a row of a table."""
+    return [title, *(runs[f"{name}/{preset}"].metrics[metric].text for preset in PRESET for metric in metrics)]
 
 
 def mass_of(runs: Runs, name: str, words: str = "mass of the Mini") -> Measured:

@@ -7,20 +7,10 @@ not.
 import numpy as np
 import pinocchio as pin
 
-from runner.base.arrays import FloatArray
 from runner.store import Run
 from runner.study.prose.signals import difference, norm, of_joints
 
 _PARTED = 1.0  # rad
-
-
-def singular_value(run: Run) -> FloatArray:
-    """Return the smallest singular value of the Mini's columns of the whole arm's Jacobian, shape (T,), in m."""
-    positions = run.joints("q")
-    values, finite = np.full(len(positions), np.nan), np.isfinite(positions).all(axis=1)
-    jacobians = [run.model.tip_jacobian(q)[:3, 3:] for q in positions[finite]]
-    values[finite] = np.linalg.svd(np.reshape(jacobians, (-1, 3, 3)), compute_uv=False)[:, -1]
-    return values
 
 
 def sag(run: Run) -> float:

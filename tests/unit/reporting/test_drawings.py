@@ -13,9 +13,8 @@ from runner.reporting.charts.canvas import Camera, circle
 from runner.robots.model import RobotModel
 from runner.robots.workspace import analyse
 from runner.studies.thesis.base_axis import distance_between
-from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram
+from runner.studies.thesis.diagrams.block_diagram import ControlGraph, Edge, Node, block_diagram, control_graph
 from runner.studies.thesis.diagrams.frames import frame_assignment
-from runner.studies.thesis.diagrams.operational_space import operational_space_graph
 from runner.studies.thesis.diagrams.workspace import _best_samples, workspace_sphere
 
 START, GOAL = np.array([0.0, 1.0, 1.0]), np.array([0.1679, -0.7571, 0.4255])
@@ -38,7 +37,7 @@ def makers(macro, line):
     return {
         "frames": lambda: frame_assignment(macro),
         "workspace": lambda: workspace_sphere(workspace),
-        "diagram": lambda: block_diagram(operational_space_graph(True, True, True, False)),
+        "diagram": lambda: block_diagram(control_graph("operational space")),
         "arm": lambda: arm_motion(macro, q, [0, 1, 2, 3], line, line, GOAL),
     }
 
@@ -109,7 +108,7 @@ def test_best_samples_are_the_best_of_their_cells(macro):
 
 
 def test_any_graph_can_be_drawn():
-    nodes = (Node("a", "source", "$r$", 0, 0), Node("s", "sum", "", 1, 0), Node("b", "block", "Plant\nwith name", 3, 1))
+    nodes = (Node("a", "source", 0, 0, "$r$"), Node("s", "sum", 1, 0), Node("b", "block", 3, 1, "Plant\nwith name"))
     edges = (
         Edge("a", "s", "$r$", "+"),
         Edge("s", "b", "$e$"),

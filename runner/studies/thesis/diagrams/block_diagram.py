@@ -1,17 +1,20 @@
-"""Control structures as directed graphs, and their block diagrams (thesis figures 3.4 and 3.7)."""
+"""Control structures as directed graphs, and their block diagrams (thesis figures 3.4, 3.7, 5.2, 5.4 to 5.7, 5.9)."""
 
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
-from matplotlib.patches import Circle, FancyBboxPatch
+from matplotlib.patches import Circle, FancyBboxPatch, Polygon
 from matplotlib.textpath import TextPath
 
 from runner.base.arrays import FloatArray
+from runner.base.data_file import read_data
 from runner.reporting.charts import palette
 from runner.reporting.charts.canvas import INK, arrow, drawing, scene, write
 
@@ -20,7 +23,7 @@ Side = Literal["left", "right", "top", "bottom"]
 
 @dataclass(frozen=True)
 class Node:
-    """A block, a summing point, or a signal from outside the loop.
+    """A block, a question with several answers, a summing point, or a signal from outside the loop.
 
     Attributes:
         name: Name of the node in the graph.
@@ -29,14 +32,16 @@ class Node:
         column: Position along the signal path, left to right.
         row: Position across the signal path, top to bottom; the main path has row 0.
         rows: Number of rows that the node spans, centred on `row`.
+        size: Least width and height, in inches.
     """
 
     name: str
-    kind: Literal["block", "sum", "source"]
-    label: str
+    kind: Literal["block", "decision", "sum", "source"]
     column: float
     row: float
+    label: str = ""
     rows: int = 1
+    size: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -50,7 +55,8 @@ class Edge:
         sign: Sign at a summing point.
         leave: Side on which the edge leaves.
         enter: Side on which the edge enters.
-        lane: Row along which the edge runs if it leaves and enters by top or bottom; None for a direct path.
+        lane: Row along which the edge runs if it leaves and enters by top or bottom, or column if it does by left or
+            right; None for a direct path.
     """
 
     source: str
@@ -71,8 +77,45 @@ class ControlGraph:
         edges: Signals between the nodes.
     """
 
-    nodes: tuple[Node, ...]
-    edges: tuple[Edge, ...]
+    nodes: tuple[Node, ...] = ()
+    edges: tuple[Edge, ...] = ()
+
+
+@dataclass(frozen=True)
+class Diagram:
+    """A diagram of the thesis.
+
+    Attributes:
+        words: Description of the picture.
+        parts: Names of the parts that make up its graph.
+    """
+
+    words: str
+    parts: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Structures:
+    """Content of control_structures.yaml: diagrams by figure, and parts by name."""
+
+    diagrams: dict[str, Diagram]
+    parts: dict[str, ControlGraph]
+
+
+@cache
+def _structures() -> _Structures:
+    return read_data(Path(__file__).with_name("control_structures.yaml"), _Structures)
+
+
+def describe(figure: str) -> str:
+    """Return the description of a diagram, by its figure."""
+    return _structures().diagrams[figure].words
+
+
+def control_graph(figure: str) -> ControlGraph:
+    """Return the control structure of a figure of the thesis, such as "figure 5.4"."""
+    parts = [_structures().parts[name] for name in _structures().diagrams[figure].parts]
+    return ControlGraph(*(tuple(each for part in parts for each in getattr(part, kind)) for kind in ("nodes", "edges")))
 
 
 # Measures in inches, at the size on paper.
@@ -99,11 +142,12 @@ class _Box:
 def block_diagram(graph: ControlGraph) -> Figure:
     """Draw a control structure: blocks, summing points with signs, and signals along rows and columns."""
     boxes = {node.name: _box(node) for node in graph.nodes}
-    corners = np.array([box.centre + sign * box.half for box in boxes.values() for sign in (-1.0, 1.0)])
-    low, high = corners.min(axis=0) - 0.15, corners.max(axis=0) + 0.15
+    routes = {edge: _route(edge, boxes) for edge in graph.edges}
+    corners = [box.centre + sign * box.half for box in boxes.values() for sign in (-1.0, 1.0)]
+    drawn = np.vstack([*corners, *routes.values()])
+    low, high = drawn.min(axis=0) - 0.15, drawn.max(axis=0) + 0.15
     figure, axes = scene(*(high - low))
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
-    routes = {edge: _route(edge, boxes) for edge in graph.edges}
     for edge, route in routes.items():
         for start, end in pairwise(route[:-1]):
             axes.plot(*np.column_stack([start, end]), color=INK, lw=0.9, solid_capstyle="round", zorder=1)
@@ -123,7 +167,7 @@ def _box(node: Node) -> _Box:
     lines = node.label.split("\n")
     width = max(_text_width(line) for line in lines)
     height = 0.3 + 0.15 * (len(lines) - 1) + (node.rows - 1) * _ROW
-    return _Box(centre, np.array([max(width / 2.0 + _PADDING, 0.17), height / 2.0]))
+    return _Box(centre, np.maximum([max(width / 2.0 + _PADDING, 0.17), height / 2.0], np.array(node.size) / 2.0))
 
 
 def _text_width(text: str) -> float:
@@ -137,8 +181,9 @@ def _route(edge: Edge, boxes: dict[str, _Box]) -> FloatArray:
     start, end = source.side(edge.leave), target.side(edge.enter)
     across = edge.leave in ("left", "right")
     if edge.lane is not None:
-        lane = -edge.lane * _ROW
-        return np.array([start, [start[0], lane], [end[0], lane], end])
+        lane = edge.lane * _COLUMN if across else -edge.lane * _ROW
+        bends = [[lane, start[1]], [lane, end[1]]] if across else [[start[0], lane], [end[0], lane]]
+        return np.array([start, *bends, end])
     if across == (edge.enter in ("left", "right")):
         if across and abs(end[1] - source.centre[1]) < source.half[1]:
             start = np.array([start[0], end[1]])  # a tall block sends each signal out at its target's height
@@ -168,6 +213,9 @@ def _write_label(axes: Axes, edge: Edge, route: FloatArray) -> None:
         return
     start, end = max(pairwise(route), key=lambda pair: abs(float(pair[1][0] - pair[0][0])))
     length = abs(end[0] - start[0])
+    if length == 0.0:
+        write(axes, (start + end) / 2.0 + [0.17, 0.02], edge.label, _FONT, halo=False)
+        return
     room = length if len(route) == 2 else min(length, 2.0)  # a long way has its label near its source
     if edge.sign and edge.enter == "left" and len(route) == 2:
         room = min(room - 0.18, 0.8)  # leave the sign its place
@@ -179,11 +227,14 @@ def _draw_node(axes: Axes, node: Node, box: _Box) -> None:
     if node.kind == "sum":
         axes.add_patch(Circle((box.centre[0], box.centre[1]), _RADIUS, fc="white", ec=INK, lw=0.9, zorder=3))
         return
-    source = node.kind == "source"
-    style = f"round,pad=0,rounding_size={0.1 if source else 0.02}"
+    style = f"round,pad=0,rounding_size={0.1 if node.kind == 'source' else 0.02}"
     low, size = box.centre - box.half, 2.0 * box.half
-    color, edge = ("#fbf3e2", palette.LIGHT[3]) if source else ("#eef3fa", palette.LIGHT[0])
-    axes.add_patch(
-        FancyBboxPatch((low[0], low[1]), size[0], size[1], boxstyle=style, fc=color, ec=edge, lw=0.9, zorder=3)
-    )
+    color, edge = ("#eef3fa", palette.LIGHT[0]) if node.kind == "block" else ("#fbf3e2", palette.LIGHT[3])
+    if node.kind == "decision":
+        outline = [box.side(side) for side in ("left", "top", "right", "bottom")]
+        axes.add_patch(Polygon(outline, fc=color, ec=edge, lw=0.9, zorder=3))
+    else:
+        axes.add_patch(
+            FancyBboxPatch((low[0], low[1]), size[0], size[1], boxstyle=style, fc=color, ec=edge, lw=0.9, zorder=3)
+        )
     write(axes, box.centre, node.label, _FONT, halo=False)
