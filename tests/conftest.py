@@ -23,6 +23,7 @@ _FIXTURES = [
     "installed",
     "own_parts",
     "processes",
+    "recorded",
     "robots",
     "runs",
     "stored",

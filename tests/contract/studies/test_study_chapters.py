@@ -5,10 +5,10 @@ from collections.abc import Callable, Mapping
 
 import pytest
 from fixtures.studies import Made
-from support.recorded_chapters import changes
 from support.study_plans import STUDIES, chapters_made
 from support.study_sections import every_run, every_third, unfinished_texts
 
+from runner.base.engines import has_pybullet
 from runner.reporting import outline
 from runner.reporting.document import Document, Section
 from runner.reporting.formulas import faulty
@@ -44,13 +44,14 @@ SPOILS = [pytest.param(name, marks=() if name in ("all", "third 0") else pytest.
 @pytest.mark.costs(3)
 @pytest.mark.parametrize(("study", "file"), CHAPTERS)
 def test_a_chapter_has_its_sections_and_each_condition_can_fail(
-    made: Callable[[str], Made], study: str, file: str
+    made: Callable[[str], Made], as_recorded: Callable[[str, str, Section], None], study: str, file: str
 ) -> None:
     chapters = made(study).chapters
     section = chapters.section(file)
     assert section.blocks or section.sections
     assert faults(section) == []
-    assert changes(study, file, section) == []  # if meant: python -m support.recorded_chapters STUDY
+    if has_pybullet() or study != "meca500":  # whose runs are made here
+        as_recorded(study, file, section)
     if file.endswith(".md"):
         text = (load_study(study).folder / file).read_text(encoding="utf-8")
         written = re.findall(r"^## (.*)$", text, re.MULTILINE)

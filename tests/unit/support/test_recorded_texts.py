@@ -1,7 +1,7 @@
 """What counts as a change of a chapter."""
 
 import pytest
-from support.recorded_chapters import _agree, lines
+from support.recorded_texts import _agree, lines
 
 from runner.reporting.document import Section, Text
 
@@ -24,4 +24,4 @@ def test_lines_agree_in_words_and_but_for_rounding_in_numbers(was, now, same):
 
 def test_each_value_is_a_line():
     said = lines(Section("Lag", [Text("It lags.")]))
-    assert said[:5] == ["section: Section", "  title: Lag", "  blocks:", "    -: Text", "      text: It lags."]
+    assert said[:5] == ["is: Section", "  title: Lag", "  blocks:", "    -: Text", "      text: It lags."]

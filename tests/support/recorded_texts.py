@@ -1,0 +1,96 @@
+"""What chapters, reports and drawings say, line by line, as it is kept in tests/recorded.
+
+A line is a field with its value: of an array its shape and some of its values, of a drawing its paths.
+"""
+
+import lzma
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from difflib import ndiff
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+_NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
+_POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_SAME, _ZERO = 0.011, 1e-8  # one in the last of three digits, and what rounding leaves
+_HEAD = "=== "
+
+
+def read(file: Path) -> dict[str, list[str]]:
+    """Return the lines of a file by the names of what they describe."""
+    parts = (part.split("\n") for part in lzma.decompress(file.read_bytes()).decode().split(_HEAD)[1:])
+    return {name: rest[:-1] for name, *rest in parts}
+
+
+def write(file: Path, kept: Mapping[str, Sequence[str]]) -> None:
+    """Keep lines by names in a file."""
+    text = "".join("".join(f"{line}\n" for line in (_HEAD + name, *kept[name])) for name in sorted(kept))
+    file.write_bytes(lzma.compress(text.encode(), preset=9 | lzma.PRESET_EXTREME))
+
+
+def changes(was: Sequence[str], now: Sequence[str]) -> list[str]:
+    """Return how lines differ from what they were, as lines that begin with - or +."""
+    if all(_agree(*each) for each in zip_longest(was, now, fillvalue="")):
+        return []
+    return [line for line in ndiff(was, now) if line[0] in "-+"]
+
+
+def lines(what: Any) -> list[str]:
+    """Return the content of a section, a document or a drawing."""
+    return [*_lines("is", what, 0)]
+
+
+def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
+    head, below = f"{'  ' * depth}{name}:", depth + 1
+    match value:
+        case str() if value.lstrip().startswith("<"):
+            yield from (f"{head} {path}" for path in _paths(value))
+        case float() | np.floating():
+            yield f"{head} {value:.4g}"
+        case np.ndarray():
+            yield f"{head} {value.shape} {_some(value.ravel().astype(float))}"
+        case Mapping():
+            yield head
+            for key, each in value.items():
+                yield from _lines(str(key), each, below)
+        case Sequence() if not isinstance(value, str):
+            yield head
+            for each in value:
+                yield from _lines("-", each, below)
+        case _ if is_dataclass(value):
+            yield f"{head} {type(value).__name__}"
+            for field in fields(value):
+                yield from _lines(field.name, getattr(value, field.name), below)
+        case _:
+            yield f"{head} {value}".replace("\n", " ")
+
+
+def _paths(svg: str) -> Iterator[str]:
+    """Yield style and places of each path of a drawing that is no letter."""
+    root = ET.fromstring(svg)
+    letters = {path for definitions in root.iter("{*}defs") for path in definitions.iter()}
+    for path in root.iter("{*}path"):
+        if path not in letters:
+            numbers = np.array([float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", path.get("d", ""))])
+            yield f"{path.get('style', '')} {numbers.size} {_some(np.round(numbers))}"
+
+
+def _some(values: np.ndarray[Any, Any]) -> str:
+    some = values if values.size <= 8 else [*values[:: max(1, values.size // 8)], values.min(), values.max()]
+    return " ".join(f"{each:.4g}" for each in some)
+
+
+def _agree(was: str, now: str) -> bool:
+    """Return whether two lines have the same words, and numbers that differ by no more than rounding."""
+    if was == now:
+        return True
+    ours, theirs = (line.replace("·10", "e").translate(_POWERS) for line in (was, now))
+    if _NUMBER.sub("", ours) != _NUMBER.sub("", theirs):
+        return False
+    numbers = ([float(number) for number in _NUMBER.findall(line)] for line in (ours, theirs))
+    return bool(np.allclose(*numbers, rtol=_SAME, atol=_ZERO))
