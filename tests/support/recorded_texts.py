@@ -15,10 +15,13 @@ from typing import Any
 
 import numpy as np
 
+from runner.reporting.document import Provenance
+
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _SAME, _ZERO = 0.011, 1e-8  # one in the last of three digits, and what rounding leaves
 _HEAD = "=== "
+_OF_TODAY = ("date", "commit")
 
 
 def read(file: Path) -> dict[str, list[str]]:
@@ -62,9 +65,11 @@ def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
             yield head
             for each in value:
                 yield from _lines("-", each, below)
+        case Provenance():  # versions, the machine and its clock
+            return
         case _ if is_dataclass(value):
             yield f"{head} {type(value).__name__}"
-            for field in fields(value):
+            for field in (each for each in fields(value) if each.name not in _OF_TODAY):
                 yield from _lines(field.name, getattr(value, field.name), below)
         case _:
             yield f"{head} {value}".replace("\n", " ")

@@ -289,7 +289,9 @@ def _draw_series(axes: Axes, series: Series, index: int, sheet: Sheet, several: 
     marked = sheet.marked and several
     mark = COLOR_MARKS[index % len(COLOR_MARKS)] if marked else _MARKS[min(palette.rounds(index), len(_MARKS) - 1)]
     pointed = series.style in ("points", "points_line")
-    marker = mark if pointed or (marked and series.name and np.isfinite(series.y).all()) else ""
+    places = axes.transScale.transform(np.column_stack([series.x, series.y]))  # NaN without a logarithm
+    whole = np.isfinite(series.y).all() and np.isfinite(places).all(axis=1).any()
+    marker = mark if pointed or (marked and series.name and whole) else ""
     # Marks of curves that are close to each other have different places.
     every = None if pointed else ((index % 8 + 1) / (8 * _MARKED), 1 / _MARKED)
     # Broken lines are in front of others, so that neither hides the other.

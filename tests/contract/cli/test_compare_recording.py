@@ -51,6 +51,11 @@ def test_the_offset_is_found_within_a_sample_and_the_friction_within_five_percen
     assert [joint.coulomb for joint in found.friction.joints] == pytest.approx(COULOMB, rel=0.05)
 
 
+@pytest.mark.bullet
+def test_the_report_is_as_recorded(found, as_recorded):
+    as_recorded("reports", "recording", recording_document(found))
+
+
 def test_the_report_is_whole(found):
     assert faulty(recording_document(found)) == []
 

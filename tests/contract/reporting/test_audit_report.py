@@ -33,6 +33,11 @@ def tables(document, kind):
 
 
 @pytest.mark.costs(5)
+def test_the_report_is_as_recorded(document, as_recorded):
+    as_recorded("reports", "audit", document)
+
+
+@pytest.mark.costs(5)
 def test_each_source_has_one_table_with_a_row_for_each_equation(document, checked):
     found = tables(document, Equations)
     assert [len(table.rows) for table in found] == [len(each) for each in checked.values()]

@@ -37,6 +37,10 @@ def _document():
     return comparison_document(pair(noise={"position": 1e-4}))
 
 
+def test_the_report_is_as_recorded(document, as_recorded):
+    as_recorded("reports", "compared", document)
+
+
 def test_the_first_screen_says_what_differs_how_many_cells_match_and_by_how_much(document):
     assert document.title == "2 sweeps compared"
     assert document.abstract.startswith("A and B differ only in noise.position: 0.001 against 0.0001.")

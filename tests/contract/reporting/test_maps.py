@@ -11,6 +11,7 @@ from support.sample_document import HOSTILE, maps
 from runner.reporting.charts import static
 from runner.reporting.charts.interactive import plotly_spec
 from runner.reporting.charts.scales import maps_in_readable_units, scale_marks, value_range
+from runner.reporting.charts.sheet import column
 from runner.reporting.document import Map, Maps
 
 
@@ -20,6 +21,21 @@ def one_map(values, log=False, **changes):
     panel = Map(**({"title": "", "x_label": "x", "y_label": "y", "x_names": names[1], "y_names": names[0],
                     "values": values, "failed": np.zeros(values.shape, dtype=bool)} | changes))  # fmt: skip
     return Maps("", "error (m)", [panel], log)
+
+
+WAVES = np.sin(np.add.outer(np.arange(6.0), np.arange(5.0)))
+MAPS = {
+    "maps": maps(),
+    "contours": one_map(WAVES, lines=[]),
+    "logarithm": one_map(np.exp(WAVES), True, failed=WAVES > 0.95),
+}
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_a_drawing_is_as_recorded(name, as_recorded):
+    as_recorded("drawings", name, static.draw(MAPS[name]))
+    as_recorded("drawings", f"{name} on a narrow column", static.draw(MAPS[name], column(80)))
+    as_recorded("drawings", f"{name} in HTML", plotly_spec(MAPS[name]))
 
 
 @pytest.mark.parametrize("text", HOSTILE)

@@ -34,6 +34,15 @@ def blocks_of(document, kind):
     return [block for block in outline.blocks(document) if isinstance(block, kind)]
 
 
+@pytest.mark.parametrize("name", ["failed", "stages", "flexible", "rk4"])
+def test_the_report_is_as_recorded(runs, name, as_recorded):
+    as_recorded("reports", name, run_document(runs[name]))
+
+
+def test_the_report_on_two_runs_is_as_recorded(runs, as_recorded):
+    as_recorded("reports", "two engines", runs_document([runs["rk4"], runs["mujoco"]]))
+
+
 def test_a_finished_run_is_told_whole(finished):
     document = run_document(finished)
     assert document.title.startswith("Macro, operational space, quintic, ")

@@ -1,6 +1,7 @@
 """Figures of curves as SVG: any string, odd values, legends."""
 
 import json
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import numpy as np
@@ -9,7 +10,21 @@ from support.sample_document import HOSTILE, curves
 
 from runner.reporting.charts import static
 from runner.reporting.charts.interactive import plotly_spec
+from runner.reporting.charts.sheet import REPORT, column
 from runner.reporting.document import Curves, Panel, Series
+
+CURVES = {
+    "curves": curves(),
+    "in rows": Curves("", curves().panels * 3, columns=2),
+    "logarithmic": Curves("", [replace(curves().panels[0], x_log=True, y_log=True)]),
+}
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_a_drawing_is_as_recorded(name, as_recorded):
+    as_recorded("drawings", name, static.draw(CURVES[name]))
+    as_recorded("drawings", f"{name} on a narrow column", static.draw(CURVES[name], column(80)))
+    as_recorded("drawings", f"{name} in HTML", plotly_spec(CURVES[name]))
 
 
 @pytest.mark.parametrize("text", HOSTILE)
@@ -47,8 +62,10 @@ def test_legend_entries_read_along_the_rows():
 def test_odd_values_are_no_error(values, log):
     x = np.arange(float(values.size))
     series = Series("a", x, values, low=values - 1, high=values + 1)
-    odd = Curves("", [Panel("", "", "", [series], x_log=log, y_log=log, x_range=(1.0, 1.0))])
-    ElementTree.fromstring(static.draw(odd))
+    other = Series("b", x, values)
+    odd = Curves("", [Panel("", "", "", [series, other], x_log=log, y_log=log, x_range=(1.0, 1.0))])
+    for sheet in (REPORT, column(80)):
+        ElementTree.fromstring(static.draw(odd, sheet))
     json.dumps(plotly_spec(odd), allow_nan=False)
 
 

@@ -58,6 +58,11 @@ def test_the_report_has_all_its_parts(document):
     assert faulty(document) == []
 
 
+@pytest.mark.bullet
+def test_the_report_is_as_recorded(document, as_recorded):
+    as_recorded("reports", "sweep", document)
+
+
 def test_the_line_of_theory_parts_the_failed_cells_from_the_others(document):
     cells = blocks_of(document, Maps)[0].panels[0]
     (line,) = cells.lines

@@ -169,6 +169,12 @@ def test_a_tuning_in_which_all_failed_has_a_report(tuning):
     assert titles(document(lost)) == ["What was tuned", "Failed trials", "Caveats", "All runs", "Provenance"]
 
 
+@pytest.mark.bullet
+def test_the_report_is_as_recorded(tuning, as_recorded):
+    as_recorded("reports", "tuning", document(tuning))
+    as_recorded("reports", "tuning with failures", document(with_failures(tuning)))
+
+
 def test_a_run_that_is_gone_is_told(tuning, monkeypatch):
     gone = replace(tuning, trials=[*tuning.trials, replace(tuning.trials[0], run="0" * 24)])
     with pytest.raises(StoreError, match=r"1 of 23 cells of .* are not stored; continue with: runner tune "):
