@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 # A .venv that is there may have any version, unless PYTHON asks for one.
 ANY_VERSION := $(if $(filter file,$(origin PYTHON)),--any-version)
 
-.PHONY: install reproduce test test-pages test-study test-slow test-busy test-lowest test-wheel mutants coverage-map lint types docs
+.PHONY: install reproduce test test-pages test-study test-slow test-busy record test-lowest test-wheel mutants coverage-map lint types docs
 .PHONY: pins release-notes bench checks clean
 
 install:
@@ -28,6 +28,10 @@ test-study: install
 
 test-slow: install
 	$(BIN)/python -m pytest -m slow
+
+# What chapters, reports and drawings say, kept anew in tests/recorded where it has changed.
+record: install
+	$(BIN)/python -m pytest -n0 --record tests/contract -k "recorded or each_condition_can_fail"
 
 # The tests in random order beside four busy loops, with a home folder that is empty and read-only.
 test-busy: install
