@@ -2,7 +2,7 @@
 
 import shlex
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from inspect import signature
 from pathlib import Path
 from typing import Any
@@ -101,12 +101,13 @@ class Chapters:
             "compare": partial(compare, self.runs, presets, self._published()),
         }
         for module in SHARED:
-            found |= _filled(public_functions(module), {"runs": self._stored()})
+            found |= _filled(public_functions(module), {"runs": self._stored})
         own = {"runs": self.runs, "calibrations": self.calibrations}
         for name in (_FIGURES, stem):
             found |= _filled(self.study.code.functions(name), own)
         return found
 
+    @cached_property
     def _stored(self) -> Results[Run | Calibration]:
         """Return runs and calibrations in one."""
         runs, calibrations = self.runs, self.calibrations

@@ -55,6 +55,7 @@ class Results(dict[str, Thing]):
         self.missing = dict(missing or {})
         self.dropped = dict(dropped or {})
         self.parts = dict(parts or {})
+        self._levels: dict[tuple[str, str], list[str]] = {}
         self._named: dict[tuple[int, int, str], dict[str, None]] = {}
         for name, own in self.parts.items():
             for place, (_, text) in enumerate(own):
@@ -64,9 +65,11 @@ class Results(dict[str, Thing]):
 
     def levels(self, word: str, axis: str) -> list[str]:
         """Return the levels of an axis in the names that begin with a word, of what was asked for."""
-        names = (parts for name, parts in self.parts.items() if name in self or name in self.missing)
-        levels = (level for (_, first), *rest in names if first == word for key, level in rest if _is_axis(axis, key))
-        return list(dict.fromkeys(levels))
+        if (word, axis) not in self._levels:
+            names = (parts for name, parts in self.parts.items() if name in self or name in self.missing)
+            own = (level for (_, first), *rest in names if first == word for key, level in rest if _is_axis(axis, key))
+            self._levels[word, axis] = list(dict.fromkeys(own))
+        return self._levels[word, axis]
 
     def with_words(self, wanted: Parts) -> list[str]:
         """Return the names that have the words of a pattern in their places, in the order of the plan."""

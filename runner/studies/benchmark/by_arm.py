@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from runner.reporting.document import Section, Table, Text
+from runner.reporting.document import Section, Table
 from runner.reporting.table import numbers
 from runner.reporting.words import in_words
 from runner.studies.benchmark.cells import UNTUNED
@@ -13,18 +13,9 @@ from runner.study.results import Runs
 _WIDE = 6  # conditions in one table
 
 
-def section(runs: Runs) -> Section:
-    """Return the chapter."""
-    text = (
-        "A law is ahead of another if its error is smaller by more than 2 % on the same seeds, with whichever tuning "
-        "of the two, by tests corrected for all comparisons on the arm and question (Holm); intervals have the level "
-        "of their test. If nothing is drawn, no interval exists: a law is then ahead if it is so along every path. "
-        "Laws of one group are tied: the first group holds those that no law is shown to be ahead of, and a law of "
-        "another one is behind a law of the group before it. Errors are root mean squares of the tip's distance from "
-        "where it should be, of the median seed, and the geometric mean over paths and tunings. A repetition that "
-        "failed counts as an error beyond every number; the table lists their fraction with it."
-    )
-    return Section("Arm by arm", (Text(text),), [_arm(runs, arm) for arm in arms_of(runs)])
+def arms(runs: Runs) -> list[Section]:
+    """Return a section for each arm."""
+    return [_arm(runs, arm) for arm in arms_of(runs)]
 
 
 def _arm(runs: Runs, arm: str) -> Section:

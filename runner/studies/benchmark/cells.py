@@ -37,13 +37,13 @@ class Entry:
         mean: FloatArray = np.log(self.errors).mean(axis=1)
         return mean
 
-    @property
+    @cached_property
     def by_tuning(self) -> FloatArray:
         """The error in the median repetition, in m, of each tuning: the geometric mean over the paths."""
         medians: FloatArray = np.exp(np.median(self.by_seed, axis=1))
         return medians
 
-    @property
+    @cached_property
     def score(self) -> float:
         """The geometric mean of `by_tuning`, in m."""
         return float(np.exp(np.log(self.by_tuning).mean()))

@@ -1,6 +1,6 @@
 """Tables, maps and numbers of the benchmark over arms, controllers and conditions."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -13,8 +13,18 @@ from runner.reporting.table import numbers
 from runner.reporting.words import in_words
 from runner.store import Run
 from runner.studies.benchmark.cells import ROUND, UNTUNED, Cell, Entry, Lead, tuned
-from runner.studies.benchmark.made import ARMS, CONDITIONS, all_cells, arms_of, laws_of, one_cell, turned
+from runner.studies.benchmark.made import (
+    ARMS,
+    CONDITIONS,
+    QUESTIONS,
+    all_cells,
+    arms_of,
+    laws_of,
+    one_cell,
+    turned,
+)
 from runner.study.measured import Measured
+from runner.study.prose.signals import Quantity
 from runner.study.results import Runs, found
 
 _IN_A_TABLE = 4  # arms
@@ -42,16 +52,13 @@ def best_laws(runs: Runs, question: str, caption: str) -> list[Table]:
 
 def behind_the_best(runs: Runs, question: str, caption: str) -> Maps:
     """Return the error of every law over the smallest one as maps, an arm each; runs that failed are marked."""
-    panels = []
-    for arm in arms_of(runs):
-        made, laws = all_cells(runs, arm, question), laws_of(runs, arm)[::-1]
-        ratios = np.array([[ratio(cell.entry(law), cell.best) for cell in made.values()] for law in laws], dtype=float)
-        failed = np.array([[cell.entry(law).failed > 0.0 for cell in made.values()] for law in laws])
-        hints = [f"{number(float(each))} times the smallest error" for each in ratios.flat]
-        values = np.where(np.isfinite(ratios), ratios, np.nan)
-        names = [CONDITIONS[name] for name in made]
-        panels.append(Map(ARMS[arm], "", "", names, list(map(in_words, laws)), values, failed, hints=hints))
-    return Maps(caption, "error over the smallest", panels, True, 1, any_origin(runs))
+
+    def behind(arm: str, law: str, condition: str) -> tuple[float, bool]:
+        cell = all_cells(runs, arm, question)[condition]
+        entry = cell.entry(law)
+        return ratio(entry, cell.best) or np.nan, entry.failed > 0.0
+
+    return maps_of_laws(runs, caption, "error over the smallest", behind, all_cells(runs, arms_of(runs)[0], question))
 
 
 def troubles(runs: Runs, question: str, gains: str, caption: str) -> Maps | Text:
@@ -63,15 +70,40 @@ def troubles(runs: Runs, question: str, gains: str, caption: str) -> Maps | Text
         gains: "tuned" or "untuned".
         caption: What is seen.
     """
-    panels = []
-    for arm in arms_of(runs):
-        made, laws = all_cells(runs, arm, question, _chosen(gains)), laws_of(runs, arm)[::-1]
-        shares = 100.0 * np.array([[cell.entry(law).failed for cell in made.values()] for law in laws])
-        names = [CONDITIONS[name] for name in made]
-        panels.append(Map(ARMS[arm], "", "", names, list(map(in_words, laws)), shares, np.zeros(shares.shape, bool)))
-    if not any(panel.values.any() for panel in panels):
+
+    def share(arm: str, law: str, condition: str) -> tuple[float, bool]:
+        return 100.0 * all_cells(runs, arm, question, _chosen(gains))[condition].entry(law).failed, False
+
+    conditions = all_cells(runs, arms_of(runs)[0], question)
+    maps = maps_of_laws(runs, caption, "repetitions that failed (%)", share, conditions)
+    if not any(panel.values.any() for panel in maps.panels):
         return Text(f"{caption} Here there are none, of no law on no arm under no condition.")
-    return Maps(caption, "repetitions that failed (%)", panels, False, 1, any_origin(runs))
+    return maps
+
+
+def maps_of_laws(
+    runs: Runs,
+    caption: str,
+    label: str,
+    value: Callable[[str, str, str], tuple[float, bool]],
+    conditions: Iterable[str],
+) -> Maps:
+    """Return a number of each law under each condition as maps, an arm each.
+
+    Args:
+        runs: The runs of the study.
+        caption: What is seen.
+        label: The number, with its unit; with "over" in it, the scale is logarithmic.
+        value: Gives the number of an arm, law and condition, and whether its cell is marked.
+        conditions: The conditions.
+    """
+    names, panels = [*conditions], []
+    for arm in arms_of(runs):
+        laws = laws_of(runs, arm)[::-1]
+        values, marked = np.moveaxis(np.array([[value(arm, law, name) for name in names] for law in laws]), 2, 0)
+        shown, words = np.where(np.isfinite(values), values, np.nan), [CONDITIONS[name] for name in names]
+        panels.append(Map(ARMS[arm], "", "", words, list(map(in_words, laws)), shown, marked.astype(bool)))
+    return Maps(caption, label, panels, " over " in label, 1, any_origin(runs))
 
 
 def error_against(runs: Runs, metric: str, label: str, condition: str, caption: str) -> Curves:
@@ -95,27 +127,6 @@ def error_against(runs: Runs, metric: str, label: str, condition: str, caption: 
     return Curves(caption, panels, 2, any_origin(runs))
 
 
-def settings(runs: Runs, caption: str) -> Table:
-    """Return a table of the settings that all laws of an arm share, and their changes by the conditions."""
-    titles = ("bandwidth", "period", "masses wrong by up to", "friction", "viscous friction", "encoder noise")
-    rows = []
-    for arm in arms_of(runs):
-        config = found(runs, f"first/{arm}/joint_pd/{{task}}/all/untuned")[0].run.config
-        friction = config["plant"]["friction"]
-        rows.append(
-            [
-                ARMS[arm],
-                quantity(config["controller"]["natural_frequency"], "rad/s"),
-                quantity(config["controller"]["period"], "s"),
-                quantity(100.0 * config["mismatch"]["spread"], "%"),
-                f"{_listed(friction['coulomb'])} N m",
-                f"{_listed(friction['viscous'])} N m s/rad",
-                quantity(float(np.max(config["noise"]["position"])), "rad"),
-            ]
-        )
-    return Table(caption, ["arm", *numbers(*titles)], rows, any_origin(runs))
-
-
 def spread(runs: Runs, question: str, caption: str) -> Table:
     """Return a table of the spread of errors over tunings, by law and arm, with all wrong at once."""
     arms = arms_of(runs)
@@ -126,15 +137,35 @@ def spread(runs: Runs, question: str, caption: str) -> Table:
     return Table(caption, ["law", *numbers(*(ARMS[arm] for arm in arms))], rows, any_origin(runs))
 
 
-def failed(runs: Runs, gains: str, condition: str, *arms: str) -> list[Measured]:
-    """Return the failed repetitions of each law under a condition, in per cent.
+def error(law: str, condition: str, question: str = "first", gains: str = "tuned") -> Quantity:
+    """Return the error of a law under a condition, a quantity of an arm, in m; None where it failed."""
+    return Quantity(lambda runs, arm: _finite(one_cell(runs, arm, condition, question, _chosen(gains)).entry(law)))
 
-    Args:
-        runs: The runs of the study.
-        gains: "tuned" or "untuned".
-        condition: The condition.
-        arms: The arms; all where none is named.
-    """
+
+def lead(law: str, other: str, condition: str, question: str) -> Quantity:
+    """Return the lower end of the interval of another law's error over that of a law; None where it does not lead."""
+
+    def low(runs: Runs, arm: str) -> float | None:
+        given = one_cell(runs, arm, condition, question).leads.get((law, other))
+        return None if given is None or not given.shown or given.interval is None else given.interval[0]
+
+    return Quantity(low)
+
+
+def on_arms(runs: Runs, words: str, what: Callable[[Runs, str], float | None], *arms: str) -> list[Measured]:
+    """Return a quantity of some arms, of all where none is named."""
+    return [Measured(f"{words}, {ARMS[arm]}", what(runs, arm)) for arm in arms or arms_of(runs)]
+
+
+def in_front(runs: Runs, question: str, condition: str, law: str) -> Measured:
+    """Return on how many arms no law is shown to be ahead of a law."""
+    there = sum(law in one_cell(runs, arm, condition, question).groups[0] for arm in arms_of(runs))
+    asked = f"{CONDITIONS[condition]}, {QUESTIONS[question]}"
+    return Measured(f"arms on which none is ahead of {in_words(law)}, {asked}", float(there))
+
+
+def failed(runs: Runs, gains: str, condition: str, *arms: str) -> list[Measured]:
+    """Return the failed repetitions of each law under a condition on some arms, or all, in per cent."""
     return [
         Measured(f"repetitions of {in_words(each.law)} that failed, {gains}, {ARMS[arm]}", 100.0 * each.failed, "%")
         for arm in arms or arms_of(runs)
@@ -145,6 +176,10 @@ def failed(runs: Runs, gains: str, condition: str, *arms: str) -> list[Measured]
 def ratio(one: Entry, other: Entry) -> float | None:
     """Return the error of a law over that of another one; None where both or the other one failed."""
     return one.score / other.score if np.isfinite(other.score) else None
+
+
+def _finite(entry: Entry) -> float | None:
+    return entry.score if np.isfinite(entry.score) else None
 
 
 def error_words(entry: Entry) -> str:
@@ -167,8 +202,8 @@ def _chosen(gains: str) -> Sequence[str]:
 
 
 def any_origin(runs: Runs) -> Origin:
-    """Return the origin of a table over several arms: the command of one of the runs."""
-    return origin(found(runs, f"first/{{arm={arms_of(runs)[0]}}}/{{law}}/{{task}}/{{condition}}/{{gains}}")[0].run)
+    """Return the origin of a table over several arms: the command of the first run."""
+    return origin(next(iter(runs.values())))
 
 
 def said(runs: Runs, arm: str, question: str, condition: str) -> str:
@@ -195,12 +230,6 @@ def answer(cell: Cell) -> str:
 
 def _apart(errors: FloatArray) -> str:
     return number(float(errors.max() / errors.min()), zeros=True) if np.isfinite(errors).all() else "failed"
-
-
-def _listed(value: object) -> str:
-    values = np.atleast_1d(np.asarray(value, dtype=float))
-    low, high = number(float(values.min())), number(float(values.max()))
-    return low if low == high else f"{low} to {high}"
 
 
 def typical(runs: Runs, arm: str, law: str, condition: str, gains: str, metric: str) -> float:
@@ -243,37 +272,3 @@ def _shown(runs: Runs, seeds: slice) -> set[tuple[str, str, tuple[str, str]]]:
         for key, lead in cell.leads.items()
         if lead.shown and lead.p_value is not None
     }
-
-
-_METRIC = "rms_tracking_error_last_period"
-
-
-def last_periods(runs: Runs, caption: str) -> Table:
-    """Return the error of each law in the last period, by arm and condition."""
-    every = found(runs, "repeated/{arm}/{law}/{condition}")
-    columns = dict.fromkeys((one.levels["arm"], one.levels["condition"]) for one in every)
-    rows: dict[str, list[str]] = {}
-    for one in every:
-        error = _error(one.run)
-        told = quantity(error, "m") if np.isfinite(error) else "failed"
-        rows.setdefault(one.levels["law"], []).append(told)
-    header = ["law", *numbers(*(f"{ARMS[arm]}, {CONDITIONS[condition]}" for arm, condition in columns))]
-    return Table(caption, header, [[in_words(law), *own] for law, own in rows.items()], origin(every[0].run))
-
-
-def over_learning(runs: Runs, condition: str, law: str, *arms: str) -> list[Measured]:
-    """Return the error of a law in the last period over that of iterative learning, on some arms, or on each."""
-    told = []
-    arm = f"{{arm={'|'.join(arms)}}}" if arms else "{arm}"
-    for one in found(runs, f"repeated/{arm}/{law}/{condition}"):
-        learned = _error(runs[f"repeated/{one.levels['arm']}/iterative_learning/{condition}"])
-        error = _error(one.run)
-        value = error / learned if np.isfinite(learned) else None
-        words = f"{in_words(law)} over iterative learning, {ARMS[one.levels['arm']]}, {CONDITIONS[condition]}"
-        told.append(Measured(f"error of {words}", value))
-    return told
-
-
-def _error(run: Run) -> float:
-    median = run.metrics[_METRIC].median if _METRIC in run.metrics else None
-    return np.inf if median is None or run.status != "ok" else float(median)

@@ -1,18 +1,55 @@
-"""Tuned values near the ends of their ranges."""
+"""The laws and their inputs, tuned gains, and those near the ends of their ranges."""
 
 import itertools
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
-from runner.base.quantities import number
+import numpy as np
+
+from runner.base.quantities import number, quantity
 from runner.reporting.document import Table, Text
-from runner.reporting.table import numbers
+from runner.reporting.table import Column, numbers
 from runner.reporting.words import in_words
-from runner.studies.benchmark.by_law import keys_of
+from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin
-from runner.studies.benchmark.made import ARMS, QUESTIONS, arms_of, laws_of
-from runner.study.results import Runs
+from runner.studies.benchmark.made import ARMS, LAWS, QUESTIONS, arms_of, laws_of
+from runner.study.results import Runs, found
+from runner.study.run_values import config_value
 from runner.study.tunings import Ranges, key_of
+from runner.sweeps.differing import entries
+
+_LAW_KEYS = ("controller.", "disturbance_observer.")
+_UNKNOWN, _LEARNING = "not known here", "iterative_learning"
+
+
+def laws(runs: Runs, caption: str) -> Table:
+    """Return a table of what each law does and reads, and of the time of its control tick on the engine's Macro."""
+    rows = []
+    for law in (*laws_of(runs, arms_of(runs)[0]), _LEARNING):
+        does, model, friction, repeats = LAWS.get(law, ("A law from outside.", *(_UNKNOWN,) * 3))
+        sensor = "no" if law in LAWS else _UNKNOWN
+        timed = [] if law == _LEARNING else found(runs, f"engine/{{arm}}/{law}/{{task}}/exact/{{gains}}")
+        taken = [each for each in (one.run.record["timing"].get("tick_time_median") for one in timed) if each]
+        tick = quantity(float(np.median(taken)), "s", 2) if taken else "–"
+        rows.append([in_words(law), does, model, friction, sensor, repeats, tick])
+    header = ["law", "what it does", "model", "friction", "torque sensor", "that a motion repeats", *numbers("tick")]
+    return Table(caption, header, rows)
+
+
+def arm_words() -> dict[str, str]:
+    """Return what the arms are called."""
+    return ARMS
+
+
+def listed(key: str) -> Callable[[Run], str]:
+    """Return the range of the values under a dotted key of a run's config."""
+
+    def ends(run: Run) -> str:
+        values = np.atleast_1d(np.asarray(config_value(run, key), dtype=float))
+        low, high = number(float(values.min())), number(float(values.max()))
+        return low if low == high else f"{low} to {high}"
+
+    return ends
 
 
 def at_ends(runs: Runs, ranges: Mapping[str, Ranges], caption: str) -> Table | Text:
@@ -47,3 +84,23 @@ def ends_of(runs: Runs, ranges: Mapping[str, Ranges]) -> list[list[str]]:
                     if end:
                         rows.append([*place, name, number(float(after[name])), f"{end} end"])
     return rows
+
+
+def gains(runs: Runs, caption: str) -> Table:
+    """Return the gains of each law and arm that were tuned: of its bandwidth, and of each tuning."""
+    rows, tunings = [], [(question, own) for question in QUESTIONS for own in tuned(runs)]
+    for arm in arms_of(runs):
+        for law in laws_of(runs, arm):
+            every = [keys_of(runs, arm, law, *own) for own in (("first", *UNTUNED), *tunings)]
+            for key in (key for key in every[0] if len({own.get(key) for own in every}) > 1):
+                rows.append([ARMS[arm], in_words(law), key, *(number(float(own[key])) for own in every)])
+    tuned_by = (f"{question}, {own}" for question, own in tunings)
+    header = ["arm", "law", Column("key", "code"), *numbers("not tuned", *tuned_by)]
+    return Table(caption, header, rows, any_origin(runs), folded=True)
+
+
+def keys_of(runs: Runs, arm: str, law: str, question: str, gains: str) -> dict[str, str]:
+    """Return the keys of a law and its observer with their values, as strings, of a tuning."""
+    config = found(runs, f"{question}/{arm}/{law}/{{task}}/exact/{gains}")[0].run.config
+    own = {group: config[group] for group in ("controller", "disturbance_observer") if group in config}
+    return {key: value for key, value in entries(own) if key.startswith(_LAW_KEYS)}

@@ -13,14 +13,17 @@ from support.recorded_runs import recorded
 from support.study_plans import FULL_ALONE
 from support.study_sections import texts
 
+from runner.base import quantities
 from runner.base.errors import RunnerError
 from runner.cli.reproduce import _chosen
+from runner.reporting.document import Table
 from runner.reporting.formulas import faulty
+from runner.reporting.words import in_words
 from runner.studies.benchmark import engines
 from runner.studies.benchmark.cells import cells
 from runner.studies.benchmark.figures import halves, said
 from runner.studies.benchmark.horizon import grown
-from runner.studies.benchmark.how_tuned import ends_of
+from runner.studies.benchmark.how_tuned import ends_of, gains, keys_of
 from runner.studies.benchmark.late_and_limited import bearable
 from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
 from runner.study.chapters import Chapters
@@ -214,7 +217,7 @@ def test_it_is_not_made_with_all_studies():
     }
 
 
-@pytest.mark.costs(4)
+@pytest.mark.costs(3)
 def test_all_findings_hold_of_such_errors(made):
     document = made("benchmark").document
     told = [finding for _, finding in findings(document)]
@@ -234,13 +237,25 @@ def test_the_page_names_the_best_law_and_how_far_it_is_ahead(made):
 
 
 def test_every_arm_and_law_of_ours_has_its_section_and_words(made, whole):
-    arms, laws = (made("benchmark").chapters.section(file) for file in ("by_arm.py", "by_law.py"))
+    arms, tuning = (made("benchmark").chapters.section(file) for file in ("by_arm.md", "how_tuned.md"))
     assert [each.title for each in arms.sections] == ["Macro", "Planar arm", "xArm7", "Panda"]
-    assert len(laws.sections) == len(LAWS)
-    told = texts(laws)
-    assert not {"A law from outside.", "not known here"} & set(told)
+    laws = next(block for block in tuning.blocks if isinstance(block, Table))
+    assert [row[0] for row in laws.rows] == [*map(in_words, LAWS), "iterative learning"]
+    assert not {"A law from outside.", "not known here"} & set(texts(tuning))
+    assert all(row[-1].endswith(" ms") for row in laws.rows[:-1])
     assert {name.split("/")[1] for name in whole if name.startswith("first/")} == set(ARMS)
     assert {name.split("/")[4] for name in whole if name.startswith("first/")} == set(CONDITIONS)
+
+
+def test_gains_of_every_tuning_are_listed_where_they_differ(runs):
+    table = gains(runs, "Gains.")
+    assert [column if isinstance(column, str) else column.title for column in table.header][3:] == [
+        "not tuned", "first, 1", "first, 2", "learned, 1", "learned, 2"
+    ]  # fmt: skip
+    for arm, law, key, *own in table.rows:
+        level = next(name for name in LAWS if in_words(name) == law)
+        place = next(name for name in ARMS if ARMS[name] == arm)
+        assert own[0] == quantities.number(float(keys_of(runs, place, level, "first", "untuned")[key]))
 
 
 def test_a_delay_of_one_tick_bears_the_root_of_its_cubic():
