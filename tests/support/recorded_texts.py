@@ -21,6 +21,7 @@ _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _SAME, _ZERO = 0.011, 1e-8  # one in the last of three digits, and what rounding leaves
 _HEAD = "=== "
+_HASH = re.compile(r"\b(?:[0-9a-f]{24}|(?=\d*[a-f])[0-9a-f]{8})\b")
 _OF_TODAY = ("date", "commit")
 
 
@@ -72,7 +73,7 @@ def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
             for field in (each for each in fields(value) if each.name not in _OF_TODAY):
                 yield from _lines(field.name, getattr(value, field.name), below)
         case _:
-            yield f"{head} {value}".replace("\n", " ")
+            yield _HASH.sub("...", f"{head} {value}".replace("\n", " "))
 
 
 def _paths(svg: str) -> Iterator[str]:

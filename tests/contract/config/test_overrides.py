@@ -25,6 +25,13 @@ def test_keys_are_forced_and_options_are_not(override, forced):
     assert force([override]) == [forced]
 
 
+def test_the_deepest_value_that_is_read_has_thirty_levels():
+    deepest = f"noise.position={'[' * 29}{']' * 29}"  # in a key of two levels
+    assert force([deepest]) == [f"++{deepest}"]
+    with pytest.raises(ConfigError, match="nested deeper than 30 levels"):
+        force([f"noise.position={'[' * 30}{']' * 30}"])
+
+
 @pytest.mark.parametrize("flag", ["--experimental-rerun", "--exp", "--experimental-rerun=config.pickle"])
 def test_no_pickle_is_read(cli, tmp_path, flag):
     (tmp_path / "config.pickle").write_bytes(b"cos\nmkdir\n(Vdone\ntR.")

@@ -126,6 +126,14 @@ def test_damping_the_springs_lets_encoders_at_the_links_do(simulated):
     assert np.linalg.norm(trace.error[-1]) < 1e-6
 
 
+def test_a_motor_swings_against_a_held_link_with_the_damping_that_is_asked_for():
+    config = checked(*MACRO, f"{KEY}.stiffness=1000", f"{KEY}.motor_inertia=2", f"{KEY}.torsion_damping=0.3")
+    flexibility = config.plant.flexible_joints.by_joint(config.arm)
+    for m, d, k in zip(flexibility.motors, flexibility.torsion_feedback, flexibility.stiffness, strict=True):
+        swing = np.roots([m, d, k])[0]
+        assert (-swing.real / abs(swing), abs(swing)) == pytest.approx((0.3, np.sqrt(k / m)))
+
+
 def test_brakes_hold_the_motors_and_a_push_bends_the_arm(simulated):
     braked = (*MACRO, "gravity=0", f"{KEY}.brake_time={{macro: 0}}", f"{KEY}.damping_ratio=0.3", "environment=push",
               "environment.force=[2.0,0.0,0.0]", "environment.start_time=0", "duration=8")  # fmt: skip

@@ -25,3 +25,11 @@ def test_lines_agree_in_words_and_but_for_rounding_in_numbers(was, now, same):
 def test_each_value_is_a_line():
     said = lines(Section("Lag", [Text("It lags.")]))
     assert said[:5] == ["is: Section", "  title: Lag", "  blocks:", "    -: Text", "      text: It lags."]
+
+
+def test_no_line_has_the_name_of_a_run():
+    assert lines(["outputs/runs/0123456789abcdef01234567", "of 89abcdef"]) == [
+        "is:",
+        "  -: outputs/runs/...",
+        "  -: of ...",
+    ]
