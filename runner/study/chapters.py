@@ -8,17 +8,20 @@ from pathlib import Path
 from typing import Any
 
 from runner.audit.audit import audit
+from runner.audit.entry import parts as parts_in
 from runner.audit.sources import Source
+from runner.audit.verdict import SAMPLES, Check
 from runner.base import progress
-from runner.base.errors import RunnerError
+from runner.base.errors import RunnerError, nearest
 from runner.base.limits import CHAPTER, read_text
 from runner.reporting.audit.report import rows
 from runner.reporting.document import Claim, Equations, Notice, Origin, Section, Text, Verdicts
+from runner.reporting.equation import EquationVerdict
 from runner.reporting.markup import literal
 from runner.reporting.outline import number_sections
-from runner.reporting.published_claims import CLAIMS, FACTOR, PublishedClaim, Verdict, load_claims
+from runner.reporting.published_claims import CLAIMS, FACTOR, PublishedClaim, Verdict, load_claims, load_statements
 from runner.store import Calibration, Run
-from runner.study.claims import judged_claims, legend
+from runner.study.claims import judged_claims, judged_statements, legend
 from runner.study.code import public_functions
 from runner.study.manifest import Part
 from runner.study.measured import Finding, Measured
@@ -32,6 +35,10 @@ SHARED = (blocks, signals, tables, plots)
 """The modules whose functions every chapter may call."""
 _FIGURES = "figures"  # the module whose functions all chapters of a study may call
 _SECTION = "section"  # the function of a chapter that is Python
+_STATED = (
+    "A statement matches when every condition of the findings on it is met, and differs when one is not. It is "
+    "undecided when nothing here measures it. Equations are correct or wrong as printed by the audit."
+)
 
 
 class Chapters:
@@ -97,6 +104,7 @@ class Chapters:
             "verdict_rule": self._legend(),
             "verdict_factor": FACTOR,
             "equations": self._equations,
+            "statements": self._statements,
             "said": self.said,
             "compare": partial(compare, self.runs, presets, self._published()),
         }
@@ -135,6 +143,28 @@ class Chapters:
         checked = audit(Source(self.study.folder, self.study.code.runs))
         command = shlex.join(["runner", "reproduce", self.study.command])
         return Equations(caption, rows(checked), Origin(command=command), self.study.folder.name)
+
+    def _statements(self, caption: str, judged: Mapping[str, tuple[Sequence[bool] | str, str]]) -> Verdicts:
+        """Return the statements of the study by name, each with what its verdict follows from and what was measured.
+
+        A statement matches if all of some findings hold, and differs otherwise. An equation has its id, whose verdict
+        is the audit's; a statement that nothing measures is "undecided".
+        """
+        source = Source(self.study.folder, self.study.code.runs)
+        equations = {entry.id: (part, entry) for part in parts_in(source) for entry in part.entries}
+
+        def verdict(by: Sequence[bool] | str) -> Verdict | EquationVerdict:
+            if not isinstance(by, str):
+                return "matches" if all(by) else "differs"
+            if by == "undecided":
+                return "undecided"
+            if by not in equations:
+                raise RunnerError(f"no equation '{by}' in the folder{nearest(by, equations)}; or write \"undecided\"")
+            part, entry = equations[by]
+            return Check(part, SAMPLES).check(entry).verdict
+
+        verdicts = {name: (verdict(by), measured) for name, (by, measured) in judged.items()}
+        return Verdicts(caption, judged_statements(load_statements(self.study.folder), verdicts), _STATED)
 
     def _each(self, chapters: Sequence[str | Part]) -> list[Section]:
         return parts((self._title(each), partial(self._one, each)) for each in chapters)

@@ -79,14 +79,15 @@ def number_of(what: Signal, *runs: Run) -> float | None:
 
 
 def config_value(run: Run, key: str) -> Any:
-    """Return a value of a run's config by its dotted key.
+    """Return a value of a run's config by its dotted key, in which items of lists are counted from 0.
 
     Raises:
         RunnerError: if there is no such key.
     """
     value: Any = run.config
     for part in key.split("."):
-        if not isinstance(value, Mapping) or part not in value:
-            raise RunnerError(f"no key {key} in a config{nearest(part, value if isinstance(value, Mapping) else ())}")
-        value = value[part]
+        keys = {str(index): item for index, item in enumerate(value)} if isinstance(value, list) else value
+        if not isinstance(keys, Mapping) or part not in keys:
+            raise RunnerError(f"no key {key} in a config{nearest(part, keys if isinstance(keys, Mapping) else ())}")
+        value = keys[part]
     return value

@@ -1,5 +1,6 @@
 """Frequency response to sinusoidal loads: amplitude and phase compared with the closed form."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -7,40 +8,12 @@ from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.controllers.force.admittance_filter import AXES, Admittance, discretise
-from runner.reporting.document import Panel, Series
 from runner.store import Run
-from runner.studies.meca500.figures import displacement, law_of, loads_of, once, servo_compliance
-from runner.studies.meca500.plan import FREQUENCIES, REPORTED, SINE_CASES
+from runner.studies.meca500.figures import displacement, loads_of, once, servo_compliance
+from runner.studies.meca500.plan import law_in
 from runner.study.results import Runs
 
 ComplexArray = NDArray[np.complex128]
-
-
-def step_response(law: Admittance, loads: FloatArray, times: FloatArray) -> FloatArray:
-    r"""Return the displacement of each axis after a constant load sets in at rest.
-
-    With a = B / 2M and b^2 = a^2 - K/M, real or imaginary,
-
-    .. math:: x(t) = \frac{f}{K} \left( 1 - e^{-at} (\cosh bt + a t \frac{\sinh bt}{bt}) \right),
-
-    and without a spring x = (f/B) (t - (1 - e^{-Bt/M}) M/B), without a damper too x = f t^2 / 2M. In m and rad.
-    """
-    axes = zip(law.mass, law.damping, law.stiffness, loads, strict=True)
-    return np.column_stack([_step(M, B, K, f, times) for M, B, K, f in axes])
-
-
-def _step(M: float, B: float, K: float, f: float, t: FloatArray) -> FloatArray:
-    if K > 0.0:
-        a = B / (2.0 * M)
-        bt = np.emath.sqrt(a**2 - K / M) * t
-        faster, slower = np.exp(-a * t - bt), np.exp(-a * t + bt)  # no factor grows beyond 1
-        small = np.abs(bt) < 1e-4
-        safe = np.where(small, 1.0, bt)
-        sinhc = np.where(small, np.exp(-a * t) * (1.0 + bt**2 / 6.0), (slower - faster) / (2.0 * safe))
-        return np.real(f / K * (1.0 - 0.5 * (slower + faster) - a * t * sinhc))
-    if B > 0.0:
-        return f / B * (t + np.expm1(-B * t / M) * M / B)
-    return 0.5 * f * t**2 / M
 
 
 def frequency_response(law: Admittance, frequencies: FloatArray) -> ComplexArray:
@@ -87,10 +60,10 @@ def sine(run: Run) -> dict[str, Any]:
     the law's own answer the give is at least.
     """
     omega = 2.0 * np.pi * float(run.config["environment"]["frequency"])
-    law, period, found = law_of(run), float(run.config["controller"]["period"]), fitted_response(run)
+    law, period, found = law_in(run.config), float(run.config["controller"]["period"]), fitted_response(run)
     exact, sampled = (own[0] for own in (frequency_response(law, np.array([omega])),
                       sampled_frequency_response(law, period, np.array([omega]))))  # fmt: skip
-    give = _give(run) if run.config["plant"]["kind"] != "kinematic" else np.zeros(len(AXES))
+    give = _give(run)
     told = {
         axis: f"{abs(over):.3f}, {np.degrees(np.angle(over)):+.1f}°"
         for axis, over in zip(AXES, found / exact, strict=True)
@@ -104,31 +77,27 @@ def sine(run: Run) -> dict[str, Any]:
     }
 
 
-def bode(runs: Runs) -> list[Panel]:
-    """Return amplitude and phase along x and about x, with the laws' own."""
-    servo, points = runs[f"sine/servo, 1 ms/{FREQUENCIES[0]}"], np.array(FREQUENCIES)
-    fine = np.geomspace(points[0], points[-1], 200)
-    exact = frequency_response(law_of(servo), 2.0 * np.pi * fine)
-    sampled = sampled_frequency_response(law_of(servo), REPORTED, 2.0 * np.pi * fine)
-    drawn = [
-        ("analytic", fine, exact, "dashed"),
-        ("sampled law, 16.7 ms", fine, sampled, "dotted"),
-        ("analytic, and yielding of the servos", fine, exact + _give(servo), "dotted"),
-    ]
-    for case in SINE_CASES:
-        found = np.array([fitted_response(runs[f"sine/{case}/{frequency}"]) for frequency in FREQUENCIES])
-        drawn.append((case, points, found, "points"))
-    panels = []
-    for axis, unit in (("x", "m/N"), ("rotation x", "rad/(N m)")):
-        index = AXES.index(axis)
-        for title, label, of in (("amplitude", f"amplitude ({unit})", np.abs), ("phase", "phase (degrees)", _phase)):
-            series = [Series(name, x, of(y[:, index]), style) for name, x, y, style in drawn]  # type: ignore[arg-type]
-            panels.append(Panel(f"{axis}, {title}", "frequency (Hz)", label, series, True, title == "amplitude"))
-    return panels
+def response(axis: str, part: str) -> Callable[[Run], float]:
+    """Return the amplitude in m/N or rad/(N m), or the phase in degrees, of the answer along or about an axis."""
+    return lambda run: _part(fitted_response(run)[AXES.index(axis)], part)
 
 
-def _phase(response: ComplexArray) -> FloatArray:
-    return np.degrees(np.unwrap(np.angle(response)))
+def theory(runs: Runs, run: str, axis: str, part: str, sampled: bool = False) -> Callable[[float], float]:
+    """Return the same of a run's law over the frequency in Hz, continuous or sampled, with the give of its servos."""
+    law, give, index = law_in(runs[run].config), _give(runs[run]), AXES.index(axis)
+    period = float(runs[run].config["controller"]["period"])
+
+    def value(frequency: float) -> float:
+        omega = np.array([2.0 * np.pi * frequency])
+        own = sampled_frequency_response(law, period, omega) if sampled else frequency_response(law, omega)
+        return _part(own[0, index] + give[index], part)
+
+    return value
+
+
+def _part(answer: complex, part: str) -> float:
+    """Return an amplitude, or a phase in degrees from -360 to 0."""
+    return float(abs(answer) if part == "amplitude" else -(-np.degrees(np.angle(answer)) % 360.0))
 
 
 def _give(run: Run) -> FloatArray:

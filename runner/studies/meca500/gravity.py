@@ -1,23 +1,14 @@
 """Gravity compensation (section 4 of the report), corrected and as printed, compared with true tool and sensor."""
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import number, quantity, with_interval
-from runner.calibration.gravity import identify_gravity
-from runner.calibration.orientations import check_orientations, force_matrix, moment_matrix
+from runner.calibration.orientations import force_matrix, moment_matrix
 from runner.calibration.weighing import even_postures
-from runner.reporting.document import Panel, Series, Table
-from runner.reporting.figures import origin
-from runner.reporting.table import Column as TableColumn
-from runner.reporting.table import Number, numbers
-from runner.robots.model import RobotModel
 from runner.store import Calibration
-from runner.studies.meca500.figures import Calibrations, degrees, error, flange_of, predicted, refusal, wrenches
+from runner.studies.meca500.figures import Calibrations, error, flange_of, predicted
 from runner.study.measured import ROUNDING
-from runner.study.prose.tables import Column
-from runner.study.results import Found, Runs, found
 
 _EXACT = "gravity/noise/0"
 _ORIENTATIONS = 300
@@ -35,8 +26,8 @@ def identified(done: Calibration) -> dict[str, float]:
     return {"relative": float(relative.max()), "held": 100.0 * float(np.mean(_held(done))), "interval": _INTERVAL}
 
 
-def parameters(calibrations: Calibrations, name: str, caption: str) -> Table:
-    """Return the identified tool and sensor with the true ones."""
+def parameters(calibrations: Calibrations, name: str) -> list[list[str]]:
+    """Return a row for each value: name, unit, truth, first estimate with its interval, errors, share held, exact."""
     done, exact = calibrations[name], calibrations[_EXACT]
     rows = []
     for column, value in enumerate(done.truth):
@@ -53,42 +44,12 @@ def parameters(calibrations: Calibrations, name: str, caption: str) -> Table:
                 number(abs(factor * exact.values("errors", value)[0, 0]), 2, rounding=ROUNDING),
             ]
         )
-    header = ["value", "unit", *numbers("true", "found", "interval", "error", "predicted", "held", "without noise")]
-    return Table(caption, header, rows, origin(done))
-
-
-def choice() -> Column:
-    """Return a column with how the orientations of a calibration are chosen."""
-    words = {"best": "by conditioning", "first": "evenly over the joints"}
-
-    def text(_: Runs, row: Found) -> str:
-        if "spread" in row.levels:
-            return f"within {degrees(float(row.levels['spread'])):.0f}° of home"
-        return words[row.run.config["calibration"]["choice"]]
-
-    return Column("orientations", text)
-
-
-def refused(caption: str) -> Table:
-    """Return the refused sets of orientations, with the reasons."""
-    quarters = np.arange(4) * np.pi / 2
-    sets = {
-        "2 orientations": [np.zeros(3), np.array([1.0, 0.0, 0.0])],
-        "4 orientations turned about the vertical": [np.array([0.0, 0.0, turn]) for turn in quarters],
-        "4 orientations tilted by 10 deg all around": [
-            np.radians(10.0) * np.array([np.cos(turn), np.sin(turn), 0.0]) for turn in quarters
-        ],
-    }
-
-    def attempt(vectors: list[FloatArray]) -> str:
-        return refusal(lambda: check_orientations(np.array([pin.exp3(vector) for vector in vectors])))
-
-    return Table(caption, ["set", "reason given"], [[name, attempt(vectors)] for name, vectors in sets.items()])
+    return rows
 
 
 def residual(done: Calibration) -> dict[str, float]:
     """Return the root mean square of what compensation leaves, and the noise of a reading, in mN and mN m."""
-    left = _left_over(done)[1][_CASES[2]]
+    left = _left_over(done)[_CASES[2]]
     noise = np.array(done.config["wrist_sensor"]["noise"])
     return {
         "orientations": _ORIENTATIONS,
@@ -99,45 +60,12 @@ def residual(done: Calibration) -> dict[str, float]:
     }
 
 
-def left_over(calibrations: Calibrations, name: str) -> list[list[str]]:
+def left_over(calibrations: Calibrations, name: str) -> list[list[str | float]]:
     """Return force in N and moment in N m felt though nothing touches the tool, rms and largest, for each case."""
     return [
-        [case, *(number(value) for part in (0, 1) for value in (_rms(left[..., part]), float(left[..., part].max())))]
-        for case, left in _left_over(calibrations[name])[1].items()
+        [case, *(value for part in (left[..., 0], left[..., 1]) for value in (_rms(part), float(part.max())))]
+        for case, left in _left_over(calibrations[name]).items()
     ]
-
-
-def left_over_panels(calibrations: Calibrations, name: str) -> list[Panel]:
-    """Return panels of the wrench left by compensation, over the angle of the flange's z axis from straight down."""
-    orientations, left = _left_over(calibrations[name])
-    tilt = np.degrees(np.arccos(np.clip(-orientations[:, 2, 2], -1.0, 1.0)))
-    order = np.argsort(tilt)
-    panels = []
-    for part, (title, unit) in enumerate((("Force", "N"), ("Moment", "N m"))):
-        middle, high = np.percentile(left[_CASES[2]][:, order, part], [50, 95], axis=0)
-        series = [
-            Series("median of the repetitions", tilt[order], middle, "points"),
-            Series("95th percentile", tilt[order], high, "points"),
-        ]
-        panels.append(Panel(title, "flange's z axis from straight down (deg)", f"left over ({unit})", series))
-    return panels
-
-
-def weighed(runs: Runs, pattern: str, caption: str) -> Table:
-    """Return the identification from the plant's own reaction at the tool's joint, instead of the sensor's model."""
-    at_rest = [each.run for each in found(runs, pattern)]
-    first = at_rest[0]
-    flange = RobotModel(first.urdf, first.config["robot"]["tip"], first.config["gravity"])
-    orientations = np.array([flange.tip_pose(run.joints("q")[-1])[:3, :3] for run in at_rest])
-    reactions = np.array([wrenches(run, "reaction")[-1] for run in at_rest])
-    no_errors = np.zeros((len(at_rest), 3, 3))
-    done = identify_gravity(reactions, orientations, float(first.config["gravity"]), np.zeros(6), no_errors)
-    tool = first.config["robot"]["tool"]
-    off = np.abs(done.values - np.array([tool["mass"], 0.0, *tool["centre_of_mass"], *np.zeros(6)]))
-    titles = {"mass": "kg", "$theta$": "rad", "centre of mass": "m", "force biases": "N", "moment biases": "N m"}
-    cells = [Number(float(part.max()), digits=2) for part in np.split(off, [1, 2, 5, 8])]
-    header = [TableColumn(title, "number", unit) for title, unit in titles.items()]
-    return Table(caption, header, [cells], origin(first), prose=True)
 
 
 def misprints(calibrations: Calibrations) -> dict[str, str]:
@@ -159,17 +87,6 @@ def misprints(calibrations: Calibrations) -> dict[str, str]:
         theta = float(np.arctan2(G_s, G_c))
         given[key] = f"{quantity(G / gravity, 'kg')}, $theta = {theta:.3g}$ rad, {of_forces} of the forces left over"
     return given
-
-
-def angles(calibrations: Calibrations, angle: float) -> list[str]:
-    """Return a mounting angle, in rad, and what arc cosine, arc sine and the right formula make of it."""
-    exact = calibrations[_EXACT]
-    turned, R = _truth(exact), _orientations(exact)
-    turned[1] = angle
-    G_c, G_s, G, _ = force_step(exact_readings(turned, R, float(exact.config["gravity"]))[:, :3], R)
-    cosine, sine = np.clip([G_c / G, G_s / G], -1.0, 1.0)
-    found = (np.arccos(cosine), np.arcsin(sine), np.arctan2(G_s, G_c))
-    return [f"{angle:g}", *(f"{value:.3f}" for value in found)]
 
 
 def exact_readings(parameters: FloatArray, orientations: FloatArray, gravity: float) -> FloatArray:
@@ -214,8 +131,8 @@ def _held(done: Calibration) -> np.ndarray:
     return np.abs(done.values("errors")) < _HALF * done.values("deviations")
 
 
-def _left_over(done: Calibration) -> tuple[FloatArray, dict[str, FloatArray]]:
-    """Return orientations, shape (N, 3, 3), and by what is taken off the force and moment left, shape (..., N, 2)."""
+def _left_over(done: Calibration) -> dict[str, FloatArray]:
+    """Return by what is taken off the force and moment left in some orientations, shape (..., N, 2)."""
     model = flange_of(done)
     orientations = np.array([model.tip_pose(q)[:3, :3] for q in even_postures(model, _ORIENTATIONS)])
     truth, gravity = _truth(done), float(done.config["gravity"])
@@ -223,7 +140,7 @@ def _left_over(done: Calibration) -> tuple[FloatArray, dict[str, FloatArray]]:
     estimated = [exact_readings(own, orientations, gravity) for own in done.values("estimates")]
     left: list[FloatArray] = [true[None], (true - truth[5:])[None], true - np.array(estimated)]
     parts = (np.linalg.norm(values.reshape(*values.shape[:-1], 2, 3), axis=-1) for values in left)
-    return orientations, dict(zip(_CASES, parts, strict=True))
+    return dict(zip(_CASES, parts, strict=True))
 
 
 def _rms(values: FloatArray) -> float:

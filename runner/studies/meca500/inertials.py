@@ -21,15 +21,12 @@ def light() -> float:
     return 1e3 * _LIGHT
 
 
-def masses(runs: Runs) -> list[list[str]]:
+def masses(runs: Runs) -> list[list[str | float]]:
     """Return the masses of each link that moves, and of all, in kg, their ratio, and the set of the larger one."""
-    first, second = (runs[f"inertials/{name}"] for name in _SETS)
-    pairs = _moving(first, second)
-    pairs["all moving ones"] = (sum(pair[0] for pair in pairs.values()), sum(pair[1] for pair in pairs.values()))
-    return [
-        [link, number(a), number(b), number(max(a, b) / min(a, b)), list(_SETS.values())[int(b > a)]]
-        for link, (a, b) in pairs.items()
-    ]
+    pairs = _masses(*(runs[f"inertials/{name}"] for name in _SETS))
+    pairs["all moving ones"] = np.sum([*pairs.values()], axis=0)
+    names = list(_SETS.values())
+    return [[link, *pair.tolist(), pair.max() / pair.min(), names[pair.argmax()]] for link, pair in pairs.items()]
 
 
 def postures() -> int:
@@ -37,18 +34,18 @@ def postures() -> int:
     return _COUNT
 
 
-def torques(runs: Runs) -> list[list[str]]:
+def torques(runs: Runs) -> list[list[str | float | None]]:
     """Return torques of gravity, how far the sets differ, peaks and limits in N m: a row for each joint."""
     first, second = (runs[f"inertials/{name}"] for name in _SETS)
-    held, more = _gravity(first), _gravity(second) - _gravity(first)
+    largest = zip(*_gravity(first, second), strict=True)
     return [
         [
-            f"joint {joint + 1}",
-            *(number(float(np.abs(torque[:, joint]).max()), rounding=ROUNDING) for torque in (held, more)),
-            *(number(run.median(f"peak_torque_q{joint + 1}")) for run in (first, second)),
-            number(float(first.model.effort_limits[joint])),
+            f"joint {joint}",
+            *(number(float(torque), rounding=ROUNDING) for torque in both),
+            *(run.median(f"peak_torque_q{joint}") for run in (first, second)),
+            float(first.model.effort_limits[joint - 1]),
         ]
-        for joint in range(6)
+        for joint, both in enumerate(largest, start=1)
     ]
 
 
@@ -58,30 +55,28 @@ def difference(first: Run, second: Run) -> dict[str, Any]:
     mass is by how much its larger mass exceeds the smaller, gravity the largest difference of gravity torques over the
     joint's largest.
     """
-    excess = {link: max(pair) / min(pair) - 1.0 for link, pair in _moving(first, second).items() if max(pair) > _LIGHT}
+    excess = {
+        link: pair.max() / pair.min() - 1.0 for link, pair in _masses(first, second).items() if max(pair) > _LIGHT
+    }
     link = max(excess, key=lambda name: excess[name])
-    held, other = _gravity(first), _gravity(second)
-    largest = np.abs(held).max(axis=0)
-    share = np.abs(other - held).max(axis=0)[largest > _LIGHT] / largest[largest > _LIGHT]
+    held, more = _gravity(first, second)
+    share = more[held > _LIGHT] / held[held > _LIGHT]
     return {"link": link, "mass": 100.0 * excess[link], "gravity": 100.0 * float(share.max())}
 
 
-def _moving(first: Run, second: Run) -> dict[str, tuple[float, float]]:
-    """Return both masses of each link that moves, by its name, in kg."""
-    one, other = _masses(first), _masses(second)
-    return {link: (one[link], other[link]) for link in one if link.startswith("link")}
+def _masses(*runs: Run) -> dict[str, FloatArray]:
+    """Return the masses in some runs' URDF of each link that moves, by its name, in kg."""
+    sets = [ET.fromstring(run.urdf).findall("link[inertial]") for run in runs]  # noqa: S314 - our own text
+    return {
+        name: np.array([float(link.find("inertial/mass").get("value")) for link in links])
+        for links in zip(*sets, strict=True)
+        if (name := str(links[0].get("name"))).startswith("link")
+    }
 
 
-def _masses(run: Run) -> dict[str, float]:
-    """Return the mass of each link of a run's URDF, in kg."""
-    links = ET.fromstring(run.urdf).iter("link")  # noqa: S314 - our own text
-    found = {str(link.get("name")): link.find("inertial/mass") for link in links}
-    return {name: float(mass.get("value", "0")) for name, mass in found.items() if mass is not None}
-
-
-def _gravity(run: Run) -> FloatArray:
-    """Return gravity torques at random postures, the same for every run, shape (count, nq), in N m."""
-    model = run.model
-    low, high = np.clip(model.position_limits, -np.pi, np.pi)
-    postures = np.random.default_rng(0).uniform(low, high, (_COUNT, run.joints("q").shape[1]))
-    return np.array([model.gravity_torque(q) for q in postures])
+def _gravity(first: Run, second: Run) -> tuple[FloatArray, FloatArray]:
+    """Return the largest gravity torque of the first set at random postures, and the largest difference, in N m."""
+    low, high = np.clip(first.model.position_limits, -np.pi, np.pi)
+    drawn = np.random.default_rng(0).uniform(low, high, (_COUNT, first.model.nq))
+    one, other = (np.array([run.model.gravity_torque(q) for q in drawn]) for run in (first, second))
+    return np.abs(one).max(axis=0), np.abs(other - one).max(axis=0)

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
@@ -97,6 +98,7 @@ def elements(name: str, caption: str) -> Table:
     return Table(caption, ["row", *(f"column {column}" for column in range(columns))], cells)
 
 
+@cache
 def _checked() -> list[CheckedEquation]:
     return [each for each in audit("meca500", _SAMPLES) if each.entry.place[0] in "17"]
 

@@ -7,14 +7,10 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.quantities import quantity
-from runner.controllers.force.admittance_filter import AXES
-from runner.reporting.document import Panel, Series
+from runner.controllers.force.admittance_filter import AXES, Admittance
 from runner.store import Run
-from runner.studies.meca500.figures import added_inertia, displacement, law_of, loads_of, once, servo_compliance
-from runner.studies.meca500.frequency_response import step_response
-from runner.study.results import Runs
-
-_SHOWN = ("kinematic, 1 ms", "kinematic, 16.7 ms", "servo, 1 ms", "servo, 16.7 ms")
+from runner.studies.meca500.figures import added_inertia, displacement, loads_of, once, servo_compliance
+from runner.studies.meca500.plan import law_in
 
 
 @once
@@ -24,13 +20,12 @@ def step(run: Run) -> dict[str, Any]:
     error is that of the answer joined by straight lines, and error_at_ticks that only at the ticks. give is the servos'
     deflection at rest by the closed form, and beyond_give the difference between it and the error.
     """
-    index, times = _pushed(run), np.linspace(0.0, run.t[-1], 3001)
+    index, times = int(np.flatnonzero(loads_of(run))[0]), np.linspace(0.0, run.t[-1], 3001)
     answer = displacement(run)[:, index]
     joined = np.interp(times, run.t, answer)
-    expected, at_ticks = (_expected(run, own) for own in (times, run.t))
+    expected, at_ticks = (_expected(run, own)[:, index] for own in (times, run.t))
     error = float(np.abs(joined - expected).max() / np.abs(expected).max())
-    servos = run.config["plant"]["kind"] != "kinematic"
-    give = float(servo_compliance(run)[index, index] * law_of(run).stiffness[index]) if servos else 0.0
+    give = float(servo_compliance(run)[index, index] * law_in(run.config).stiffness[index])
     return {
         "peak": quantity(1e3 * float(np.abs(joined).max()), "mm" if index < 3 else "mrad"),
         "error": error,
@@ -50,29 +45,30 @@ def kept(shorter: float) -> Callable[[Run], float]:
     return share
 
 
-def answers(runs: Runs) -> list[Panel]:
-    """Return the answers of the six axes, with the analytic ones."""
-    panels = []
-    for index, axis in enumerate(AXES):
-        found = {case: runs[f"step/{case}/{axis}"] for case in _SHOWN}
-        begins = {case: float(run.config["environment"]["start_time"]) for case, run in found.items()}
-        first, begin = found[_SHOWN[0]], begins[_SHOWN[0]]
-        times = np.linspace(0.0, first.t[-1], 3001)
-        series = [Series("analytic", times - begin, 1e3 * _expected(first, times), "dashed")]
-        for case, run in found.items():
-            moved = 1e3 * displacement(run)[:, index]
-            style = "points" if case == "kinematic, 16.7 ms" else "line"  # a line would hide the others
-            series.append(Series(case, run.t - begins[case], moved, style))  # type: ignore[arg-type]
-        label = f"displacement ({'mm' if index < 3 else 'mrad'})"
-        panels.append(Panel(axis, "time since the push (s)", label, series, x_range=(-0.02, 0.4)))
-    return panels
+def answer(axis: str) -> Callable[[Run], FloatArray]:
+    """Return the displacement along an axis in mm, or about it in mrad."""
+    return lambda run: 1e3 * displacement(run)[:, AXES.index(axis)]
 
 
-def _pushed(run: Run) -> int:
-    return int(np.flatnonzero(loads_of(run))[0])
+def analytic(axis: str) -> Callable[[Run], FloatArray]:
+    """Return the closed form of the answer along an axis in mm, or about it in mrad."""
+    return lambda run: 1e3 * _expected(run, run.t)[:, AXES.index(axis)]
+
+
+def since_push(run: Run) -> FloatArray:
+    """Return the time since the load sets in, shape (T,), in s."""
+    return run.t - float(run.config["environment"]["start_time"])
+
+
+def critical_response(law: Admittance, loads: FloatArray, times: FloatArray) -> FloatArray:
+    """Return f / K (1 - e^(-a t) (1 + a t)) with a = B / 2M, the displacement of critically damped axes, shape (T, 6).
+
+    The constant loads f set in at rest at t = 0; in m and rad.
+    """
+    at = times[:, None] * law.damping / (2.0 * law.mass)
+    return np.asarray(loads / law.stiffness * (1.0 - np.exp(-at) * (1.0 + at)))
 
 
 def _expected(run: Run, times: FloatArray) -> FloatArray:
     since = np.maximum(times - float(run.config["environment"]["start_time"]), 0.0)
-    answer: FloatArray = step_response(law_of(run), loads_of(run), since)
-    return answer[:, _pushed(run)]
+    return critical_response(law_in(run.config), loads_of(run), since)

@@ -1,33 +1,20 @@
 """Tool centre point calibration at one fixed point (section 2 of the report), compared with the true point."""
 
 import numpy as np
-import pinocchio as pin
 
 from runner.base.arrays import FloatArray
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.calibration.uncertainty import consistency, joint_deviation, pose_covariances
-from runner.reporting.document import Table
 from runner.sensing.wrench import cross_matrix
 from runner.store import Calibration
-from runner.studies.meca500.figures import Calibrations, fit, flange_of, predicted, refusal
+from runner.studies.meca500.figures import Calibrations, flange_of
 from runner.study.measured import Measured
-from runner.study.results import found
-
-_KIND = "tool_centre_point"
 
 
 def deviation(done: Calibration) -> float:
     """Return the standard deviation of each joint, in rad."""
     home = np.array(done.config["robot"]["home"])[None]
     return joint_deviation(flange_of(done), home, done.config["calibration"]["repeatability"])
-
-
-def power_of_spread(calibrations: Calibrations) -> Measured:
-    """Return the power of the spread with which the predicted error goes."""
-    done = found(calibrations, f"{_KIND}/spread/{{spread}}")
-    spreads = np.array([float(each.levels["spread"]) for each in done])
-    errors = np.array([predicted()(calibrations[each.name]) for each in done])
-    return Measured("power of the spread in the predicted error", fit(spreads, errors))
 
 
 def shared_pose(calibrations: Calibrations, name: str) -> dict[str, Measured]:
@@ -75,25 +62,3 @@ def common_point_covariance(poses: FloatArray, tips: FloatArray) -> FloatArray:
     A = np.vstack([np.hstack([pose[:3, :3], -np.eye(3)]) for pose in poses])
     blocks = np.linalg.pinv(A)[:3].reshape(3, len(poses), 3).transpose(1, 0, 2)
     return np.asarray(np.sum(blocks @ tips @ blocks.transpose(0, 2, 1), axis=0))
-
-
-def refused(calibrations: Calibrations, caption: str) -> Table:
-    """Return the refused sets of poses, with the reasons."""
-    tip = np.array(calibrations[f"{_KIND}/base"].config["robot"]["tool"]["tip"])
-    axis = np.array([0.0, 0.6, 0.8])
-    attempts = {
-        "2 poses": [np.zeros(3), 0.5 * axis],
-        "4 poses turned about one axis by 0, 20, 40 and 60 deg": [np.radians(20.0 * k) * axis for k in range(4)],
-        "4 poses turned about one axis, up to 0.2 deg": [
-            np.radians(20.0 * k) * axis + np.radians(0.2) * np.eye(3)[k % 3] for k in range(4)
-        ],
-        "4 poses tilted by 0.1 deg": [np.radians(0.1) * v for v in (*np.eye(3), -np.ones(3) / np.sqrt(3.0))],
-    }
-
-    def attempt(turns: list[FloatArray]) -> str:
-        poses = np.tile(np.eye(4), (len(turns), 1, 1))
-        poses[:, :3, :3] = [pin.exp3(turn) for turn in turns]
-        poses[:, :3, 3] = -poses[:, :3, :3] @ tip
-        return refusal(lambda: identify_tool_centre_point(poses, np.zeros((len(turns), 6, 6))))
-
-    return Table(caption, ["set", "reason given"], [[name, attempt(turns)] for name, turns in attempts.items()])

@@ -100,18 +100,19 @@ def of_run(
     *names: str,
     though_failed: bool = False,
 ) -> Measured:
-    """Return the value of a function of a run, or of some runs, as a measured value that conditions call by words.
+    """Return the value of a function of a run, or of some, as a measured value that conditions call by words.
 
-    A failed run has no value, unless what a function reads of it until it failed is asked for.
+    The names may have axes in braces. A failed run has no value, unless what a function reads of it until it failed is
+    asked for.
     """
-    chosen = [runs[name] for name in names]
+    chosen = _chosen(runs, names)
     left_out = not though_failed and any(run.status == "failed" for run in chosen)
     return Measured(words, None if left_out else what(*chosen), unit)
 
 
 def told(runs: Runs, what: Callable[..., Any], *names: str) -> Any:
-    """Return the value of a function for a run, or for some runs, failed or not."""
-    return what(*(runs[name] for name in names))
+    """Return the value of a function for a run, or for those that names with axes stand for, failed or not."""
+    return what(*_chosen(runs, names))
 
 
 def how_many(values: Sized) -> int:
@@ -156,8 +157,11 @@ def each(
 
 def count(runs: Runs, words: str, what: Callable[..., bool] | None, *patterns: str) -> Measured:
     """Return of how many runs that patterns stand for a function is true, or with none how many there are."""
-    chosen = [one.run for pattern in patterns for one in found(runs, pattern)]
-    return Measured(words, sum(bool(what(run)) if what else True for run in chosen))
+    return Measured(words, sum(bool(what(run)) if what else True for run in _chosen(runs, patterns)))
+
+
+def _chosen(runs: Runs, patterns: Sequence[str]) -> list[Run]:
+    return [one.run for pattern in patterns for one in found(runs, pattern)]
 
 
 def _extreme(chosen: Callable[[list[float]], float], name: str, values: Sequence[Measured]) -> Measured:

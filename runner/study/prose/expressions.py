@@ -18,6 +18,7 @@ from runner.base.expressions.evaluator import Budget, Scope
 from runner.base.expressions.grammar import ExpressionError, parse
 from runner.base.expressions.insertions import insertions
 from runner.reporting.document import Block, Claim, Panel, Section, Series
+from runner.reporting.table import Number
 from runner.study.measured import Condition, Measured
 from runner.study.prose.signals import Quantity
 from runner.study.prose.tables import Column
@@ -32,7 +33,7 @@ _STATEMENT = re.compile(r"\{%|%\}|\{#")
 _SET = re.compile(r"^\{% set (\w+) = (.*?) %\}$", re.MULTILINE | re.DOTALL)
 _BRANCHES = (ast.IfExp, ast.BoolOp, ast.Not)
 _MEMBERS = {Measured: ("value", "shown", "near", "with_other"), Condition: ("holds",), Quantity: ()}
-_HANDED = (*get_args(Block), Section, Column, Panel, Series, Claim, np.ndarray)
+_HANDED = (*get_args(Block), Section, Column, Number, Panel, Series, Claim, np.ndarray)
 
 
 class Values:

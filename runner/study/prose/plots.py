@@ -58,9 +58,9 @@ def line(
     return series
 
 
-def joints(runs: Runs, run: str, stem: str = "q", name: str = "q") -> list[Series]:
-    """Return a signal of each joint over time: q, qd, tau or another that has a column for each joint."""
-    values = runs[run].joints(stem)
+def joints(runs: Runs, run: str, signal: Signal = "q", name: str = "q") -> list[Series]:
+    """Return a signal of each joint over time: q, dq, tau or another with a column for each joint, or a function's."""
+    values = signal(runs[run]) if callable(signal) else runs[run].joints(signal)
     t = runs[run].t[: len(values)]
     return [Series(f"{name}{joint + 1}", t, column) for joint, column in enumerate(values.T)]
 

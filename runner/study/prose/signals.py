@@ -8,8 +8,10 @@ import numpy as np
 
 from runner.base.arrays import FloatArray
 from runner.base.dotted_keys import get
+from runner.base.lazy_modules import pin
+from runner.reporting.table import Number
 from runner.store import Run
-from runner.study.run_values import Signal, config_value, trace_of
+from runner.study.run_values import Signal, config_value, number_of, trace_of
 
 
 def _operation(work: Callable[[Any, Any], Any], swapped: bool = False) -> Callable[["Quantity", Any], "Quantity"]:
@@ -145,6 +147,12 @@ def range_of(what: Signal) -> Quantity:
     return highest_of(what) - lowest_of(what)
 
 
+def ends_of(what: Signal) -> Quantity:
+    """Return the smallest and the largest value of a signal, for a cell such as "0.2 to 0.5"."""
+    low, high = lowest_of(what), highest_of(what)
+    return Quantity(lambda *runs: Number(None, float(low(*runs)), float(high(*runs))))
+
+
 def total_of(what: Signal) -> Quantity:
     """Return the sum of the values of a signal."""
     return Quantity(lambda *runs: trace_of(what, *runs).sum())
@@ -172,8 +180,8 @@ def part(what: Callable[..., Mapping[str, Any]], key: str, factor: float = 1.0) 
 
 
 def setting(key: str, factor: float = 1.0) -> Quantity:
-    """Return the number under a dotted key of a run's config, multiplied by `factor`."""
-    return factor * Quantity(lambda run, *_: float(config_value(run, key)))
+    """Return the number or vector under a dotted key of a run's config, such as "goal.0", multiplied by `factor`."""
+    return factor * Quantity(lambda run, *_: np.array(config_value(run, key), dtype=float)[()])
 
 
 def metric_of(name: str, factor: float = 1.0) -> Quantity:
@@ -195,6 +203,30 @@ def power_law(value: Any, at: float, power: float = 1.0) -> Callable[[float], fl
     """Return the law that is proportional to a power of its argument and has a value, measured or not, at one place."""
     known = getattr(value, "value", value)
     return lambda x: None if known is None else known * x / at if power == 1.0 else known * (x / at) ** power
+
+
+def exponent(x: Signal, y: Signal, shared: int = 0) -> Quantity:
+    """Return the exponent with which one number grows with another over some runs, by least squares of the logarithms.
+
+    Args:
+        x: Name of a metric, or a function of a run, that gives the first number.
+        y: The other; a function also gets the last `shared` runs, with which it compares each of those before.
+        shared: Number of these runs.
+    """
+
+    def value(*runs: Run) -> float | None:
+        own, common = runs[: len(runs) - shared], runs[len(runs) - shared :]
+        pairs = np.array([(number_of(x, run), number_of(y, run, *common)) for run in own], dtype=float)
+        return float(np.polyfit(np.log(pairs[:, 0]), np.log(pairs[:, 1]), 1)[0]) if (pairs > 0.0).all() else None
+
+    return Quantity(value)
+
+
+def turns(run: Run) -> FloatArray:
+    """Return the rotation vector of the tip since the first row, along the base's axes, shape (T, 3), in rad."""
+    model, rows = run.model, run.joints("q")
+    first = model.tip_pose(rows[0])[:3, :3]
+    return np.array([pin.log3(model.tip_pose(q)[:3, :3] @ first.T) for q in rows])
 
 
 def manipulability(run: Run) -> FloatArray:

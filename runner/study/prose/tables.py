@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from runner.base.errors import RunnerError, nearest
-from runner.base.quantities import above_rounding, label_with_unit, smaller_units
+from runner.base.quantities import above_rounding, label_with_unit, number, smaller_units
 from runner.reporting import table as typed
 from runner.reporting.document import Origin, Table
 from runner.reporting.figures import origin
@@ -59,6 +59,7 @@ def column(
     what: Signal,
     *others: str,
     digits: int = 3,
+    rounding: float | None = None,
     only: Mapping[str, str | Sequence[str]] | None = None,
     though_failed: bool = False,
 ) -> Column:
@@ -71,6 +72,7 @@ def column(
         what: Name of a metric, or a function of the run, or of these others, that gives a number or a string.
         others: Names of the runs that it is a number of, with axes in braces; the row's own run where there are none.
         digits: How many digits.
+        rounding: Smaller numbers are shown as rounding errors, in the unit of the title; None for those of SI units.
         only: Levels by axis of the rows that have it; the others have a dash.
         though_failed: Whether what a function reads of a run until it failed is shown.
     """
@@ -79,7 +81,8 @@ def column(
         if any(row.levels.get(axis) not in own for axis, own in chosen.items()):
             return Number(None)
         of = [other(runs, name, row.levels) for name in others] or [row.run]
-        return _number(what, of, digits, though_failed)
+        cell = _number(what, of, digits, though_failed)
+        return cell if rounding is None or isinstance(cell, str) else number(cell.value, digits, rounding)
 
     chosen = {axis: [own] if isinstance(own, str) else own for axis, own in (only or {}).items()}
     return Column(title, found_cell, what if isinstance(what, str) else "", chosen)
@@ -147,7 +150,7 @@ def listing(
     caption: str,
     run: str,
     header: Sequence[str],
-    *rows: Sequence[str | float | Measured | None],
+    *rows: Sequence[Cell | float | Measured | None],
     number: str = "",
 ) -> Table:
     """Return a table whose cells are written in the chapter, with the command of a run if one is named."""
@@ -187,8 +190,8 @@ def _with_unit(metric: str, run: Run) -> str:
     return cell if isinstance(cell, str) else above_rounding(cell.value, _unit(run, metric))
 
 
-def _cell(value: str | float | Measured | None, digits: int = 3) -> Cell:
-    if isinstance(value, str):
+def _cell(value: Cell | float | Measured | None, digits: int = 3) -> Cell:
+    if isinstance(value, Cell):
         return value
     return Number(value.value if isinstance(value, Measured) else value, digits=digits)
 

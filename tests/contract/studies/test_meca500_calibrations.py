@@ -1,27 +1,20 @@
 """Calibrations in the Meca500 report: their tables, and what they compute themselves, against closed forms."""
 
-from dataclasses import replace
-from pathlib import Path
+import re
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
-from support.engines import DEFAULT_PLANT
 from support.study_sections import blocks
 
 from runner.calibration.gravity import REST, GravityCalibration, Tool, WrenchCompensation
 from runner.calibration.tool_centre_point import identify_tool_centre_point
 from runner.reporting.document import Curves, Table
-from runner.studies.meca500.figures import consistency, error, fit, predicted, refusal
-from runner.studies.meca500.gravity import (
-    _left_over,
-    angles,
-    exact_readings,
-    force_step,
-    left_over_panels,
-    swapped_moment_step,
-)
+from runner.studies.meca500.figures import error, predicted
+from runner.studies.meca500.gravity import exact_readings, force_step, swapped_moment_step
 from runner.studies.meca500.tool_centre_point import common_point_covariance, independent_rows_covariance
+from runner.study.measured import Finding
+from runner.study.prose.signals import exponent, setting
 
 GRAVITY = 9.81
 PARAMETERS = np.array([0.25, 0.3, 0.01, -0.003, 0.028, 0.4, -0.3, 0.8, 0.01, -0.02, 0.005])
@@ -47,7 +40,7 @@ def table(section, caption):
 def test_every_table_and_figure_carries_its_command(sections):
     for section in sections:
         for block in blocks(section):
-            if isinstance(block, Curves) or (isinstance(block, Table) and not block.caption.startswith("Sets of")):
+            if isinstance(block, Curves | Table):
                 assert block.origin.command.startswith("runner ")
 
 
@@ -58,21 +51,6 @@ def test_the_level_of_the_base_case_is_the_base_case(calibrations):
     assert len({done.config["seed"] for done in calibrations.values()}) == len({d.hash for d in calibrations.values()})
 
 
-def test_refusals_name_the_reason(sections):
-    poses, _, gravity = sections
-    reasons = [reason for _, reason in table(poses, "Sets of poses").lines[1:]]
-    assert "needs 3 or more" in reasons[0]
-    assert all("condition number" in reason for reason in reasons[1:])
-    assert all("not refused" not in reason for _, reason in table(gravity, "Sets of orientations").lines[1:])
-    assert refusal(lambda: None) == "not refused"
-
-
-def test_weighed_by_the_plant_s_reaction_the_tool_is_the_true_one(sections):
-    (row,) = table(sections[2], f"Error of what is identified from {DEFAULT_PLANT}").lines[1:]
-    assert len(row) == 5
-    assert set(row) <= {"0", "0 (rounding)"}
-
-
 def test_without_noise_errors_are_rounding(calibrations):
     for name in ("tool_centre_point/repeatability/0", "tool_direction/repeatability/0", "gravity/noise/0"):
         assert error()(calibrations[name]) < 1e-9
@@ -80,26 +58,25 @@ def test_without_noise_errors_are_rounding(calibrations):
 
 
 def test_the_tip_s_error_is_proportional_to_the_repeatability(calibrations):
-    levels = ("1e-06", "2e-05", "0.0001")
-    errors = [predicted()(calibrations[f"tool_centre_point/repeatability/{level}"]) for level in levels]
-    assert fit(np.array(levels, dtype=float), np.array(errors)) == pytest.approx(1.0, abs=1e-3)
+    done = [calibrations[f"tool_centre_point/repeatability/{level}"] for level in ("1e-06", "2e-05", "0.0001")]
+    assert exponent(setting("calibration.repeatability"), predicted())(*done) == pytest.approx(1.0, abs=1e-3)
 
 
 def test_averaging_readings_makes_the_error_smaller_by_the_root(calibrations):
-    values = np.array([1.0, 10.0, 100.0])
-    errors = [predicted("mass")(calibrations[f"gravity/samples/{value:g}"]) for value in values]
-    assert fit(values, np.array(errors)) == pytest.approx(-0.5, abs=0.01)
+    done = [calibrations[f"gravity/samples/{count}"] for count in (1, 10, 100)]
+    assert exponent(setting("calibration.samples"), predicted("mass"))(*done) == pytest.approx(-0.5, abs=0.01)
 
 
-def test_what_lies_in_the_band_is_counted_once_for_each_calibration(calibrations):
-    base, exact = calibrations["gravity/base"], calibrations["gravity/noise/0"]
-    judged = {**base.consistency, "holds": False}
-    others = [replace(base, folder=Path(name), record={**base.record, "consistency": judged}) for name in "bc"]
-    inside = replace(base, record={**base.record, "consistency": {**base.consistency, "holds": True}})
-    found = consistency({"a/1": inside, "a/2": exact, "a/3": inside, "b/1": others[0]}, "a")
-    assert [found[key].value for key in ("inside", "number", "outside")] == [1, 1, 0]
-    found = consistency({"a/1": inside, "a/2": others[0], "a/3": others[1]}, "a")
-    assert [found[key].value for key in ("inside", "number", "outside")] == [1, 3, 2]
+def test_each_calibration_with_an_error_is_counted_once(calibrations, sections):
+    kinds = {name.partition("/")[0]: set() for name in calibrations}
+    for name, done in calibrations.items():
+        if done.consistency is not None:
+            kinds[name.partition("/")[0]].add(done.hash)
+    told = [block.conditions[1].measured for section in sections for block in blocks(section)
+            if isinstance(block, Finding) and block.claim == "Errors are as large as predicted"]  # fmt: skip
+    assert [re.search(r"calibrations: (\d+)", text)[1] for text in told] == [
+        str(len(kinds[kind])) for kind in ("tool_centre_point", "tool_direction", "gravity")
+    ]
 
 
 def half_turns():
@@ -149,18 +126,3 @@ def test_the_third_row_gives_the_angle_and_the_third_column_does_not():
 def test_swapped_axes_give_another_centre_of_mass():
     readings = exact_readings(PARAMETERS, ORIENTATIONS, GRAVITY)
     assert np.linalg.norm(swapped_moment_step(readings[:, :3], readings[:, 3:]) - PARAMETERS[2:5]) > 5e-3
-
-
-def test_arc_cosine_loses_the_sign_and_arc_sine_the_half_turn(calibrations):
-    assert angles(calibrations, -0.3) == ["-0.3", "0.300", "-0.300", "-0.300"]
-    assert angles(calibrations, 2.0) == ["2", "2.000", "1.142", "2.000"]
-
-
-def test_what_is_left_over_is_drawn_over_the_angle_from_straight_down(calibrations):
-    force, moment = left_over_panels(calibrations, "gravity/base")
-    rotations = _left_over(calibrations["gravity/base"])[0]
-    down = np.degrees(np.arccos(rotations @ [0.0, 0.0, 1.0] @ [0.0, 0.0, -1.0]))
-    for panel in (force, moment):
-        middle, high = panel.series
-        assert middle.x == pytest.approx(np.sort(down))
-        assert (middle.y <= high.y).all()

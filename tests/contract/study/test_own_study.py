@@ -298,6 +298,16 @@ def test_its_printed_equations_are_judged_by_yaml_alone(tmp_path, made):
     (folder / "equations" / "1.yaml").write_text("\n".join(["robot: macro", "entries:", *entries]))
     _, (section,) = read(folder, made)
     assert [row.verdict for row in section.blocks[0].rows] == ["correct", "wrong as printed"]
+    stated = [f"- {{name: {name}, statement: S, place: p. 1}}" for name in ("height", "yields", "safe", "fast")]
+    (folder / "statements.yaml").write_text("\n".join(stated))
+    judged = '{"height": ["b", "m"], "yields": [[True], "m"], "safe": ["undecided", "m"], "fast": [[True, False], "m"]}'
+    (folder / "one.md").write_text(f'# One\n\n{{{{ statements("All.", {judged}) }}}}\n')
+    _, (section,) = read(folder, made)
+    verdicts = [row.findings[0].verdict for row in section.blocks[0].rows]
+    assert verdicts == ["wrong as printed", "matches", "undecided", "differs"]
+    (folder / "one.md").write_text(f'# One\n\n{{{{ statements("All.", {judged.replace("b", "c")}) }}}}\n')
+    with pytest.raises(RunnerError, match=r"no equation .c. in the folder.*; or write .undecided."):
+        read(folder, made)
 
 
 @pytest.mark.parametrize(

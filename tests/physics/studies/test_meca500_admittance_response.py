@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from runner.config.compose.compose import compose
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter
-from runner.studies.meca500.frequency_response import frequency_response, sampled_frequency_response, step_response
+from runner.studies.meca500.frequency_response import frequency_response, sampled_frequency_response
+from runner.studies.meca500.plan import law_in
+from runner.studies.meca500.step_response import critical_response
+from runner.study.study import load_study
 
 # Light, heavy and critical damping, none, hand guiding, a free mass.
 LAW = Admittance(
@@ -13,33 +17,26 @@ LAW = Admittance(
     np.array([20.0, 120.0, 80.0, 0.0, 0.1, 0.0]),
     np.array([800.0, 200.0, 800.0, 4.0, 0.0, 0.0]),
 )
+STIFF = np.array([800.0, 200.0, 600.0, 4.0, 3.0, 5.0])
 LOADS = np.array([5.0, -3.0, 2.0, 0.4, 0.3, -0.2])
 TIMES = np.linspace(0.0, 3.0, 40)
 
 
-def test_the_step_response_solves_the_law():
+def test_the_critical_response_solves_the_law():
+    critical = Admittance(LAW.mass, 2.0 * np.sqrt(LAW.mass * STIFF), STIFF)
+
     def derivative(_, state):
         x, v = np.split(state, 2)
-        return np.concatenate([v, (LOADS - LAW.damping * v - LAW.stiffness * x) / LAW.mass])
+        return np.concatenate([v, (LOADS - critical.damping * v - critical.stiffness * x) / critical.mass])
 
     solution = solve_ivp(derivative, (0.0, 3.0), np.zeros(12), t_eval=TIMES, rtol=1e-11, atol=1e-13, method="DOP853")
-    np.testing.assert_allclose(step_response(LAW, LOADS, TIMES), solution.y[:6].T, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(critical_response(critical, LOADS, TIMES), solution.y[:6].T, rtol=0, atol=1e-9)
 
 
-def test_near_critical_damping_the_step_response_is_continuous():
-    def response(damping):
-        law = Admittance(np.ones(6), np.full(6, damping), np.full(6, 100.0))
-        return step_response(law, np.ones(6), TIMES)
-
-    below, at, above = (response(20.0 * (1.0 + change)) for change in (-1e-9, 0.0, 1e-9))
-    np.testing.assert_allclose(below, at, rtol=0, atol=1e-10)
-    np.testing.assert_allclose(above, at, rtol=0, atol=1e-10)
-
-
-def test_a_heavily_damped_axis_creeps_without_overflow():
-    law = Admittance(np.ones(6), np.full(6, 1e4), np.ones(6))
-    found = step_response(law, np.ones(6), np.array([0.0, 1.0, 1e4, 1e6]))
-    np.testing.assert_allclose(found[:, 0], -np.expm1(-np.array([0.0, 1.0, 1e4, 1e6]) * 1e-4), atol=2e-8)
+@pytest.mark.parametrize("case", ["kinematic, 1 ms", "servo, 16.7 ms"])
+def test_the_laws_of_the_steps_are_critically_damped(case):
+    law = law_in(compose(load_study("meca500").jobs()[f"step/{case}/rotation z"]).resolved)
+    np.testing.assert_allclose(law.damping**2, 4.0 * law.mass * law.stiffness, rtol=1e-12)
 
 
 def test_the_frequency_response_is_that_of_a_spring_when_slow_and_of_a_mass_when_fast():

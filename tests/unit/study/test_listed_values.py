@@ -17,7 +17,8 @@ from runner.study.prose.tables import listing
 def pressed(stiffness, failed=False):
     """Return a run against a wall of a stiffness."""
     motion = {"t": [0.0, 1.0], "tip_x": [2.0, 2.5]}
-    return made_up_run(trace=motion, config={"wall": {"stiffness": stiffness}}, failed=failed)
+    wall = {"stiffness": stiffness, "normal": [0.0, -1.0, 2.0]}
+    return made_up_run(trace=motion, config={"wall": wall}, failed=failed)
 
 
 WALLS = {"wall/soft": pressed(10.0), "wall/hard": pressed(1000.0), "wall/gone": pressed(5.0, True)}
@@ -54,6 +55,13 @@ def test_a_key_of_no_config_is_refused_with_the_nearest():
     assert config(RUNS, "free", "wall.stiffness") == 0.0
     with pytest.raises(RunnerError, match=r"no key wall.stifness in a config \(did you mean stiffness\?\)"):
         setting("wall.stifness")(RUNS["free"])
+    with pytest.raises(RunnerError, match=r"no key wall.normal.3 in a config"):
+        setting("wall.normal.3")(RUNS["free"])
+
+
+def test_a_vector_of_a_config_has_arithmetic_and_items():
+    np.testing.assert_array_equal((2 * setting("wall.normal"))(RUNS["free"]), [0.0, -2.0, 4.0])
+    assert setting("wall.normal.2", 10)(RUNS["free"]) == 20.0
 
 
 def test_a_signal_from_where_it_begins():

@@ -152,6 +152,35 @@ def test_quantities_of_runs_have_arithmetic():
         str(error)
 
 
+def test_the_exponent_of_two_numbers_is_found_over_runs():
+    runs = [RUNS[f"gain/{gain}/full_equations"] for gain in (1, 10, 5)]
+    gain, end = signals.setting("controller.gain"), signals.at_the_end(signals.norm("error"))
+    assert signals.exponent(gain, end**-2)(*runs) == pytest.approx(-2.0)
+    assert signals.exponent("error", gain)(*runs) == pytest.approx(1.0)
+    apart = signals.largest_of(signals.distance("error"))  # 5 times the difference from 1
+    assert signals.exponent(gain - 10.0, apart, shared=1)(*runs[1:], runs[0]) == pytest.approx(1.0)
+    assert signals.exponent(gain, apart, shared=1)(*runs, runs[0]) is None
+    both = blocks.of_run(RUNS, "exponent", signals.exponent(gain, "error"), "1", "gain/{gain}/full_equations")
+    assert both.value == pytest.approx(1.0)
+
+
+def test_a_cell_has_the_ends_of_a_signal():
+    made = tables.listing(RUNS, "Ways.", "held", ["end"], [blocks.told(RUNS, signals.ends_of("q2"), "held")])
+    assert made.lines[1:] == [["-1 to 0"]]
+
+
+def test_a_column_has_its_own_size_of_rounding_errors():
+    small = tables.column("small", signals.setting("controller.gain", 1e-14), rounding=0)
+    coarse = tables.column("coarse", "error", rounding=6.0)
+    made = tables.table(RUNS, "Small.", "gain/{gain}/full_equations", small, coarse)
+    assert made.lines[1:] == [["1·10⁻¹³", "0 (rounding)"], ["1·10⁻¹²", "10"], ["5·10⁻¹³", "0 (rounding)"]]
+
+
+def test_joints_are_drawn_of_any_signal_that_has_a_column_for_each():
+    halves = plots.joints(RUNS, "held", 0.5 * signals.of_joints())
+    np.testing.assert_allclose([each.y for each in halves], [[0.0, 1.75, 3.5], [0.0, -0.25, -0.5]])
+
+
 def test_runs_are_points_over_two_of_their_numbers():
     gain, end = signals.setting("controller.gain"), signals.at_the_end(signals.norm("error"))
     (series,) = plots.points(RUNS, "gain/{gain}/full_equations", "gain", end, "all")
