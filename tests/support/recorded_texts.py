@@ -79,8 +79,8 @@ def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
 def _paths(svg: str) -> Iterator[str]:
     """Yield style and places of each path of a drawing that is no letter."""
     root = ET.fromstring(svg)
-    letters = {path for definitions in root.iter("{*}defs") for path in definitions.iter()}
-    for path in root.iter("{*}path"):
+    letters = {path for definitions in root.findall(".//{*}defs") for path in definitions.iter()}
+    for path in root.findall(".//{*}path"):
         if path not in letters:
             numbers = np.array([float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", path.get("d", ""))])
             yield f"{path.get('style', '')} {numbers.size} {_some(np.round(numbers))}"

@@ -1,14 +1,16 @@
 """`runner figures --motion`: animated files of stored runs."""
 
+import io
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.animation import FFMpegWriter
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter
 from PIL import Image
 from support.sample_document import playback
 
 from runner.reporting.charts.sheet import column
+from runner.reporting.export import motion
 from runner.reporting.export.motion import write_motion
 
 SMALL = column(60.0)
@@ -29,6 +31,33 @@ def test_a_motion_lasts_as_long_as_the_run_and_rests_for_a_second(tmp_path):
     assert sum(duration for duration, _ in found) == pytest.approx(3000, abs=250)  # 2 s and 1 s, in 10 ms each
     assert np.abs(found[0][1] - found[len(found) // 2][1]).max() > 100
     assert found[0][1].shape[1] == int(60 / 25.4 * 150)
+
+
+class Frames(AbstractMovieWriter):
+    """Keeps the first frame and the last as SVG."""
+
+    kept: list[str]
+
+    def setup(self, fig, outfile, dpi=None):
+        super().setup(fig, outfile, dpi)
+        self.kept = []
+
+    def grab_frame(self, **_):
+        picture = io.StringIO()
+        self.fig.savefig(picture, format="svg")
+        self.kept = [*self.kept[:1], picture.getvalue()]
+
+    def finish(self):
+        self.outfile.write_bytes(b"frames")
+
+
+@pytest.mark.costs(2)
+def test_the_drawn_arm_and_its_ghost_are_as_recorded(tmp_path, monkeypatch, as_recorded):
+    writer = Frames()
+    monkeypatch.setattr(motion, "PillowWriter", lambda fps: writer)
+    ghost = playback(20, name="B", desired=None)
+    write_motion(playback(20, name="A", ends="failed at 2 s", others=[ghost]), tmp_path / "m.gif", SMALL)
+    as_recorded("drawings", "motion", writer.kept)
 
 
 @pytest.mark.costs(3)

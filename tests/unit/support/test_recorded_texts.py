@@ -33,3 +33,9 @@ def test_no_line_has_the_name_of_a_run():
         "  -: outputs/runs/...",
         "  -: of ...",
     ]
+
+
+def test_a_drawing_has_a_line_for_each_path_that_is_no_letter():
+    letter = '<defs><path d="M 9 9"/></defs>'
+    svg = f'<svg xmlns="http://www.w3.org/2000/svg">{letter}<path style="fill: #fff" d="M 0 1 L 2.4 3"/></svg>'
+    assert lines(svg) == ["is: fill: #fff 4 0 1 2 3"]
