@@ -1,10 +1,11 @@
-"""Starting points that the doctor proposes: home, goal and gains against the model."""
+"""Starting points that the doctor proposes: home, goal and gains against the model; the report on them."""
 
 import numpy as np
 import pytest
 from support import strangers
 
 from runner.doctor.postures import smallest_singular_values
+from runner.reporting.doctor_report import doctor_document
 from runner.robots.inverse_kinematics import solve_tip_position
 
 
@@ -41,3 +42,9 @@ def test_a_weak_arm_is_led_slowly():
     assert (
         examine(strangers.folder() / "weak.urdf", None).arm.start.natural_frequency < strong.arm.start.natural_frequency
     )
+
+
+@pytest.mark.bullet
+@pytest.mark.parametrize("name", strangers.STRANGERS)
+def test_the_report_is_as_recorded(name, as_recorded):
+    as_recorded("reports", f"doctor on the {name}", doctor_document(strangers.read(name)))
