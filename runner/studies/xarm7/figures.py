@@ -4,13 +4,12 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-import pinocchio as pin
 
+from runner.base.arrays import FloatArray
 from runner.base.quantities import number
 from runner.store import Run
 from runner.study.prose.signals import limit_margin
 from runner.study.results import Runs
-from runner.study.run_values import values
 
 ROWS = {"position": 3, "pose": 6}  # of the Jacobian, by the tip's task
 SHOULDER = 1  # counted from 0: the joint that lifts the arm
@@ -38,13 +37,6 @@ def lag_at(runs: Runs, run: str) -> Callable[[float], float]:
     return partial(lag, runs[run])
 
 
-def power_of_the_rate(slow: Run, fast: Run) -> float | None:
-    """Return by which power of the commands' rate the largest axis error falls from one run to another."""
-    errors = values((slow, fast), "max_axis_error")
-    periods = [run.config["controller"]["period"] for run in (slow, fast)]
-    return float(np.log(errors[0] / errors[1]) / np.log(periods[0] / periods[1])) if errors.all() else None
-
-
 def line_length(run: Run) -> float:
     """Return the distance from A to B, in m."""
     trajectory = run.config["trajectory"]
@@ -58,11 +50,8 @@ def peak_speed(run: Run) -> float:
 
 def first_saturation(run: Run) -> tuple[int, float] | None:
     """Return the first joint at its effort limit, counted from 0, and its time, in s; None if none reaches it."""
-    at_limit = _at_limits(run)
-    if not at_limit.any():
-        return None
-    row, joint = np.argwhere(at_limit)[0]
-    return int(joint), float(run.t[row])
+    at_limit = np.argwhere(_at_limits(run))
+    return (int(at_limit[0, 1]), float(run.t[at_limit[0, 0]])) if at_limit.size else None
 
 
 def first_at_limit(run: Run) -> str:
@@ -71,23 +60,12 @@ def first_at_limit(run: Run) -> str:
     return "none" if first is None else f"q{first[0] + 1}, at {first[1]:.3g} s"
 
 
-def ticks_at_a_limit(run: Run) -> str:
-    """Return the ticks at which a joint is at its effort limit, in per cent, as a cell of a table."""
-    return f"{100.0 * float(run.metrics['saturation_fraction'].median or 0.0):.3g} %"
+def at_a_limit(run: Run) -> FloatArray:
+    """Return 1 at each row at which a joint is at its effort limit, otherwise and at the last row 0, shape (T,)."""
+    return np.append(_at_limits(run).any(axis=1), 0.0)
 
 
-def clipped_ticks(run: Run) -> float:
-    """Return the number of ticks at which a joint is at its effort limit."""
-    return float(_at_limits(run).any(axis=1).sum())
-
-
-def last_clipped(run: Run) -> float | None:
-    """Return the last time at which a joint is at its effort limit, in s; None if there is none."""
-    times = run.t[:-1][_at_limits(run).any(axis=1)]
-    return float(times[-1]) if times.size else None
-
-
-def _at_limits(run: Run) -> np.ndarray:
+def _at_limits(run: Run) -> FloatArray:
     """Return at which ticks each joint is at its effort limit, shape (T, nq)."""
     torques = np.abs(run.joints("tau"))[:-1]
     return np.asarray(torques >= run.model.effort_limits * (1.0 - 1e-9))
@@ -110,18 +88,14 @@ def sag(run: Run) -> float:
     return max(float(np.abs(model.tip_jacobian(q)[:3] @ model.gravity_torque(q)).max()) / stiffness for q in rows)
 
 
-def flange_turn(run: Run) -> float:
-    """Return the largest angle between the flange's orientation and the one it starts with, in rad."""
-    model, q = run.model, run.joints("q")
-    first = model.tip_pose(q[0])[:3, :3]
-    return max(float(np.linalg.norm(pin.log3(first.T @ model.tip_pose(row)[:3, :3]))) for row in q[::10])
+def drifts(run: Run) -> FloatArray:
+    """Return the joints' displacement over each cycle, shape (cycles,), in rad."""
+    return np.asarray(np.linalg.norm(np.diff(run.joints("q")[:: cycle_ticks(run)], axis=0), axis=1))
 
 
-def second_drift(run: Run) -> float:
-    """Return the largest joint displacement from the end of the first period to the end, in rad."""
-    q = run.joints("q")
-    after = int(np.searchsorted(run.t, float(run.config["trajectory"]["duration"]) - 1e-9))
-    return float(np.abs(q[-1] - q[after]).max())
+def cycle_ticks(run: Run) -> int:
+    """Return the ticks of a cycle."""
+    return round(float(run.config["trajectory"]["duration"]) / float(run.config["controller"]["period"]))
 
 
 def moving_mass(run: Run) -> float:

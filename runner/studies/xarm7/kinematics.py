@@ -3,7 +3,7 @@
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import number
+from runner.reporting.table import Number
 from runner.robots.model import RobotModel
 from runner.store import Run
 from runner.studies.xarm7.equations.derivations.xarm7_inverse import CENTIMETRES, printed_inverse, printed_tip
@@ -50,22 +50,16 @@ def fixed_errors(runs: Runs, run: str) -> list[tuple[str, float, float, float]]:
     return rows
 
 
-def branch_rows(runs: Runs, *names: str) -> list[list[str]]:
-    """Return the joint positions along the lines of some runs, and the smallest margin: a row for each branch."""
+def branch_rows(runs: Runs, *names: str) -> list[list[str | float | Number]]:
+    """Return branch, X, ranges of q2 and q4, smallest margin and its joint: a row for each branch and line."""
     return [_branch_row(runs[name], branch) for branch in BRANCHES for name in names]
 
 
-def _branch_row(run: Run, branch: Branch) -> list[str]:
+def _branch_row(run: Run, branch: Branch) -> list[str | float | Number]:
     q, margins = _branch(run, branch)
     name = f"{_SHOULDER[branch.shoulder]}, {_ELBOW[branch.elbow]}"
-    ranges = [f"{q[:, j].min():.2f} to {q[:, j].max():.2f}" for j in MOVING[1:]]
-    worst = int(np.argmin(margins))
-    return [name, f"{_line(run)[0, 0]:g}", *ranges, f"{number(float(margins[worst]))} (q{worst + 1})"]
-
-
-def branch_rooms(runs: Runs, *names: str) -> list[list[float]]:
-    """Return the smallest margin to a joint limit of each branch along each of some lines, in rad."""
-    return [[float(_branch(runs[name], branch)[1].min()) for name in names] for branch in BRANCHES]
+    ranges = [Number(None, float(q[:, j].min()), float(q[:, j].max())) for j in MOVING[1:]]
+    return [name, f"{_line(run)[0, 0]:g}", *ranges, float(margins.min()), f"q{int(np.argmin(margins)) + 1}"]
 
 
 def branches_miss(*lines: Run) -> float:

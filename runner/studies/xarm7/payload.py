@@ -1,11 +1,10 @@
 """Payload capacity of the joints, from their effort limits."""
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import brute, minimize
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import number
-from runner.reporting.document import Block, Notice, Series
+from runner.reporting.document import Series
 from runner.store import Run
 from runner.studies.xarm7.figures import SHOULDER
 from runner.study.results import Runs, found
@@ -38,14 +37,15 @@ def stretched(run: Run) -> tuple[float, FloatArray]:
         q[_PLANE] = angles
         return q
 
-    steps = [np.linspace(*span, _GRID) for span in zip(lower, upper, strict=True)]
-    grid = np.stack(np.meshgrid(*steps), axis=-1).reshape(-1, len(_PLANE))
-    reached = model.tip_positions(np.array([posture(angles) for angles in grid]))[:, 0]
+    def behind(angles: FloatArray) -> float:
+        return float(-model.tip_position(posture(angles))[0])
+
+    bounds = tuple(zip(lower, upper, strict=True))
     found = minimize(
-        lambda angles: -model.tip_position(posture(angles))[0],
-        x0=grid[int(np.argmax(reached))],
+        behind,
+        x0=brute(behind, bounds, Ns=_GRID, finish=None),
         jac=lambda angles: -model.tip_jacobian(posture(angles))[0, _PLANE],
-        bounds=list(zip(lower, upper, strict=True)),
+        bounds=bounds,
         options={"ftol": 1e-15, "gtol": 1e-12},
     )
     q = posture(found.x)
@@ -65,16 +65,12 @@ def others(payloads: FloatArray) -> float:
     return float(np.delete(payloads, SHOULDER).min())
 
 
-def limit_rows(runs: Runs, run: str, *payloads: FloatArray) -> list[list[str]]:
+def limit_rows(runs: Runs, run: str, *payloads: FloatArray) -> list[list[str | float]]:
     """Return the effort limit of each joint of a run's arm and payloads with which it is met: a row for each."""
     return [
-        [f"q{joint + 1}", f"{limit:g}", *(_kilograms(each[joint]) for each in payloads)]
+        [f"q{joint + 1}", limit, *(each[joint] for each in payloads)]
         for joint, limit in enumerate(runs[run].model.effort_limits)
     ]
-
-
-def _kilograms(mass: float) -> str:
-    return number(float(mass)) if np.isfinite(mass) and mass < 100.0 else "above 100"
 
 
 def asked(runs: Runs, group: str, largest: float) -> list[Series]:
@@ -101,10 +97,3 @@ def lost_when(run: Run) -> str:
     """Return when an axis error of the tip leaves the settling band for the first time, in s, as a cell of a table."""
     beyond = (np.abs(run.vector("error")) > run.config["robot"]["settling_band"]).any(axis=1)
     return f"{run.t[int(np.argmax(beyond))]:.3g}" if beyond.any() else "not lost"
-
-
-def beyond_the_rating(runs: Runs) -> list[Block]:
-    """Return a warning about payloads above the manufacturer's rating; empty if none is above it."""
-    ours = [run for name, run in runs.items() if name.startswith("payload/")]
-    texts = sorted({str(caveat["text"]) for run in ours for caveat in run.caveats if caveat["rule"] == "overload"})
-    return [Notice("warning", "Beyond the rating", f"In these runs {'; '.join(texts)}.")] if texts else []

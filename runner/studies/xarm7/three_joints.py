@@ -35,11 +35,6 @@ def every(seconds: float, signal: str) -> Callable[[Run], FloatArray]:
     return lambda run: trace_of(signal, run)[:: round(seconds / float(run.config["controller"]["period"]))]
 
 
-def apart_in(*signals: str) -> Callable[[Run, Run], float]:
-    """Return the largest difference of two runs in any of some signals."""
-    return lambda run, other: max(float(np.abs(trace_of(each, run) - trace_of(each, other)).max()) for each in signals)
-
-
 def home_tip(runs: Runs, run: str) -> list[float]:
     """Return the tip's position at home, in m."""
     home: list[float] = runs[run].model.tip_position(np.array(runs[run].config["robot"]["home"])).tolist()
@@ -49,9 +44,3 @@ def home_tip(runs: Runs, run: str) -> list[float]:
 def reach(run: Run) -> float:
     """Return the largest distance of a run's tip from the shoulder, in m."""
     return float(np.linalg.norm(run.vector("tip") - run.model.shoulder, axis=1).max())
-
-
-def joint_range(runs: Runs, run: str, joint: str) -> str:
-    """Return the least and the largest position of a joint, as a cell of a table."""
-    q = runs[run].signal(joint)
-    return f"{q.min():.3f} to {q.max():.3f}"

@@ -2,42 +2,29 @@
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import above_rounding, number
 from runner.reporting.document import Series
 from runner.robots.model import RobotModel
 from runner.store import Run
-from runner.studies.xarm7.figures import ROWS, line_length, smallest_margin
+from runner.studies.xarm7.figures import ROWS, line_length
 from runner.studies.xarm7.kinematics import random_postures
 from runner.studies.xarm7.parts.xarm7_as_printed import PrintedJacobian
-from runner.study.results import Runs, found
+from runner.study.results import Runs
 
 _COUNT, _SEED = 1000, 7  # of the random postures
 _ZERO = 7  # palette index of singular values that are zero except for rounding
-_METRICS = ("max_axis_error", "cross_track_error", "peak_joint_speed")
 
 
-@dataclass(frozen=True)
-class Inversion:
-    """Properties of (J^T J)^-1 J^T over some postures.
+def invert(jacobians: FloatArray) -> dict[str, FloatArray]:
+    """Take the printed pseudo-inverse X = (J^T J)^-1 J^T of some Jacobians, shape (N, m, n), by NumPy.
 
-    Attributes:
-        ranks: Rank of J^T J at each posture, shape (N,).
-        offs: |J X - 1|, X instead of J^+, if NumPy does not refuse to invert it; spectral norm, zero of J^+.
-        right: The same of J^T (J J^T)^-1 at every posture, shape (N,).
+    Returns:
+        Rank of J^T J at each posture, `ranks`; |J X - 1|, spectral norm, if NumPy does not refuse to invert, `offs`;
+        the same of J^T (J J^T)^-1 at every posture, `right`.
     """
-
-    ranks: FloatArray
-    offs: FloatArray
-    right: FloatArray
-
-
-def invert(jacobians: FloatArray) -> Inversion:
-    """Take the printed pseudo-inverse of each of some Jacobians, shape (N, m, n), by NumPy."""
     unit = np.eye(jacobians.shape[1])
     offs: list[float] = []
     for J in jacobians:
@@ -45,81 +32,70 @@ def invert(jacobians: FloatArray) -> Inversion:
             offs.append(float(np.linalg.norm(J @ (np.linalg.inv(J.T @ J) @ J.T) - unit, 2)))
     transposed = jacobians.transpose(0, 2, 1)
     right = transposed @ np.linalg.inv(jacobians @ transposed)
-    return Inversion(
-        np.linalg.matrix_rank(transposed @ jacobians).astype(float),
-        np.array(offs),
-        np.linalg.norm(jacobians @ right - unit, 2, axis=(1, 2)),
-    )
+    return {
+        "ranks": np.linalg.matrix_rank(transposed @ jacobians).astype(float),
+        "offs": np.array(offs),
+        "right": np.linalg.norm(jacobians @ right - unit, 2, axis=(1, 2)),
+    }
 
 
-def inversions(runs: Runs) -> dict[tuple[str, str], Inversion]:
-    """Return the inversions by the tip's task and by the kind of postures: random, or on the line."""
+def inversions(runs: Runs) -> dict[str, dict[str, FloatArray]]:
+    """Return the inversions by the tip's task and the kind of postures, such as "pose, random" or "pose, line"."""
     model = runs["printed/position/working"].model
     everywhere = _true(model, random_postures(model, _COUNT, _SEED))
     return {
-        (task, where): invert(jacobians[:, :rows])
+        f"{task}, {where}": invert(jacobians[:, :rows])
         for task, rows in ROWS.items()
         for where, jacobians in (("random", everywhere), ("line", _along(runs, task)))
     }
 
 
-def inverse_rows(tried: Mapping[tuple[str, str], Inversion]) -> list[list[str]]:
-    """Return the same as rows of a table."""
-    rows = []
-    for (task, where), result in tried.items():
-        low, high = (f"{value:.0f}" for value in (result.ranks.min(), result.ranks.max()))
-        answers = [number(float(of(result.offs)), 2) for of in (np.median, np.max) if result.offs.size]
-        rows.append(
-            [
-                f"{ROWS[task]} × 7",
-                f"{result.right.size}, {where}",
-                f"{low} of 7" if low == high else f"{low} to {high} of 7",
-                str(result.right.size - result.offs.size),
-                f"{answers[0]} (up to {answers[1]})" if answers else "–",
-                above_rounding(float(result.right.max()), digits=2),
-            ]
-        )
+def inverse_rows(tried: Mapping[str, Mapping[str, FloatArray]]) -> list[list[str | float | None]]:
+    """Return case, postures, largest rank, refused ones, median and largest |J X - 1|, and that of the right."""
+    rows: list[list[str | float | None]] = []
+    for case, own in tried.items():
+        offs, right = own["offs"], own["right"]
+        found = [of(offs) if offs.size else None for of in (np.median, np.max)]
+        rows.append([case, right.size, own["ranks"].max(), right.size - offs.size, *found, right.max()])
     return rows
 
 
-def inverse_values(tried: Mapping[tuple[str, str], Inversion]) -> dict[str, float | None]:
+def inverse_values(tried: Mapping[str, Mapping[str, FloatArray]]) -> dict[str, float | None]:
     """Return their summary: cases, those refused, rank beyond J's rows, |J X - 1| of printed and right."""
-    results = tried.values()
-    answers, cases = np.concatenate([result.offs for result in results]), sum(result.right.size for result in results)
+    ranks, answers, right = ([own[name] for own in tried.values()] for name in ("ranks", "offs", "right"))
+    offs, rows = np.concatenate(answers), [ROWS[case.partition(",")[0]] for case in tried]
+    cases = sum(own.size for own in right)
     return {
         "cases": cases,
-        "refused": cases - answers.size,
-        "surplus": max(float(result.ranks.max()) - ROWS[task] for (task, _), result in tried.items()),
-        "median": float(np.median(answers)) if answers.size else None,
-        "best": float(answers.min()) if answers.size else None,
-        "right": float(max(result.right.max() for result in results)),
+        "refused": cases - offs.size,
+        "surplus": max(float(own.max()) - least for own, least in zip(ranks, rows, strict=True)),
+        "median": float(np.median(offs)) if offs.size else None,
+        "best": float(offs.min()) if offs.size else None,
+        "right": float(np.concatenate(right).max()),
     }
 
 
 def singular_values(runs: Runs, task: str) -> list[Series]:
     """Return the singular values of J^T J of the right Jacobian along the line, over the tip's y in m."""
-    rows, run = ROWS[task], runs[f"printed/{task}/working"]
-    J = _along(runs, task)[:, :rows]
-    values = np.linalg.svd(J.transpose(0, 2, 1) @ J, compute_uv=False)
+    rows, y = ROWS[task], _y(runs[f"printed/{task}/working"])
     names = [*(f"singular value {k + 1}" for k in range(rows)), "zero, rounded", *[""] * (6 - rows)]
     return [
-        Series(name, _y(run), own, "line" if k < rows else "dotted", color=k if k < rows else _ZERO)
-        for k, (name, own) in enumerate(zip(names, values.T, strict=True))
+        Series(name, y, own, "line" if k < rows else "dotted", color=k if k < rows else _ZERO)
+        for k, (name, own) in enumerate(zip(names, _squares(runs, task).T, strict=True))
     ]
 
 
-def least_true_value(runs: Runs) -> float:
-    """Return the least of the singular values of J^T J along the line, of both tasks, that J's rows account for."""
-    return min(float(np.min(each.y)) for each in _all_singular_values(runs) if each.style == "line")
+def singular_ends(runs: Runs) -> list[float]:
+    """Return the least singular value along the line that J's rows account for, and the largest of the others."""
+    values = {rows: _squares(runs, task) for task, rows in ROWS.items()}
+    return [min(float(own[:, :rows].min()) for rows, own in values.items()),
+            max(float(own[:, rows:].max()) for rows, own in values.items())]  # fmt: skip
 
 
-def largest_rounded_value(runs: Runs) -> float:
-    """Return the largest of the others, which are zero except for rounding."""
-    return max(float(np.max(each.y)) for each in _all_singular_values(runs) if each.style != "line")
-
-
-def _all_singular_values(runs: Runs) -> list[Series]:
-    return [series for task in ROWS for series in singular_values(runs, task)]
+def _squares(runs: Runs, task: str) -> FloatArray:
+    """Return the singular values of J^T J along the line, shape (N, 7)."""
+    J = _along(runs, task)[:, : ROWS[task]]
+    return np.asarray(np.linalg.svd(J.transpose(0, 2, 1) @ J, compute_uv=False))
 
 
 def _along(runs: Runs, task: str) -> FloatArray:
@@ -179,7 +155,6 @@ def _column_row(compared: Mapping[str, FloatArray], k: int, source: int) -> list
     return [
         str(k + 1),
         f"true column {source + 1}",
-        above_rounding(float(np.abs(compared["shifted"][:, :, k] - compared["fixed"][:, :, source]).max()), digits=2),
         _largest(angles[:, :3]),
         float(np.median(linear)),
         float(linear.max()),
@@ -198,11 +173,6 @@ def column_errors(runs: Runs, run: str, shifted: bool) -> list[Series]:
     model, line = runs[run].model, runs[run].joints("q")[_to_b(runs[run])]
     off = np.linalg.norm((jacobians(model, line, shifted, True) - jacobians(model, line, False, False))[:, :3], axis=1)
     return [Series(f"column {k + 1}", _y(runs[run]), own) for k, own in enumerate(off.T)]
-
-
-def largest_column_error(runs: Runs, run: str, shifted: bool) -> float:
-    """Return the largest of these errors, in m/rad."""
-    return max(float(np.max(each.y)) for each in column_errors(runs, run, shifted))
 
 
 def column_values(compared: Mapping[str, FloatArray]) -> dict[str, float]:
@@ -227,30 +197,13 @@ def column_values(compared: Mapping[str, FloatArray]) -> dict[str, float]:
     }
 
 
-def outcomes(runs: Runs) -> list[list[str | float | None]]:
-    """Return the outcome of each run with the report's errors, and of the corrected law: a row for each."""
-    rows = []
-    for one in found(runs, "printed/{task}/{case}"):
-        task, case = one.levels.values()
-        corrected = case == "working"
-        rows.append([task, "corrected law" if corrected else case, "yes" if corrected else "no", *_outcome(one.run)])
-        if (fed_back := f"{one.name}/fed back") in runs:
-            rows.append([task, case, "yes", *_outcome(runs[fed_back])])
-    return rows
+def outcome(run: Run) -> str:
+    """Return the outcome of a run as a cell of a table."""
+    failure = run.failure_record
+    return "runs" if failure is None else f"ends at {failure['time']:.4g} s: {str(failure['reason']).lower()}"
 
 
-def _outcome(run: Run) -> list[str | float | None]:
-    if (failure := run.failure_record) is None:
-        return ["runs", *map(run.median, _METRICS), smallest_margin(run)]
-    return [
-        f"ends at {failure['time']:.4g} s: {str(failure['reason']).lower()}",
-        *["–"] * (len(_METRICS) + 1),
-    ]
-
-
-def with_the_inverse(runs: Runs) -> dict[str, int]:
-    """Return the numbers of runs with the inverse as printed: all, those on the line, and those that end early."""
-    ours = [one.run for one in found(runs, "printed/{task}/{case=as printed|inverse alone}")]
-    errors = [(run.median("max_axis_error"), line_length(run)) for run in ours]
-    following = sum(error is not None and error < 0.1 * length for error, length in errors)
-    return {"many": len(ours), "following": following, "ended": sum(run.failure is not None for run in ours)}
+def follows(run: Run) -> bool:
+    """Return True if the tip stays within a tenth of the line's length."""
+    error = run.median("max_axis_error")
+    return error is not None and error < 0.1 * line_length(run)

@@ -10,9 +10,9 @@ from support.study_plans import xarm7_studies
 from support.thin_plans import make_runs
 
 from runner.store import Run
-from runner.studies.xarm7.figures import ROWS, first_saturation, lag, sag
+from runner.studies.xarm7.figures import ROWS, drifts, first_saturation, lag, sag
 from runner.studies.xarm7.kinematics import random_postures
-from runner.studies.xarm7.null_space import between_commands, drifts
+from runner.studies.xarm7.null_space import between_commands
 from runner.studies.xarm7.payload import largest_payloads, lost_when, stretched
 from runner.studies.xarm7.why_it_failed import invert, jacobians
 from runner.study.prose.signals import largest_of, moved, norm, vector
@@ -32,9 +32,9 @@ def test_the_printed_inverse_has_nothing_to_invert_and_the_right_one_is_right(xa
     J = np.array([xarm7.model.tip_jacobian(q) for q in random_postures(xarm7.model, 200)])
     for rows in ROWS.values():
         result = invert(J[:, :rows])
-        assert (result.ranks == rows).all()
-        assert result.right.max() < 1e-9
-        assert (result.offs > 1e-3).all()
+        assert (result["ranks"] == rows).all()
+        assert result["right"].max() < 1e-9
+        assert (result["offs"] > 1e-3).all()
 
 
 def test_of_a_tall_matrix_the_printed_inverse_is_right() -> None:
