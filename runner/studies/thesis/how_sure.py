@@ -1,21 +1,146 @@
-"""Robustness of the verdicts: tables, a figure and numbers of the claims over many seeds."""
+"""Robustness of the verdicts: claims judged by all seeds, by each seed, and by groups of seeds."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from runner.base.arrays import FloatArray
+from runner.metrics.summary import over_repetitions
 from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.figures import origin
-from runner.reporting.published_claims import FACTOR, load_claims
+from runner.reporting.published_claims import (
+    FACTOR,
+    PublishedClaim,
+    Verdict,
+    compared_with,
+    load_claims,
+    verdict_on,
+)
 from runner.reporting.sweep.effects import at_texts
 from runner.reporting.words import PRESET
-from runner.studies.thesis.judged import Judged, judge_by_seeds
+from runner.store import Run
 from runner.study.measured import Measured
 from runner.study.results import Runs, found
 
+DRAWN = 2000
+"""Groups of seeds drawn with replacement."""
+_SEED = 0  # of what draws them: the same for all claims, so that what one is compared with has the same seeds
+_ENDS = (0.01, 0.99)
 _RUNS = "sure/{figure}/{preset}/{repetitions}"
 _BESIDE = 0.12  # of a claim's place, so that the bars of both presets are seen
 _COLORS = {"as_reported": 1, "full_equations": 0}  # palette indices, as in all figures of the report
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A claim under one preset; of a run that failed without it has no value and no verdicts.
+
+    Attributes:
+        claim: The claim.
+        preset: The preset.
+        values: Simulated value of each seed, shape (seeds,); infinite where it has none.
+        printed: What the median of all seeds is compared with; None where there is nothing.
+        verdict: Verdict on that median.
+        alone: Verdict on each single seed.
+        drawn: Verdicts on the medians of groups that are as large as the study's own run, drawn with replacement.
+        own: Median of the study's own run, on the plant by which its claims are judged.
+        own_verdict: Verdict on that.
+    """
+
+    claim: PublishedClaim
+    preset: str
+    values: FloatArray
+    printed: float | None
+    verdict: Verdict | None
+    alone: Sequence[Verdict | None]
+    drawn: Sequence[Verdict | None]
+    own: float | None
+    own_verdict: Verdict | None
+
+    def otherwise(self, verdicts: Sequence[Verdict | None]) -> int:
+        """Return the number of verdicts that differ from that of all seeds."""
+        return sum(verdict != self.verdict for verdict in verdicts)
+
+    def quantiles(self) -> FloatArray:
+        """Return median, 1 % and 99 % quantile; infinite where so many seeds have no value, empty of a failed run."""
+        return np.quantile(self.values, (0.5, *_ENDS), method="inverted_cdf") if self.values.size else self.values
+
+    def number(self, what: Literal["alone", "drawn", "plant"]) -> float | None:
+        """Return the verdicts of single seeds or of groups that differ, in per cent; None if none are given.
+
+        With "plant", return by which factor, 1 or more, the study's own median and that of the seeds differ.
+        """
+        if what != "plant":
+            verdicts = getattr(self, what)
+            return 100.0 * self.otherwise(verdicts) / len(verdicts) if verdicts else None
+        if self.own is None or not self.values.size or not np.isfinite(self.quantiles()[0]):
+            return None
+        ratio = self.own / float(self.quantiles()[0])
+        return max(ratio, 1.0 / ratio)
+
+
+def judge_by_seeds(
+    claim: PublishedClaim,
+    claims: Sequence[PublishedClaim],
+    seeds: Mapping[str, Run],
+    own: Mapping[str, Run],
+    preset: str,
+) -> Judged:
+    """Return a claim judged by seeds.
+
+    Args:
+        claim: The claim.
+        claims: All claims of the study.
+        seeds: The runs of many seeds, by the end of the experiment's name.
+        own: The study's own runs, also by the end of the experiment's name.
+        preset: The preset that both have.
+    """
+
+    def by(groups: NDArray[np.intp]) -> list[Verdict | None]:
+        @lru_cache(maxsize=8)
+        def medians(run: str, metric: str) -> list[float]:
+            values = _values(seeds[run], metric)
+            return over_repetitions(values[groups])[:, 0].tolist() if values.size else [np.nan] * len(groups)
+
+        def simulated(group: int, *key: str) -> float | None:
+            value = medians(*key)[group]
+            return None if np.isnan(value) else value
+
+        places = range(len(groups) if groups.size else 0)
+        return [verdict_on(claim, claims, lambda *key, at=at: simulated(at, *key)) for at in places]
+
+    def of_study(run: str, metric: str) -> float | None:
+        return own[run].median(metric)
+
+    def of_seeds(run: str, metric: str) -> float | None:
+        return seeds[run].median(metric)
+
+    run, metric = claim.simulated_by
+    values = _values(seeds[run], metric)
+    count = values.size
+    size = int(own[run].config["repetitions"])
+    every = np.arange(count)
+    drawn = np.random.default_rng(_SEED).integers(0, count, (DRAWN, size)) if count else every
+    return Judged(
+        claim=claim,
+        preset=preset,
+        values=np.where(np.isnan(values), np.inf, values),
+        printed=compared_with(claim, of_seeds),
+        verdict=verdict_on(claim, claims, of_seeds) if count else None,
+        alone=by(every[:, None]),
+        drawn=by(drawn),
+        own=of_study(run, metric),
+        own_verdict=verdict_on(claim, claims, of_study),
+    )
+
+
+def _values(run: Run, metric: str) -> FloatArray:
+    """Return a metric's value in each repetition of a run, NaN for none; nothing where the run has no metrics."""
+    return run.values(metric) if run.metrics else np.zeros(0)
 
 
 def judged(runs: Runs) -> list[Judged]:
@@ -53,21 +178,30 @@ def seeds(given: Sequence[Judged], words: str) -> Measured:
     return Measured(words, max(each.values.size for each in given))
 
 
-def of_one_seed(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
-    """Return the fraction of single seeds that would judge a claim otherwise, in per cent."""
-    each = _find(given, claim, preset)
-    return Measured(words, each.share_otherwise(each.alone), "%")
+def most(
+    given: Sequence[Judged],
+    what: Literal["alone", "drawn", "plant"],
+    words: str,
+    claim: int = 0,
+    preset: str = "",
+    but: int = 0,
+) -> Measured:
+    """Return the largest of a number of claims.
 
-
-def of_groups(given: Sequence[Judged], claim: int, preset: str, words: str) -> Measured:
-    """Return the fraction of judgements by as many seeds as the study's that would differ, in per cent."""
-    each = _find(given, claim, preset)
-    return Measured(words, each.share_otherwise(each.drawn), "%")
-
-
-def most_of_groups(given: Sequence[Judged], words: str, but: int = 0) -> Measured:
-    """Return the largest of these shares of all claims but one."""
-    return _largest(words, "%", [each.share_otherwise(each.drawn) for each in given if each.claim.number != but])
+    Args:
+        given: The claims judged by seeds.
+        what: "alone" or "drawn" for verdicts of single seeds, or of groups as large as the study's own run, that are
+            others, in per cent; "plant" for the factor between the medians on the study's plant and on that of the
+            seeds.
+        words: What it is called.
+        claim: The number of one claim; 0 for all.
+        preset: One preset; "" for all.
+        but: The number of a claim that is left out.
+    """
+    chosen = [each for each in given if claim in (0, each.claim.number) and preset in ("", each.preset)]
+    values = [each.number(what) for each in chosen if each.claim.number != but]
+    known = [value for value in values if value is not None]
+    return Measured(words, max(known) if len(known) == len(values) else None, "1" if what == "plant" else "%")
 
 
 def unanimous(given: Sequence[Judged], words: str) -> Measured:
@@ -80,22 +214,7 @@ def other_by_plant(given: Sequence[Judged], words: str) -> Measured:
     return Measured(words, sum(each.verdict != each.own_verdict for each in given))
 
 
-def moved_by_plant(given: Sequence[Judged], words: str, claim: int = 0, preset: str = "") -> Measured:
-    """Return by which factor the study's own median and that of the seeds differ: of one claim, or the most of all."""
-    chosen = [_find(given, claim, preset)] if claim else given
-    return _largest(words, "1", [each.moved_by_plant() for each in chosen])
-
-
 def mostly_moved_by_plant(given: Sequence[Judged], words: str) -> Measured:
-    """Return the median of these factors."""
-    known = [factor for factor in (each.moved_by_plant() for each in given) if factor is not None]
+    """Return the median of the factors between the medians on both plants."""
+    known = [factor for factor in (each.number("plant") for each in given) if factor is not None]
     return Measured(words, float(np.median(known)) if len(known) == len(given) else None)
-
-
-def _find(given: Sequence[Judged], claim: int, preset: str) -> Judged:
-    return next(each for each in given if (each.claim.number, each.preset) == (claim, preset))
-
-
-def _largest(words: str, unit: str, values: Sequence[float | None]) -> Measured:
-    known = [value for value in values if value is not None]
-    return Measured(words, max(known) if len(known) == len(values) else None, unit)

@@ -13,7 +13,7 @@ from runner.reporting.published_claims import load_claims
 from runner.statistics.proportion import count_share
 from runner.store import Run
 from runner.studies.thesis import how_sure
-from runner.studies.thesis.judged import DRAWN, Judged, judge_by_seeds
+from runner.studies.thesis.how_sure import DRAWN, Judged, judge_by_seeds
 from runner.study.measured import Finding
 from runner.study.study import load_study
 from runner.sweeps.job import run
