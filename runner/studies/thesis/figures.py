@@ -8,7 +8,7 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import above_rounding
 from runner.reporting.document import Picture, Table
-from runner.reporting.figures import AXES, origin
+from runner.reporting.figures import origin
 from runner.reporting.published_claims import load_claims
 from runner.reporting.table import numbers
 from runner.reporting.words import PRESET
@@ -135,20 +135,14 @@ def singular_value(run: Run) -> FloatArray:
     return values
 
 
-def folded(run: Run) -> float:
-    """Return the largest such value over the last half second, in m."""
-    return float(singular_value(run)[run.t >= run.t[-1] - 0.5].max())
-
-
 def spreads(runs: Runs, title: str, name: str, *metrics: str) -> list[str]:
     """Return the metrics of an experiment under each preset behind its title, as a row of a table."""
     return [title, *(runs[f"{name}/{preset}"].metrics[metric].text for preset in PRESET for metric in metrics)]
 
 
-def mass_of(runs: Runs, name: str, words: str = "mass of the Mini") -> Measured:
-    """Return the mass of a run's Mini."""
-    masses = runs[name].config["robot"]["stages"]["mini"]["masses"]
-    return Measured(words, float(sum(masses.values())), "kg")
+def mass_of(stage: str) -> Callable[[Run], float]:
+    """Return the mass of a stage of a run's arm, in kg."""
+    return lambda run: float(sum(run.config["robot"]["stages"][stage]["masses"].values()))
 
 
 def around_the_break(runs: Runs, payload: str) -> tuple[str, str]:
@@ -185,32 +179,3 @@ def duration_of(runs: Runs, pattern: str, error: Measured, words: str) -> Measur
     errors = values((one.run for one in tried), "max_axis_error")
     times = [float(one.levels["duration"]) for one in tried]
     return Measured(words, float(np.interp(-float(error.value or 0.0), -errors, times)), "s")
-
-
-def mass_ratio(run: Run) -> float:
-    """Return the mass of a run's Mini over that of its Macro."""
-    mini, macro = (sum(run.config["robot"]["stages"][stage]["masses"].values()) for stage in ("mini", "macro"))
-    return float(mini / macro)
-
-
-def final_difference(run: Run, reference: Run) -> float:
-    """Return the distance of the joint positions at the end of two runs, in rad."""
-    last, final = (each.joints("q")[-1] for each in (run, reference))
-    return float(np.linalg.norm(last - final))
-
-
-def lag(run: Run) -> float:
-    """Return the norm of the largest lag, in m."""
-    return float(np.linalg.norm(_lag(run)))
-
-
-def lag_along(axis: str) -> Callable[[Run], float]:
-    """Return the size of the largest lag along an axis, in m."""
-    return lambda run: float(abs(_lag(run)[AXES.index(axis)]))
-
-
-def _lag(run: Run) -> FloatArray:
-    """Return the largest lag along each axis, desired less true position, shape (3,), in m."""
-    controller, desired = run.config["controller"], run.vector("desired")
-    factor = 2.0 * float(controller["damping_ratio"]) / float(controller["natural_frequency"])
-    return np.asarray(factor * 1.875 * (desired[-1] - desired[0]) / float(run.config["trajectory"]["duration"]))

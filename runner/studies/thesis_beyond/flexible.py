@@ -137,11 +137,6 @@ def closed_damping(run: Run, bare: Run) -> float:
     return 0.0
 
 
-def damping_line(runs: Runs, run: str, bare: str) -> Callable[[float], float]:
-    """Return the closed form of inertial damping against its gain in 1/s, with the other numbers of a run."""
-    return damping_by_gain(runs[run], runs[bare])
-
-
 def damping_by_gain(run: Run, bare: Run) -> Callable[[float], float]:
     """Return the damping ratio of the first mode that inertial damping adds, against its gain in 1/s."""
     omega, share = _first_mode(run, bare)

@@ -3,30 +3,26 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.controllers.stability import force_loop_limit
 from runner.reporting.document import Series
 from runner.robots.task_space import mass_along, tip_mobility
 from runner.store import Run
+from runner.study.prose.signals import along
 from runner.study.results import Runs, found
 from runner.study.run_values import delay_of
 
 _RISE = 3.3579  # of omega_c times the time from 10 % to 90 % of a critically damped step
 _BOUNCES = 0.05  # of the force that is asked for, from which it differs at the end
 _END = 20  # ticks
-_SLIDES = (0.3, 0.6)  # s, in the middle of the motion along the wall
-
-
-def push(run: Run) -> FloatArray:
-    """Return the force of the tip on the wall at each row, in N."""
-    return np.asarray(run.vector("external_force") @ np.array(run.config["environment"]["normal"]))
+_push = along("external_force", "environment.normal")
+"""Force of the tip on the wall at each row, in N."""
 
 
 def rise_time(run: Run) -> float:
     """Return the rise time of the force from 10 % to 90 % of the desired one, in s; NaN if it never rises so far."""
-    force, asked, t = push(run), float(run.config["controller"]["force"]), run.t
+    force, asked, t = _push(run), float(run.config["controller"]["force"]), run.t
     if not (force >= 0.9 * asked).any():
         return float("nan")
     low, high = (_first_at(t, force, share * asked) for share in (0.1, 0.9))
@@ -42,7 +38,7 @@ def closed_rise_time(run: Run) -> float:
 def bounces(run: Run) -> bool:
     """Return True if the force does not come to rest at the desired one."""
     asked = float(run.config["controller"]["force"])
-    return run.status == "failed" or bool(np.abs(push(run)[-_END:] - asked).max() > _BOUNCES * asked)
+    return run.status == "failed" or bool(np.abs(_push(run)[-_END:] - asked).max() > _BOUNCES * asked)
 
 
 def mass_at_start(run: Run) -> float:
@@ -69,7 +65,7 @@ def speed_at_touch(run: Run) -> float:
     row = _touch(run)
     if row is None:
         return float("nan")
-    t, tip = run.t, run.vector("tip") @ np.array(run.config["environment"]["normal"])
+    t, tip = run.t, along("tip", "environment.normal")(run)
     return float((tip[row - 1] - tip[row]) / (t[row] - t[row - 1]))
 
 
@@ -79,48 +75,11 @@ def closed_peak(run: Run) -> float:
     return float("nan") if row is None else speed_at_touch(run) * float(np.sqrt(stiffness * _mass(run, row)))
 
 
-def worst_while_sliding(run: Run) -> float | None:
-    """Return by how much the force is off what is asked, at most, in the middle of the motion along a wall, in N."""
-    off = np.abs(push(run)[_slides(run)] - float(run.config["controller"]["force"]))
-    return float(off.max()) if len(off) else None
-
-
-def friction_while_sliding(run: Run) -> float | None:
-    """Return the mean force along the wall over that into it, in the middle of the motion along a wall."""
-    slides, force, along = _slides(run), push(run), run.vector("external_force")
-    beside = np.linalg.norm(along - force[:, None] * np.array(run.config["environment"]["normal"]), axis=1)
-    return float(np.mean(beside[slides] / force[slides])) if slides.any() else None
-
-
-def along_the_push(run: Run) -> FloatArray:
-    """Return the tip's displacement along a push at each row, in m."""
-    tip, way = run.vector("tip"), _way(run)
-    return np.asarray((tip - tip[0]) @ way)
-
-
-def beside_the_push(run: Run) -> float:
-    """Return the tip's distance from the line of a push in the end, in m."""
-    tip, way = run.vector("tip"), _way(run)
-    moved = tip[-1] - tip[0]
-    return float(np.linalg.norm(moved - way * (moved @ way)))
-
-
 def push_over_stiffness(run: Run) -> float:
     """Return a push over the stiffness that the tip is to have, in m."""
     return float(np.linalg.norm(run.config["environment"]["force"])) / float(
         run.config["controller"]["tip_stiffness"][0]
     )
-
-
-def _way(run: Run) -> FloatArray:
-    force = np.array(run.config["environment"]["force"])
-    return np.asarray(force / np.linalg.norm(force))
-
-
-def _slides(run: Run) -> NDArray[np.bool_]:
-    """Return True for each row in the middle of the motion along a wall."""
-    t = run.t
-    return np.asarray((t >= _SLIDES[0]) & (t <= _SLIDES[1]))
 
 
 def _first_at(t: FloatArray, force: FloatArray, level: float) -> float:
@@ -131,7 +90,7 @@ def _first_at(t: FloatArray, force: FloatArray, level: float) -> float:
 
 def _touch(run: Run) -> int | None:
     """Return the first row that touches, 1 or more; None where none does."""
-    touching = np.flatnonzero(push(run) > 0.0)
+    touching = np.flatnonzero(_push(run) > 0.0)
     return max(1, int(touching[0])) if len(touching) else None
 
 
@@ -161,12 +120,6 @@ def walls_tried(runs: Runs, name: str, bounce: bool, color: int) -> list[Series]
     periods = np.array([1e3 * _last(run.config["controller"]["period"]) for run in tried])
     stiffness = np.array([float(run.config["environment"]["stiffness"]) for run in tried])
     return [Series(name, periods, stiffness, "points", color=color)]
-
-
-def beside_the_wall(run: Run) -> FloatArray:
-    """Return the tip's error along the wall at each row, in m."""
-    error, n = run.vector("error"), np.array(run.config["environment"]["normal"])
-    return np.asarray(np.linalg.norm(error - np.outer(error @ n, n), axis=1))
 
 
 def masses_around(runs: Runs, run: str, name: str, color: int) -> list[Series]:

@@ -75,7 +75,7 @@ def of_joints(name: str = "q", first: int = 0, last: int | None = None) -> Quant
 
 def norm(what: Signal) -> Quantity:
     """Return the length at each row of a vector with columns name_x, name_y and name_z, or of any by a function."""
-    rows = vector(what) if isinstance(what, str) else what
+    rows = _vector(what)
     return Quantity(lambda *runs: np.linalg.norm(values := rows(*runs), axis=None if np.ndim(values) == 1 else 1))
 
 
@@ -100,6 +100,34 @@ def distance(name: str = "tip") -> Quantity:
     return norm(difference(vector(name)))
 
 
+def along(what: Signal, direction: str) -> Quantity:
+    """Return the part of a vector at each row along the vector under a dotted key of the config, as `norm` takes it."""
+    rows = _vector(what)
+    return Quantity(lambda *runs: rows(*runs) @ _unit(runs[0], direction))
+
+
+def across(what: Signal, direction: str) -> Quantity:
+    """Return the length at each row of the rest of a vector, at a right angle to the vector under such a key."""
+    rows = _vector(what)
+
+    def rest(*runs: Run) -> FloatArray:
+        values, unit = rows(*runs), _unit(runs[0], direction)
+        return np.asarray(values - np.outer(values @ unit, unit))
+
+    return norm(rest)
+
+
+def between(what: Signal, start: float, end: float) -> Quantity:
+    """Return the rows of a signal from one time to another, in s."""
+
+    def rows(run: Run, *others: Run) -> FloatArray:
+        values = trace_of(what, run, *others)
+        t = run.t[: len(values)]
+        return values[(t >= start - 1e-9) & (t <= end + 1e-9)]
+
+    return Quantity(rows)
+
+
 def moved(what: Signal) -> Quantity:
     """Return a signal less its first value."""
     return signal(what) - at_the_start(what)
@@ -117,7 +145,7 @@ def at_the_end(what: Signal) -> Quantity:
 
 def worst_axis(what: Signal) -> Quantity:
     """Return the largest size of a vector's components at each row: of one by its name, or of any by a function."""
-    rows = vector(what) if isinstance(what, str) else what
+    rows = _vector(what)
     return Quantity(lambda *runs: np.abs(rows(*runs)).max(axis=1))
 
 
@@ -156,6 +184,11 @@ def ends_of(what: Signal) -> Quantity:
 def total_of(what: Signal) -> Quantity:
     """Return the sum of the values of a signal."""
     return Quantity(lambda *runs: trace_of(what, *runs).sum())
+
+
+def mean_of(what: Signal) -> Quantity:
+    """Return the mean of the values of a signal; None where it has none."""
+    return Quantity(lambda *runs: values.mean() if (values := trace_of(what, *runs)).size else None)
 
 
 def time_of_largest(what: Signal) -> Quantity:
@@ -242,6 +275,16 @@ def smallest_singular_value(run: Run) -> FloatArray:
 def limit_margin(run: Run) -> FloatArray:
     """Return the smallest distance of a joint position from one of its limits at each row, in rad or m."""
     return np.asarray(run.model.limit_margins(run.joints("q")).min(axis=1))
+
+
+def _vector(what: Signal) -> Callable[..., Any]:
+    """Return the vector with a name, or what a function gives."""
+    return vector(what) if isinstance(what, str) else what
+
+
+def _unit(run: Run, key: str) -> FloatArray:
+    direction = np.array(config_value(run, key), dtype=float)
+    return np.asarray(direction / np.linalg.norm(direction))
 
 
 def _singular(run: Run) -> Sequence[FloatArray]:

@@ -181,6 +181,24 @@ def test_joints_are_drawn_of_any_signal_that_has_a_column_for_each():
     np.testing.assert_allclose([each.y for each in halves], [[0.0, 1.75, 3.5], [0.0, -0.25, -0.5]])
 
 
+def test_a_vector_has_a_part_along_a_direction_of_the_config_and_one_across_it():
+    run = made_up_run(
+        {},
+        {"t": np.arange(3.0)}
+        | {f"f_{axis}": np.arange(3.0) * size for axis, size in zip("xyz", (3, 4, 12), strict=True)},
+        {"wall": {"normal": [0.0, 0.0, -2.0]}},
+    )
+    np.testing.assert_allclose(signals.along("f", "wall.normal")(run), [0.0, -12.0, -24.0])
+    np.testing.assert_allclose(signals.across(2 * signals.vector("f"), "wall.normal")(run), [0.0, 10.0, 20.0])
+
+
+def test_a_signal_can_be_cut_to_a_part_of_the_time():
+    run = RUNS["gain/1/full_equations"]
+    np.testing.assert_array_equal(signals.between("t", 0.5, 1.0)(run), [0.5, 1.0])
+    assert signals.mean_of(signals.between("q1", 0.5, 1.0))(run) == pytest.approx(0.75)
+    assert signals.mean_of(signals.between("q1", 2.0, 3.0))(run) is None
+
+
 def test_runs_are_points_over_two_of_their_numbers():
     gain, end = signals.setting("controller.gain"), signals.at_the_end(signals.norm("error"))
     (series,) = plots.points(RUNS, "gain/{gain}/full_equations", "gain", end, "all")
