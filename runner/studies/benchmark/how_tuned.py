@@ -1,7 +1,7 @@
 """The laws and their inputs, tuned gains, and those near the ends of their ranges."""
 
 import itertools
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -9,12 +9,10 @@ from runner.base.quantities import number, quantity
 from runner.reporting.document import Table, Text
 from runner.reporting.table import Column, numbers
 from runner.reporting.words import in_words
-from runner.store import Run
 from runner.studies.benchmark.cells import UNTUNED, tuned
 from runner.studies.benchmark.figures import any_origin
 from runner.studies.benchmark.made import ARMS, LAWS, QUESTIONS, arms_of, laws_of
 from runner.study.results import Runs, found
-from runner.study.run_values import config_value
 from runner.study.tunings import Ranges, key_of
 from runner.sweeps.differing import entries
 
@@ -41,27 +39,16 @@ def arm_words() -> dict[str, str]:
     return ARMS
 
 
-def listed(key: str) -> Callable[[Run], str]:
-    """Return the range of the values under a dotted key of a run's config."""
-
-    def ends(run: Run) -> str:
-        values = np.atleast_1d(np.asarray(config_value(run, key), dtype=float))
-        low, high = number(float(values.min())), number(float(values.max()))
-        return low if low == high else f"{low} to {high}"
-
-    return ends
-
-
 def at_ends(runs: Runs, ranges: Mapping[str, Ranges], caption: str) -> Table | Text:
-    """Return the tuned values near an end of their range as a table; a sentence where there are none; see ends_of."""
-    rows = ends_of(runs, ranges)
+    """Return the tuned values near an end of their range as a table; a sentence where there are none."""
+    rows = values_at_ends(runs, ranges)
     if not rows:
         return Text(f"{caption} Here there are none.")
     header = ["law", "arm", "question", "tuning", "key", *numbers("value"), "where"]
     return Table(caption, header, rows, any_origin(runs))
 
 
-def ends_of(runs: Runs, ranges: Mapping[str, Ranges]) -> list[list[str]]:
+def values_at_ends(runs: Runs, ranges: Mapping[str, Ranges]) -> list[list[str]]:
     """Return a row for each tuned value near an end of its range: law, arm, question, tuning, key, value, end.
 
     Args:

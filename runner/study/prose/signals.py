@@ -176,9 +176,13 @@ def range_of(what: Signal) -> Quantity:
 
 
 def ends_of(what: Signal) -> Quantity:
-    """Return the smallest and the largest value of a signal, for a cell such as "0.2 to 0.5"."""
-    low, high = lowest_of(what), highest_of(what)
-    return Quantity(lambda *runs: Number(None, float(low(*runs)), float(high(*runs))))
+    """Return the smallest and the largest value of a signal, for a cell such as "0.2 to 0.5"; one number if equal."""
+
+    def ends(*runs: Run) -> Number:
+        low, high = (float(end(what)(*runs)) for end in (lowest_of, highest_of))
+        return Number(low) if low == high else Number(None, low, high)
+
+    return Quantity(ends)
 
 
 def total_of(what: Signal) -> Quantity:

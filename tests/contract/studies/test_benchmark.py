@@ -23,7 +23,7 @@ from runner.studies.benchmark import engines
 from runner.studies.benchmark.cells import cells
 from runner.studies.benchmark.figures import halves, said
 from runner.studies.benchmark.horizon import grown
-from runner.studies.benchmark.how_tuned import ends_of, gains, keys_of
+from runner.studies.benchmark.how_tuned import gains, keys_of, values_at_ends
 from runner.studies.benchmark.late_and_limited import bearable
 from runner.studies.benchmark.made import ARMS, CONDITIONS, turned
 from runner.study.chapters import Chapters
@@ -191,7 +191,7 @@ def test_values_near_an_end_of_their_range_are_named_with_law_and_arm():
         for place, question in enumerate(("first", "learned"))
     }
     ranges = {f"{question}/macro/spring": {"controller.gain": [0.1, 10.0]} for question in ("first", "learned")}
-    told = [row[2:] for row in ends_of(planned(NAMES, runs), ranges)]
+    told = [row[2:] for row in values_at_ends(planned(NAMES, runs), ranges)]
     assert told == [
         ["from the first second", "1", "controller.gain", "0.32", "lower end"],
         ["from the first second", "2", "controller.gain", "28", "upper end"],
