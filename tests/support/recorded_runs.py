@@ -28,7 +28,7 @@ LONG = 5.0
 DIGITS, EXACT = 6, 11  # EXACT where small differences between traces are read
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RecordedRun(Run):
     """A run whose files are kept elsewhere than in its folder.
 

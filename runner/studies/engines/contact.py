@@ -53,24 +53,14 @@ def closed_form_peak(run: Run) -> float:
     return drive + math.sqrt(drive**2 + 2.0 * float(wall["stiffness"]) * drive * float(wall["distance"]))
 
 
-def damped_by_step(runs: Runs) -> Callable[[float], float]:
-    """Return the closed form of the restitution on a spring that is solved at the end of each step, to first order.
+def restitution_by_step(runs: Runs, run: str, share: float) -> Callable[[float], float]:
+    """Return 1 + s pi w h over the step h, the restitution of half a period at w = sqrt(k / m), to first order.
 
-    It loses what a damper of k h loses: of an impact of half a period at w = sqrt(k / m), pi w h / 2.
+    The share s is -1/2 for a spring that is solved at the end of each step, which loses what a damper of k h loses, and
+    1/4 for one whose force is held for each step, on average half a step late.
     """
-    return lambda h: 1.0 - 0.5 * math.pi * _frequency(runs["impact/PyBullet/0.001"]) * h
-
-
-def driven_by_step(runs: Runs) -> Callable[[float], float]:
-    """Return that of a spring whose force is held for each step, on average half a step late: a gain of pi w h / 4."""
-    return lambda h: 1.0 + 0.25 * math.pi * _frequency(runs["impact/PyBullet/0.001"]) * h
-
-
-def spring_force(run: Run) -> float:
-    """Return the wall's stiffness times the depth of the tip at the end, in N."""
-    wall = run.config["environment"]
-    begin = float(run.config["trajectory"]["start"][0]) + float(wall["distance"])
-    return float(wall["stiffness"]) * max(float(run.vector("tip")[-1, 0]) - begin, 0.0)
+    stiffness = float(runs[run].config["environment"]["stiffness"])
+    return lambda h: 1.0 + share * math.pi * math.sqrt(stiffness / mass(runs[run])) * h
 
 
 def unrest(run: Run) -> float:
@@ -81,7 +71,3 @@ def unrest(run: Run) -> float:
 
 def _wall_force(run: Run) -> FloatArray:
     return -run.signal("external_force_x")
-
-
-def _frequency(run: Run) -> float:
-    return math.sqrt(float(run.config["environment"]["stiffness"]) / mass(run))

@@ -1,94 +1,53 @@
 """Equations of motion of one arm in three code bases, at random states."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import number
+from runner.plants.bullet import Bullet
 from runner.plants.compiled_motion import CompiledStep
+from runner.plants.flexible_joints import runge_kutta
+from runner.plants.mujoco import Mujoco
 from runner.robots.model import RobotModel
 from runner.store import Run
-from runner.studies.engines.side_by_side import (
-    STEP,
-    Difference,
-    bullet_of,
-    difference,
-    mujoco_of,
-    random_states,
-    share,
-)
 from runner.study.measured import Measured
-from runner.study.results import Runs, found
+from runner.study.results import Runs
 
-_TEXTBOOK = "planar"
+STEP = 1e-3  # s
+State = tuple[FloatArray, FloatArray, FloatArray]
+"""Positions, velocities and torques of the joints."""
+_STATES, _SEED = 20, 0
+_SPEED, _ACCELERATION = 1.0, 10.0  # of random states, per joint: rad/s or m/s, and per s
+_TEXTBOOK = "open/planar/MuJoCo Euler/0.001"
 _LENGTH, _MASS, _RADIUS = 1.0, 1.0, 0.03  # of each of its links, in m and kg
 
 
-@dataclass(frozen=True)
-class Compared:
-    """One arm by all code bases.
+@lru_cache(maxsize=64)
+def compared(run: Run) -> dict[str, float]:
+    """Return one arm by all code bases: the largest differences over random states.
 
-    Attributes:
-        name: What it is called.
-        joints: Number of its joints.
-        condition: Largest condition number of its mass matrix.
-        bullet: PyBullet from Pinocchio.
-        mujoco: MuJoCo from Pinocchio.
-        compiled: Change of speed in a Runge-Kutta step, relative difference of compiled code from Pinocchio.
+    Its number of `joints`; the largest `condition` number of its mass matrix; differences of `bullet` and `mujoco` from
+    Pinocchio, see difference; and the `compiled` code's relative difference of the change of speed in a step.
     """
-
-    name: str
-    joints: int
-    condition: float
-    bullet: Difference
-    mujoco: Difference
-    compiled: float
-
-
-def comparisons(runs: Runs, words: Mapping[str, str]) -> list[Compared]:
-    """Return every arm that is moved by held torques, at random states, by all code bases; words name the arms."""
-    return [_compare(words[one.levels["arm"]], one.run) for one in found(runs, "open/{arm}/MuJoCo Euler/0.001")]
-
-
-def mass_rows(compared: list[Compared]) -> list[list[str]]:
-    """Return joints, condition number and differences of the mass matrix, a row for each arm."""
-    return [
-        [c.name, str(c.joints), number(c.condition, 2), number(c.bullet.mass, 2), number(c.mujoco.mass, 2)]
-        for c in compared
-    ]
-
-
-def motion_rows(compared: list[Compared]) -> list[list[str]]:
-    """Return the differences of accelerations and torques, a row for each arm."""
-    return [
-        [
-            c.name,
-            *(number(each.acceleration, 2) for each in (c.bullet, c.mujoco)),
-            number(c.compiled, 2),
-            *(number(each.torque, 2) for each in (c.bullet, c.mujoco)),
-        ]
-        for c in compared
-    ]
-
-
-def worst(compared: list[Compared]) -> dict[str, Measured]:
-    """Return the largest differences over all arms, as shares, and the largest condition number."""
-    both = [each for c in compared for each in (c.bullet, c.mujoco)]
+    model, bullet = run.model, bullet_of(run)
+    try:
+        engines = {"bullet": difference(model, bullet), "mujoco": difference(model, mujoco_of(run))}
+    finally:
+        bullet.close()
+    states, compiled = random_states(model), CompiledStep(model, STEP)
     return {
-        "mass": Measured("largest difference of a mass matrix", max(each.mass for each in both)),
-        "acceleration": Measured("largest difference of accelerations", max(each.acceleration for each in both)),
-        "torque": Measured("largest difference of torques", max(each.torque for each in both)),
-        "compiled": Measured("largest difference of compiled code", max(c.compiled for c in compared)),
-        "condition": Measured("largest condition number", max(c.condition for c in compared)),
+        "joints": model.nq,
+        "condition": max(float(np.linalg.cond(model.mass_matrix(q))) for q, _, _ in states),
+        "compiled": max(_step_difference(model, compiled, *state) for state in states),
+        **{f"{engine} {what}": off for engine, found in engines.items() for what, off in found.items()},
     }
 
 
 def textbook(runs: Runs) -> Measured:
     """Return the largest relative difference of the engines' mass matrices of the two links from the textbook's."""
-    run = runs[f"open/{_TEXTBOOK}/MuJoCo Euler/0.001"]
+    run = runs[_TEXTBOOK]
     model, bullet, mujoco = run.model, bullet_of(run), mujoco_of(run)
     try:
         off = max(
@@ -99,6 +58,53 @@ def textbook(runs: Runs) -> Measured:
     finally:
         bullet.close()
     return Measured("largest difference from the textbook's mass matrix", off)
+
+
+def bullet_of(run: Run) -> Bullet:
+    """Return a run's arm in PyBullet; to be closed."""
+    return Bullet(run.urdf, run.model, STEP, 1)
+
+
+def mujoco_of(run: Run) -> Mujoco:
+    """Return the arm of a run on MuJoCo in MuJoCo, with the run's least inertia, by Euler's scheme."""
+    return Mujoco(run.urdf, run.model, STEP, 1, "euler", run.config["plant"]["min_inertia"])
+
+
+def random_states(model: RobotModel) -> list[State]:
+    """Return positions and velocities, and the torques of some accelerations there, by Pinocchio."""
+    generator = np.random.default_rng(_SEED)
+    low, high = np.clip(model.position_limits, -1.5, 1.5)
+    states = []
+    for _ in range(_STATES):
+        q = generator.uniform(low, high)
+        dq = generator.uniform(-_SPEED, _SPEED, model.nq)
+        ddq = generator.uniform(-_ACCELERATION, _ACCELERATION, model.nq)
+        states.append((q, dq, np.array(pin.rnea(model.pin_model, model.pin_model.createData(), q, dq, ddq))))
+    return states
+
+
+def difference(model: RobotModel, engine: Bullet | Mujoco) -> dict[str, float]:
+    """Return the relative differences of an arm in an engine from the same arm in Pinocchio, the largest over states.
+
+    Of the `mass` matrix, Frobenius norm; of the `acceleration` under given torques; and of the `torque` that Pinocchio
+    says the engine's accelerations need.
+    """
+    arm, data = model.pin_model, model.pin_model.createData()
+    worst = np.zeros(3)
+    for q, dq, tau in random_states(model):
+        engine.reset(q, dq)
+        engine.advance(tau)
+        ddq = (engine.dq - dq) / STEP  # both are semi-implicit: a step's speed is that of its first acceleration
+        exact = pin.aba(arm, data, q, dq, tau).copy()
+        needed = pin.rnea(arm, data, q, dq, ddq)
+        own = (share(engine.mass_matrix(q), model.mass_matrix(q)), share(ddq, exact), share(needed, tau))
+        worst = np.maximum(worst, own)
+    return dict(zip(("mass", "acceleration", "torque"), worst.tolist(), strict=True))
+
+
+def share(value: FloatArray, exact: FloatArray) -> float:
+    """Return the relative difference of an array from another one, by their norms."""
+    return float(np.linalg.norm(value - exact) / np.linalg.norm(exact))
 
 
 def _two_links(elbow: float) -> FloatArray:
@@ -114,30 +120,11 @@ def _two_links(elbow: float) -> FloatArray:
     )
 
 
-def _compare(name: str, run: Run) -> Compared:
-    model, bullet = run.model, bullet_of(run)
-    try:
-        differences = difference(model, bullet), difference(model, mujoco_of(run))
-    finally:
-        bullet.close()
-    states, compiled = random_states(model), CompiledStep(model, STEP)
-    condition = max(float(np.linalg.cond(model.mass_matrix(q))) for q, _, _ in states)
-    off = max(_step_difference(model, compiled, *state) for state in states)
-    return Compared(name, model.nq, condition, *differences, off)
-
-
 def _step_difference(
     model: RobotModel, compiled: CompiledStep, q: FloatArray, dq: FloatArray, tau: FloatArray
 ) -> float:
-    arm, data, h = model.pin_model, model.pin_model.createData(), STEP
-
-    def slope(q: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
-        return v, pin.aba(arm, data, q, v, tau).copy()
-
-    v1, a1 = slope(q, dq)
-    v2, a2 = slope(q + 0.5 * h * v1, dq + 0.5 * h * a1)
-    v3, a3 = slope(q + 0.5 * h * v2, dq + 0.5 * h * a2)
-    _, a4 = slope(q + h * v3, dq + h * a3)
+    arm, data, n = model.pin_model, model.pin_model.createData(), model.nq
     state = np.concatenate([q, dq])
+    exact = runge_kutta(lambda x: np.append(x[n:], pin.aba(arm, data, x[:n], x[n:], tau)), state, STEP, 1)
     compiled.advance(state, tau, 1)
-    return share(state[len(q) :] - dq, h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4))
+    return share(state[n:] - dq, exact[n:] - dq)

@@ -201,8 +201,8 @@ def time_of_largest(what: Signal) -> Quantity:
 
 
 def size_of(what: Callable[..., float]) -> Quantity:
-    """Return a number without its sign."""
-    return Quantity(lambda *runs: abs(what(*runs)))
+    """Return a number without its sign; None if it has no value."""
+    return Quantity(lambda *runs: None if (value := what(*runs)) is None else abs(value))
 
 
 def scaled(factor: float, what: Callable[..., float]) -> Quantity:

@@ -72,7 +72,8 @@ def column(
         what: Name of a metric, or a function of the run, or of these others, that gives a number or a string.
         others: Names of the runs that it is a number of, with axes in braces; the row's own run where there are none.
         digits: How many digits.
-        rounding: Smaller numbers are shown as rounding errors, in the unit of the title; None for those of SI units.
+        rounding: Smaller numbers are shown as rounding errors, in the unit of the title; 0 shows all digits of every
+            number; None stands for rounding errors in SI units.
         only: Levels by axis of the rows that have it; the others have a dash.
         though_failed: Whether what a function reads of a run until it failed is shown.
     """
@@ -82,7 +83,9 @@ def column(
             return Number(None)
         of = [other(runs, name, row.levels) for name in others] or [row.run]
         cell = _number(what, of, digits, though_failed)
-        return cell if rounding is None or isinstance(cell, str) else number(cell.value, digits, rounding)
+        return (
+            cell if rounding is None or isinstance(cell, str) else number(cell.value, digits, rounding, rounding == 0)
+        )
 
     chosen = {axis: [own] if isinstance(own, str) else own for axis, own in (only or {}).items()}
     return Column(title, found_cell, what if isinstance(what, str) else "", chosen)

@@ -12,8 +12,9 @@ pytest.importorskip("pybullet", reason="PyBullet is not installed")
 
 from runner.cli.reproduce import _chosen
 from runner.plants.compiled_motion import CompiledStep
+from runner.plants.mujoco import Mujoco
 from runner.store import Run
-from runner.studies.engines import contact, same_arm, side_by_side
+from runner.studies.engines import contact, same_arm
 
 
 @pytest.fixture
@@ -46,18 +47,18 @@ def test_a_changed_arm_is_found_to_be_another(runs: Mapping[str, Run]) -> None:
     heavier = run.urdf.replace('<mass value="1"', '<mass value="1.001"', 1)
     assert heavier != run.urdf
     least = run.config["plant"]["min_inertia"]
-    other = side_by_side.Mujoco(heavier, run.model, 1e-3, 1, "euler", least)
-    off = side_by_side.difference(run.model, other)
-    assert min(off.mass, off.acceleration, off.torque) > 1e-5
-    own = side_by_side.difference(run.model, side_by_side.mujoco_of(run))
-    assert max(own.mass, own.acceleration, own.torque) < 1e-12
+    other = Mujoco(heavier, run.model, 1e-3, 1, "euler", least)
+    off = same_arm.difference(run.model, other)
+    assert min(off.values()) > 1e-5
+    own = same_arm.difference(run.model, same_arm.mujoco_of(run))
+    assert max(own.values()) < 1e-12
 
 
 def test_the_compiled_step_is_compared_with_the_classical_step(runs: Mapping[str, Run]) -> None:
     """They agree to rounding; with another step of the compiled code they do not."""
     model = runs["open/planar/MuJoCo Euler/0.001"].model
     compiled, longer = (CompiledStep(model, step) for step in (same_arm.STEP, 1.01 * same_arm.STEP))
-    for state in side_by_side.random_states(model)[:5]:
+    for state in same_arm.random_states(model)[:5]:
         assert same_arm._step_difference(model, compiled, *state) < 1e-12
         assert same_arm._step_difference(model, longer, *state) > 1e-4
 

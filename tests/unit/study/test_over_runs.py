@@ -175,7 +175,7 @@ def test_a_column_has_its_own_size_of_rounding_errors():
     small = tables.column("small", signals.setting("controller.gain", 1e-14), rounding=0)
     coarse = tables.column("coarse", "error", rounding=6.0)
     made = tables.table(RUNS, "Small.", "gain/{gain}/full_equations", small, coarse)
-    assert made.lines[1:] == [["1·10⁻¹³", "0 (rounding)"], ["1·10⁻¹²", "10"], ["5·10⁻¹³", "0 (rounding)"]]
+    assert made.lines[1:] == [["1.00·10⁻¹³", "0 (rounding)"], ["1.00·10⁻¹²", "10"], ["5.00·10⁻¹³", "0 (rounding)"]]
 
 
 def test_joints_are_drawn_of_any_signal_that_has_a_column_for_each():
