@@ -6,16 +6,18 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import above_rounding
+from runner.base.quantities import above_rounding, number
 from runner.reporting.document import Picture, Table
 from runner.reporting.figures import origin
 from runner.reporting.published_claims import load_claims
 from runner.reporting.table import numbers
 from runner.reporting.words import PRESET
+from runner.robots.workspace import analyse
 from runner.store import Run
 from runner.studies.thesis.denavit_hartenberg import denavit_hartenberg
 from runner.studies.thesis.diagrams.block_diagram import block_diagram, control_graph, describe
 from runner.studies.thesis.diagrams.frames import frame_assignment
+from runner.studies.thesis.diagrams.workspace import workspace_sphere
 from runner.studies.thesis.equations.derivations.thesis_printed import compare
 from runner.study.measured import Measured
 from runner.study.prose.signals import norm, vector
@@ -31,6 +33,7 @@ _MEANINGS = {
     "J": ("basic Jacobian, (3.5)", "m"),
     "T": ("tip transform, (3.1)", "m"),
 }
+_SAMPLES = 4000  # tip positions in a workspace
 _BROKEN = 10.0  # times the tip error of the thesis' own Mini
 
 
@@ -38,6 +41,34 @@ def frames(runs: Runs, run: str, caption: str, arm: str, width: float, number: s
     """Return the joint axes and Denavit-Hartenberg frames of an arm at home, from its frame 0 by number to the tip."""
     words = f"{arm} at home with its joint axes and Denavit-Hartenberg frames"
     return Picture(caption, frame_assignment(runs[run].model, first, tip), words, width, origin(runs[run], number))
+
+
+def link_lengths(run: Run) -> str:
+    """Return the Denavit-Hartenberg link lengths of an arm, in m."""
+    return _listed([row.a for row in denavit_hartenberg(run.model)])
+
+
+def link_masses(run: Run) -> str:
+    """Return the masses of the links of an arm, in kg."""
+    return _listed([inertia.mass for inertia in list(run.model.pin_model.inertias)[1:]])
+
+
+def _listed(values: Sequence[float]) -> str:
+    return f"[{' '.join(f'{value:g}' for value in values)}]"
+
+
+def workspace(runs: Runs, run: str, name: str, figure: str) -> Picture:
+    """Return the sphere of reach of an arm with sampled tip positions, and a cross-section by manipulability."""
+    found = analyse(runs[run].model, _SAMPLES, np.random.default_rng(0))
+    return Picture(
+        f"Workspace of the {name}: {_SAMPLES} sampled tip positions in the sphere of reach, and a meridian "
+        f"cross-section coloured by manipulability. Largest distance from the shoulder {number(found.outer, 4)} "
+        f"m (sum of the link lengths {number(found.reach, 4)} m), smallest {above_rounding(found.inner, 'm')}.",
+        workspace_sphere(found),
+        f"A sphere of radius {found.outer:.3g} m filled with points, and its cross-section",
+        0.62,
+        origin(runs[run], figure),
+    )
 
 
 def dh_table(runs: Runs, run: str, caption: str, number: str, first: int, *printed: Sequence[str]) -> Table:
