@@ -117,13 +117,13 @@ def across(what: Signal, direction: str) -> Quantity:
     return norm(rest)
 
 
-def between(what: Signal, start: float, end: float) -> Quantity:
-    """Return the rows of a signal from one time to another, in s."""
+def between(what: Signal, start: float, end: float = np.inf) -> Quantity:
+    """Return the rows of a signal from one time to another, in s; a negative start counts from the end of the run."""
 
     def rows(run: Run, *others: Run) -> FloatArray:
         values = trace_of(what, run, *others)
-        t = run.t[: len(values)]
-        return values[(t >= start - 1e-9) & (t <= end + 1e-9)]
+        t, first = run.t[: len(values)], start if start >= 0.0 else run.t[-1] + start
+        return values[(t >= first - 1e-9) & (t <= end + 1e-9)]
 
     return Quantity(rows)
 

@@ -199,6 +199,8 @@ def test_a_signal_can_be_cut_to_a_part_of_the_time():
     np.testing.assert_array_equal(signals.between("t", 0.5, 1.0)(run), [0.5, 1.0])
     assert signals.mean_of(signals.between("q1", 0.5, 1.0))(run) == pytest.approx(0.75)
     assert signals.mean_of(signals.between("q1", 2.0, 3.0))(run) is None
+    np.testing.assert_array_equal(signals.between("t", -0.5)(run), [0.5, 1.0])
+    np.testing.assert_array_equal(signals.between("t", 0.0, 0.5)(run), [0.0, 0.5])
 
 
 def test_runs_are_points_over_two_of_their_numbers():
