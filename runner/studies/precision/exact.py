@@ -57,9 +57,6 @@ class Adaptive(_Arm):
         )
         self.q[:], self.dq[:] = ended.y[:n, -1], ended.y[n:, -1]
 
-    def close(self) -> None:
-        """Hold nothing, release nothing."""
-
 
 class Collocation(_Arm):
     r"""Gauss' collocation of order 16, on mass matrix and bias of recursive Newton-Euler.
@@ -106,9 +103,6 @@ class Collocation(_Arm):
             self.q = q + h * v + h * h * ((b * (1.0 - c)) @ a)
             self.dq = v + h * (b @ a)
 
-    def close(self) -> None:
-        """Hold nothing, release nothing."""
-
     def _acceleration(self, q: FloatArray, v: FloatArray, tau: FloatArray) -> FloatArray:
         mass = pin.crba(self._model, self._data, q)
         mass = np.triu(mass) + np.triu(mass, 1).T
@@ -123,7 +117,6 @@ def energy_drift(model: RobotModel, q: FloatArray, dq: FloatArray) -> float:
         q: Joint positions, shape (T, nq), in rad.
         dq: Joint velocities, shape (T, nq), in rad/s.
     """
-    pinned, data = model.pin_model, model.pin_model.createData()
-    kinetic = np.array([pin.computeKineticEnergy(pinned, data, *state) for state in zip(q, dq, strict=True)])
-    total = kinetic + [pin.computePotentialEnergy(pinned, data, state) for state in q]
-    return float(np.abs(total - total[0]).max() / kinetic.max())
+    kinetic = max(float(0.5 * v @ model.mass_matrix(x) @ v) for x, v in zip(q, dq, strict=True))
+    total = np.array([model.energy(*state) for state in zip(q, dq, strict=True)])
+    return float(np.abs(total - total[0]).max() / kinetic)

@@ -1,13 +1,12 @@
 """Figure, tables and numbers of the precision study."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
 from runner.base.quantities import number, quantity
-from runner.reporting.document import Curves, Panel, Series, Table
+from runner.reporting.document import Curves, Panel, Series
 from runner.reporting.figures import origin
-from runner.reporting.table import Column, numbers
 from runner.studies.precision.tried import COMPILED, PLANTS, Tried, allowed_error, by_steps, knee, order, solutions
 from runner.study.measured import Measured
 from runner.study.results import Runs
@@ -16,6 +15,7 @@ _ARMS = {"macro": "Macro", "combined": "Mini on Macro", "xarm7": "xArm7"}
 _CASES = {"free": "free", "control": "under control"}
 _PAIRS = [(case, arm) for arm in _ARMS for case in _CASES]
 _LABELLED = {"PyBullet": -1, "MuJoCo": 0, COMPILED: 0}  # places of the steps named in the figure
+_NONE = {"knee": "beyond", "step": "none"}
 _ROOM = (0.1, 100.0)  # around the errors, for labels above a line
 
 
@@ -46,51 +46,27 @@ def accuracy(runs: Runs, caption: str) -> Curves:
     return Curves(caption, panels, 2, origin(next(iter(runs.values()))))
 
 
-def reference_table(runs: Runs, caption: str) -> Table:
-    """Return a table of the differences between the ways to the solution."""
-    header = numbers("another method (rad)", "coarser tolerance (rad)", "energy")
-
-    def cells(case: str, arm: str) -> list[str]:
-        own = solutions(runs)[f"{case}/{arm}"]
-        return [number(value, 2) for value in (own["apart"]["collocation"], own["apart"]["tolerance"], own["energy"])]
-
-    return _table(runs, caption, header, cells)
+def solution_rows(runs: Runs) -> list[list[str]]:
+    """Return arm, case, distance of another method and of a coarser tolerance, in rad, and change of energy."""
+    kept = {(case, arm): solutions(runs)[f"{case}/{arm}"] for case, arm in _PAIRS}
+    found = {
+        pair: (own["apart"]["collocation"], own["apart"]["tolerance"], own["energy"]) for pair, own in kept.items()
+    }
+    return [[_ARMS[arm], _CASES[case], *(number(each, 2) for each in own)] for (case, arm), own in found.items()]
 
 
-def orders_table(runs: Runs, caption: str) -> Table:
-    """Return the order of each plant."""
-    return _by_plant(runs, caption, lambda tried, _: number(order(tried), 3, zeros=True), numeric=True)
+def rows(runs: Runs, what: str, *plants: str, allowed: bool = False) -> list[list[str]]:
+    """Return arm, case, with `allowed` the tip's error that is small enough, and of each plant a cell.
 
-
-def errors(runs: Runs, caption: str) -> Table:
-    """Return the largest joint error of each plant by its largest and its smallest step."""
-    header = [f"{plant} (rad)" for plant in PLANTS[:3]]
-
-    def cells(case: str, arm: str) -> list[str]:
-        tried = [by_steps(runs, case, arm, plant) for plant in PLANTS[:3]]
-        return [f"{number(each[0].joints, 2)} to {number(each[-1].joints, 2)}" for each in tried]
-
-    return _table(runs, caption, header, cells)
-
-
-def knees(runs: Runs, caption: str) -> Table:
-    """Return the step of each plant below which a smaller one does not pay, and the joint error left there."""
-
-    def cell(tried: list[Tried], _: float) -> str:
-        at = knee(tried)
-        return "beyond" if at is None else f"{quantity(at.step, 's')}: {number(at.joints, 2)}"
-
-    return _by_plant(runs, caption, cell)
-
-
-def recommended(runs: Runs, caption: str) -> Table:
-    """Return the largest step of each plant whose error is small enough, and its computing time."""
-
-    def cell(tried: list[Tried], allowed: float) -> str:
-        at = large_enough(tried, allowed)
-        return "none" if at is None else f"{quantity(at.step, 's')}: {quantity(at.seconds, 's', 2)}"
-
-    return _by_plant(runs, caption, cell, "error allowed")
+    It is the `order`; the joint `errors` by the largest and the smallest step, in rad; the `knee` with the joint error
+    left there; or the largest `step` whose error is small enough with its computing time.
+    """
+    found = []
+    for case, arm in _PAIRS:
+        most = allowed_error(runs, case, arm)
+        cells = [_CELLS[what](by_steps(runs, case, arm, plant), most) for plant in plants]
+        found.append([_ARMS[arm], _CASES[case], *([quantity(most, "m")] if allowed else []), *cells])
+    return found
 
 
 def of_solutions(runs: Runs, words: str, key: str, way: str = "", unit: str = "1") -> list[Measured]:
@@ -99,19 +75,21 @@ def of_solutions(runs: Runs, words: str, key: str, way: str = "", unit: str = "1
     return [Measured(f"{words}: {name}", float(own), unit) for name, own in known.items() if own is not None]
 
 
-def orders(runs: Runs, words: str, *plants: str) -> list[Measured]:
-    """Return the order of some plants on each arm and case."""
-    return _each(runs, words, "1", lambda tried, _: order(tried), *plants)
+def of_plants(runs: Runs, words: str, what: str, unit: str, *plants: str) -> list[Measured]:
+    """Return a number of some plants on each arm and case.
 
-
-def left_at_finest(runs: Runs, words: str, *plants: str) -> list[Measured]:
-    """Return the joint error of some plants on each arm and case by their smallest step, in rad."""
-    return _each(runs, words, "rad", lambda tried, _: tried[-1].joints, *plants)
-
-
-def by_whole_periods(runs: Runs, words: str) -> list[Measured]:
-    """Return the tip's error over that allowed, of Runge-Kutta by its largest step."""
-    return _each(runs, words, "1", lambda tried, allowed: tried[0].tip / allowed, COMPILED)
+    It is the `order`; the joint error `left` by the smallest step, in rad; or, by the `largest step`, the tip's error over
+    what is allowed.
+    """
+    return [
+        Measured(
+            f"{words}: {plant}, {_ARMS[arm]}, {_CASES[case]}",
+            _NUMBERS[what](by_steps(runs, case, arm, plant), allowed_error(runs, case, arm)),
+            unit,
+        )
+        for plant in plants
+        for case, arm in _PAIRS
+    ]
 
 
 def compiled_apart(runs: Runs, words: str) -> list[Measured]:
@@ -124,14 +102,9 @@ def compiled_apart(runs: Runs, words: str) -> list[Measured]:
     return [Measured(f"{words}: {_ARMS[arm]}, {_CASES[case]}", apart(case, arm), "rad") for case, arm in _PAIRS]
 
 
-def without_knee(runs: Runs, words: str, *plants: str) -> Measured:
-    """Return the number of arms and cases in which some plants gain by every smaller step that was tried."""
-    return _count(runs, words, lambda tried, _: knee(tried), *plants)
-
-
-def without_step(runs: Runs, words: str, *plants: str) -> Measured:
-    """Return the number of arms and cases in which no step of some plants leaves an error that is small enough."""
-    return _count(runs, words, large_enough, *plants)
+def without(runs: Runs, words: str, what: str, *plants: str) -> Measured:
+    """Return the number of arms and cases in which some plants have no `knee`, or no `step` that is small enough."""
+    return Measured(words, sum(row.count(_NONE[what]) for row in rows(runs, what, *plants)))
 
 
 def large_enough(tried: list[Tried], allowed: float) -> Tried | None:
@@ -139,39 +112,24 @@ def large_enough(tried: list[Tried], allowed: float) -> Tried | None:
     return next((each for each in tried if each.tip < allowed), None)
 
 
-def _each(
-    runs: Runs, words: str, unit: str, of: Callable[[list[Tried], float], float | None], *plants: str
-) -> list[Measured]:
-    return [
-        Measured(f"{words}: {plant}, {_ARMS[arm]}, {_CASES[case]}", of(*_tried(runs, case, arm, plant)), unit)
-        for plant in plants
-        for case, arm in _PAIRS
-    ]
+def _at_knee(tried: list[Tried], _: float) -> str:
+    at = knee(tried)
+    return _NONE["knee"] if at is None else f"{quantity(at.step, 's')}: {number(at.joints, 2)}"
 
 
-def _count(runs: Runs, words: str, of: Callable[[list[Tried], float], Tried | None], *plants: str) -> Measured:
-    found = [of(*_tried(runs, case, arm, plant)) for plant in plants for case, arm in _PAIRS]
-    return Measured(words, found.count(None))
+def _at_step(tried: list[Tried], allowed: float) -> str:
+    at = large_enough(tried, allowed)
+    return _NONE["step"] if at is None else f"{quantity(at.step, 's')}: {quantity(at.seconds, 's', 2)}"
 
 
-def _tried(runs: Runs, case: str, arm: str, plant: str) -> tuple[list[Tried], float]:
-    return by_steps(runs, case, arm, plant), allowed_error(runs, case, arm)
-
-
-def _by_plant(
-    runs: Runs, caption: str, cell: Callable[[list[Tried], float], str], allowed: str = "",
-    numeric: bool = False,
-) -> Table:  # fmt: skip
-    """Return a table with a column for each plant, behind one for the error that is allowed if it has a title."""
-
-    def cells(case: str, arm: str) -> list[str]:
-        first = [quantity(allowed_error(runs, case, arm), "m")] if allowed else []
-        return [*first, *(cell(*_tried(runs, case, arm, plant)) for plant in PLANTS)]
-
-    plants = numbers(*PLANTS) if numeric else PLANTS
-    return _table(runs, caption, [allowed, *plants] if allowed else plants, cells)
-
-
-def _table(runs: Runs, caption: str, header: Sequence[str | Column], cells: Callable[[str, str], list[str]]) -> Table:
-    rows = [[_ARMS[arm], _CASES[case], *cells(case, arm)] for case, arm in _PAIRS]
-    return Table(caption, ["arm", "moves", *header], rows, origin(next(iter(runs.values()))))
+_CELLS: Mapping[str, Callable[[list[Tried], float], str]] = {
+    "order": lambda tried, _: number(order(tried), 3, zeros=True),
+    "errors": lambda tried, _: f"{number(tried[0].joints, 2)} to {number(tried[-1].joints, 2)}",
+    "knee": _at_knee,
+    "step": _at_step,
+}
+_NUMBERS: Mapping[str, Callable[[list[Tried], float], float | None]] = {
+    "order": lambda tried, _: order(tried),
+    "left": lambda tried, _: tried[-1].joints,
+    "largest step": lambda tried, allowed: tried[0].tip / allowed,
+}

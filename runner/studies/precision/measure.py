@@ -20,7 +20,6 @@ from runner.config.validation import validate
 from runner.plants import Plant
 from runner.plants.rk4 import Rk4
 from runner.robots.model import RobotModel
-from runner.sensing import Encoders
 from runner.simulation import provenance
 from runner.simulation.assembly import assemble
 from runner.simulation.closed_loop import ClosedLoop
@@ -124,8 +123,5 @@ def _compiled_seconds(config: RunConfig) -> float:
 
 def _simulated(config: RunConfig, closed: ClosedLoop, plant: Plant) -> Trace:
     """Return a run with another plant and no compiled code."""
-    return simulate(replace(closed, plant=plant, compiled=None), _encoders(config, closed))
-
-
-def _encoders(config: RunConfig, closed: ClosedLoop) -> list[Encoders]:
-    return make_encoders(closed, config.noise, config.settings.seed, 0)
+    encoders = make_encoders(closed, config.noise, config.settings.seed, 0)
+    return simulate(replace(closed, plant=plant, compiled=None), encoders)
