@@ -78,8 +78,8 @@ def of_solutions(runs: Runs, words: str, key: str, way: str = "", unit: str = "1
 def of_plants(runs: Runs, words: str, what: str, unit: str, *plants: str) -> list[Measured]:
     """Return a number of some plants on each arm and case.
 
-    It is the `order`; the joint error `left` by the smallest step, in rad; or, by the `largest step`, the tip's error over
-    what is allowed.
+    It is the `order`; the joint error `left` by the smallest step, in rad; or the tip's error by the `largest step`,
+    over the error allowed.
     """
     return [
         Measured(
