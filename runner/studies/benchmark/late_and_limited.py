@@ -26,10 +26,9 @@ def limits_over_need(runs: Runs) -> list[Measured]:
         exact = [one.run for one in found(runs, f"first/{arm}/computed_torque/{{task}}/exact/{UNTUNED[0]}")]
         for condition, share in _LIMITED.items():
             limited = found(runs, f"first/{arm}/computed_torque/{{task}}/{condition}/{UNTUNED[0]}")[0].run
-            limits = zip(limited.provenance["joints"], limited.config["torque_limits"]["max"], strict=True)
-            for joint, limit in limits:
+            for joint, limit in enumerate(limited.config["torque_limits"]["max"], start=1):
                 words = f"limit over need, {ARMS[arm]}, {CONDITIONS[condition]}, joint {joint}"
-                ratios.append(Measured(words, limit / (share * values(exact, f"peak_torque_{joint}").max())))
+                ratios.append(Measured(words, limit / (share * values(exact, f"peak_torque_q{joint}").max())))
     return ratios
 
 
