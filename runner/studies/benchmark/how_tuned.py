@@ -35,7 +35,7 @@ def laws(runs: Runs, caption: str) -> Table:
 
 
 def arm_words() -> dict[str, str]:
-    """Return what the arms are called."""
+    """Return the names of the arms by level."""
     return ARMS
 
 

@@ -2,11 +2,10 @@
 
 from collections.abc import Iterable
 
-import numpy as np
-
 from runner.controllers.stability import delay_limit, miss_limit, pattern_limit
 from runner.reporting.document import Series
 from runner.store import Run
+from runner.study.prose.plots import upright
 from runner.study.prose.signals import failed
 from runner.study.results import Runs, found
 
@@ -43,10 +42,7 @@ def miss_limits(runs: Runs, pattern: str) -> list[Series]:
 
 
 def _upright(places: Iterable[float]) -> list[Series]:
-    ends = np.array([_LOW, _TOP])
-    return [
-        Series("", np.array([at, at]), ends, "dotted", color=color) for color, at in enumerate(dict.fromkeys(places))
-    ]
+    return [line for color, at in enumerate(dict.fromkeys(places)) for line in upright(at, _LOW, _TOP, color=color)]
 
 
 def borne(run: Run) -> float:

@@ -1,11 +1,13 @@
 """Stability maps of sampled controllers on flexible joints: spectral radius of the linearized period map."""
 
 from collections.abc import Callable, Mapping
+from copy import deepcopy
 from typing import Any, cast
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
+from runner.base.dotted_keys import put
 from runner.config.composed import Composed
 from runner.config.validation import validate
 from runner.controllers import Controller
@@ -77,12 +79,7 @@ def stable_and_not(
 
 def _changed(config: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return a config with other values at some dotted keys."""
-    found = dict(config)
+    changed = deepcopy(dict(config))
     for key, value in changes.items():
-        *groups, last = key.split(".")
-        place = found
-        for group in groups:
-            place[group] = dict(place[group])
-            place = place[group]
-        place[last] = value
-    return found
+        put(changed, tuple(key.split(".")), value)
+    return changed

@@ -1,4 +1,4 @@
-"""What the control loops of Macro and Mini ask of their laws, for every option, against the rules of the thesis."""
+"""Requests of the control loops of Macro and Mini to their laws, for every option, against the rules of the thesis."""
 
 import itertools
 
@@ -40,7 +40,7 @@ def riding(checked_config):
 
 
 def expected(flags, robot, base, reach, time, q, reference):
-    """Return what both laws are to be asked for: to move by a reference, or to hold a posture."""
+    """Return the requests to both laws: to move by a reference, or to hold a posture."""
     R, (velocity, spin) = base.rotation, base.velocity()
     r = reference[0] - base.position
     within, mini_turn = np.linalg.norm(r) <= reach, int(time / 0.01 + 1e-9) % 2 == 1

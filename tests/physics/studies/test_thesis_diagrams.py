@@ -157,7 +157,7 @@ def sources_of(graph, name):
 
 
 def target_of(graph, stage):
-    """Return what the target of a controller depends on, except for its own measurement."""
+    """Return all nodes that the target of a controller depends on, except for its own measurement."""
     edges = [edge for edge in graph.edges if edge.target == f"{stage}_controller" and edge.leave == "right"]
     return {name for edge in edges for name in {edge.source} | sources_of(graph, edge.source)}
 
