@@ -19,7 +19,7 @@ from runner.reporting.document import Provenance
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
-_SAME, _ZERO = 0.011, 1e-8  # one in the last of three digits, and what rounding leaves
+_SAME, _ZERO = 0.011, 1e-8  # so that a count is the same, and what rounding leaves
 _HEAD = "=== "
 _HASH = re.compile(r"\b(?:[0-9a-f]{24}|(?=\d*[a-f])[0-9a-f]{8})\b")
 _OF_TODAY = ("date", "commit")
@@ -77,7 +77,8 @@ def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
 
 
 def _paths(svg: str) -> Iterator[str]:
-    """Yield style and places of each path of a drawing that is no letter."""
+    """Yield each text of a drawing, and style and places of each path that is no letter."""
+    yield from re.findall("<!-- (.*?) -->", svg)  # what matplotlib notes of the letters
     root = ET.fromstring(svg)
     letters = {path for definitions in root.findall(".//{*}defs") for path in definitions.iter()}
     for path in root.findall(".//{*}path"):
@@ -98,5 +99,11 @@ def _agree(was: str, now: str) -> bool:
     ours, theirs = (line.replace("·10", "e").translate(_POWERS) for line in (was, now))
     if _NUMBER.sub("", ours) != _NUMBER.sub("", theirs):
         return False
-    numbers = ([float(number) for number in _NUMBER.findall(line)] for line in (ours, theirs))
-    return bool(np.allclose(*numbers, rtol=_SAME, atol=_ZERO))
+    return all(map(_is_same, _NUMBER.findall(ours), _NUMBER.findall(theirs)))
+
+
+def _is_same(was: str, now: str) -> bool:
+    """Return whether two numbers differ by no more than rounding."""
+    digits, _, exponent = was.partition("e")
+    last = 10.0 ** (int(exponent or 0) - len(digits.partition(".")[2]))
+    return abs(float(was) - float(now)) <= max(min(_SAME * abs(float(was)), 1.1 * last), _ZERO)

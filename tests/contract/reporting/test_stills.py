@@ -13,10 +13,25 @@ from runner.reporting.charts.interactive import plotly_spec
 from runner.reporting.charts.sheet import REPORT, column
 from runner.reporting.document import Curves, Panel, Series
 
+X = np.linspace(0.0, 1.0, 5000)
 CURVES = {
     "curves": curves(),
     "in rows": Curves("", curves().panels * 3, columns=2),
     "logarithmic": Curves("", [replace(curves().panels[0], x_log=True, y_log=True)]),
+    "less than a decade": Curves("", [Panel("", "time (s)", "error (m)", [Series("a", X, X + 1.0)], y_log=True)]),
+    "long": Curves("", [Panel("", "time (s)", "error (m)", [Series("a", X, np.sin(9 * X), low=-X, high=X)])]),
+    "names": Curves(
+        "",
+        [
+            Panel(
+                "",
+                "",
+                "error (m)",
+                [Series("a", np.arange(3.0), np.arange(3.0), "points")],
+                x_names=["computed torque", "a name of one_very_long part and more of it", "c"],
+            )
+        ],
+    ),
 }
 
 

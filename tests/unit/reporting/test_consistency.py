@@ -52,6 +52,12 @@ def test_a_colour_that_a_figure_chose_is_kept_and_taken_over_elsewhere():
     assert crowded["tip"] is None  # another curve of its figure has its colour: the drawing takes a free one
 
 
+def test_two_curves_of_a_panel_with_one_name_do_not_share_its_colour():
+    (section,) = make_consistent(document(["Mini", "Mini"])).sections
+    first, second = section.blocks[0].panels[0].series
+    assert (first.color, second.color) == (0, None)
+
+
 def test_curves_without_a_name_stay_as_they_are():
     (found, *_) = colors(make_consistent(document([("", 3), "a"])))
     assert found == {"": 3, "a": 0}

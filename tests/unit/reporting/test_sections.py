@@ -307,3 +307,9 @@ def test_the_cause_of_failures_is_a_caveat_that_only_failed_cells_have():
     subject = choose(replace(sample, statuses=["failed" if lost else "ok" for lost in failed], caveats=found))
     assert causes_of_failure(subject) == "The loop is unstable."
     assert causes_of_failure(choose(replace(sample, caveats=found))) == ""
+
+
+def test_levels_between_others_are_listed():
+    sample = measurements({"controller.period": [1, 2, 3, 4]}, {"rms": lambda *levels: np.ones(6)})
+    told = failing_cells(choose(replace(sample, statuses=["failed", "ok", "failed", "ok"])))
+    assert told == "Every run with controller.period 1 or 3 failed, and no other."

@@ -12,6 +12,8 @@ from runner.reporting.document import Section, Text
         ("text: at most 1.24 mm", "text: at most 1.25 mm", True),
         ("text: at most 1.24 mm", "text: at most 1.27 mm", False),
         ("text: at most 1.24 mm", "text: at most 1.24 µm", False),
+        ("text: 12 of 20 runs", "text: 11 of 20 runs", False),
+        ("text: larger by 33.4 %", "text: larger by 33.7 %", False),
         ("text: less than 1.7·10⁻¹² N", "text: less than 3.9·10⁻¹³ N", True),
         ("text: less than 1.7·10⁻⁵ N", "text: less than 3.9·10⁻⁵ N", False),
         ("y: (3,) 0 1e-17 2", "y: (3,) 0 -3e-16 2", True),
@@ -35,7 +37,7 @@ def test_no_line_has_the_name_of_a_run():
     ]
 
 
-def test_a_drawing_has_a_line_for_each_path_that_is_no_letter():
-    letter = '<defs><path d="M 9 9"/></defs>'
+def test_a_drawing_has_a_line_for_each_text_and_for_each_path_that_is_no_letter():
+    letter = '<defs><path d="M 9 9"/></defs><!-- rad -->'
     svg = f'<svg xmlns="http://www.w3.org/2000/svg">{letter}<path style="fill: #fff" d="M 0 1 L 2.4 3"/></svg>'
-    assert lines(svg) == ["is: fill: #fff 4 0 1 2 3"]
+    assert lines(svg) == ["is: rad", "is: fill: #fff 4 0 1 2 3"]
