@@ -20,6 +20,7 @@ from runner.reporting.document import Provenance
 _NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _POWERS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 _SAME, _ZERO = 0.011, 1e-8  # so that a count is the same, and what rounding leaves
+_HREF = "{http://www.w3.org/1999/xlink}href"
 _HEAD = "=== "
 _HASH = re.compile(r"\b(?:[0-9a-f]{24}|(?=\d*[a-f])[0-9a-f]{8})\b")
 _OF_TODAY = ("date", "commit")
@@ -77,14 +78,20 @@ def _lines(name: str, value: Any, depth: int) -> Iterator[str]:
 
 
 def _paths(svg: str) -> Iterator[str]:
-    """Yield each text of a drawing, and style and places of each path that is no letter."""
+    """Yield each text of a drawing, and style and places of each path that is no letter and of the marks."""
     yield from re.findall("<!-- (.*?) -->", svg)  # what matplotlib notes of the letters
     root = ET.fromstring(svg)
     letters = {path for definitions in root.findall(".//{*}defs") for path in definitions.iter()}
     for path in root.findall(".//{*}path"):
         if path not in letters:
-            numbers = np.array([float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", path.get("d", ""))])
-            yield f"{path.get('style', '')} {numbers.size} {_some(np.round(numbers))}"
+            places = [float(number) for number in re.findall(r"-?\d+(?:\.\d+)?", path.get("d", ""))]
+            yield f"{path.get('style', '')} {len(places)} {_some(np.round(places))}"
+    marks: dict[str, list[float]] = {}
+    for mark in root.findall(".//{*}use"):
+        if mark.get(_HREF, "").startswith("#m"):  # no letter
+            marks.setdefault(mark.get("style", ""), []).extend(float(mark.get(axis, "0")) for axis in "xy")
+    for style, numbers in marks.items():
+        yield f"marks {style} {len(numbers)} {_some(np.round(numbers))}"
 
 
 def _some(values: np.ndarray[Any, Any]) -> str:
