@@ -175,7 +175,7 @@ def _table(caption: str, header: Sequence[str], cells: Sequence[Sequence[Cell]],
 def _are_numbers(cells: Sequence[Cell]) -> bool:
     """Return True if some cell is a number, no cell is another string, and the others are missing."""
     texts = [cell for cell in cells if cell not in ("–", _NEVER, "failed")]
-    known = [cell for cell in texts if isinstance(cell, str) or cell.value is not None]
+    known = [cell for cell in texts if isinstance(cell, str) or cell.value is not None or cell.low is not None]
     return bool(known) and all(isinstance(cell, Number) or _NUMBER.match(cell) for cell in known)
 
 

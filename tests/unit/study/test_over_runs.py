@@ -167,6 +167,7 @@ def test_the_exponent_of_two_numbers_is_found_over_runs():
 def test_a_cell_has_the_ends_of_a_signal():
     made = tables.listing(RUNS, "Ways.", "held", ["end"], [blocks.told(RUNS, signals.ends_of("q2"), "held")])
     assert made.lines[1:] == [["-1 to 0"]]
+    assert made.columns[0].kind == "number"
     gain = blocks.told(RUNS, signals.ends_of(signals.setting("controller.gain")), "held")
     assert tables.listing(RUNS, "Gain.", "held", ["gain"], [gain]).lines[1:] == [["70"]]
 
