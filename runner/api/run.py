@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
     from runner.analysis import Sensitivity
     from runner.recordings.compare import RecordingComparison
-    from runner.reporting.metric_titles import KeyMetric
 
 _IN_TEXT, _ON_PAGE = 1, 6
 
@@ -116,13 +115,13 @@ class Run(store.Run):
         return compare_recording(self, Path(recording), Path(columns), fill_gaps)
 
     def __repr__(self) -> str:
-        told = "; ".join(f"{one.title} {one.value}" for one in self._key_metrics(_IN_TEXT))
+        told = "; ".join(f"{title} {value}" for title, value, _ in self._key_metrics(_IN_TEXT))
         caveats = f"caveats: {', '.join(str(caveat['rule']) for caveat in self.caveats)}" if self.caveats else ""
         lines = [f"Run of {self._name()}: {self._ended()}", self.failure or "", told, caveats, str(self.folder)]
         return "\n  ".join(one_line(line) for line in lines if line)
 
     def _repr_html_(self) -> str:
-        rows = [(one.title, one.value, one.remark) for one in self._key_metrics(_ON_PAGE)]
+        rows = self._key_metrics(_ON_PAGE)
         parts = [
             page.heading(self._name(), self._ended()),
             page.line(self.failure or ""),
@@ -141,7 +140,7 @@ class Run(store.Run):
         kinds = (config["controller"]["kind"], config["trajectory"]["kind"], config["plant"]["kind"])
         return ", ".join(str(part) for part in (config["robot"]["name"], *kinds))
 
-    def _key_metrics(self, most: int) -> "Sequence[KeyMetric]":
+    def _key_metrics(self, most: int) -> Sequence[tuple[str, str, str]]:
         from runner.reporting.metric_titles import key_metrics
 
         return key_metrics(self, most)

@@ -63,11 +63,6 @@ class Equation:
     finding: str = ""
 
 
-def of_verdict(rows: Iterable[Equation], verdict: EquationVerdict) -> list[Equation]:
-    """Return the equations that have a verdict, in the order of the text."""
-    return [row for row in rows if row.verdict == verdict]
-
-
 def by_finding(rows: Iterable[Equation]) -> list[tuple[str, list[Equation]]]:
     """Return equations with the finding, or the emendation: those with the same finding are together, and lose it."""
     found: dict[str, list[Equation]] = {}

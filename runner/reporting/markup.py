@@ -5,6 +5,7 @@ characters; readers of files reject them in their input.
 """
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from runner.base.sanitize import plain
@@ -98,31 +99,32 @@ def without_marks(text: str) -> str:
 
 
 def _marks(text: str) -> list[Span]:
-    found: list[Span] = []
-    end = 0
-    for match in _MARKED.finditer(text):
-        found += _links(text[end : match.start()])
-        found += _marked_span(match)
-        end = match.end()
-    return found + _links(text[end:])
-
-
-def _marked_span(match: re.Match[str]) -> list[Span]:
-    for mark in MARKS:
-        if match[mark] is not None:
-            return [Span(match[mark], mark=mark)]
-    if _WEB.fullmatch(match["address"]):
-        return [Span(match["text"], address=match["address"])]
-    return [Span(f"{match['text']} ({match['address']})")]
+    return _split(_MARKED, text, _marked_span, _links)
 
 
 def _links(text: str) -> list[Span]:
+    return _split(_LINK, text, _link, lambda rest: [Span(rest)] if rest else [])
+
+
+def _split(
+    pattern: re.Pattern[str], text: str, show: Callable[[re.Match[str]], Span], others: Callable[[str], list[Span]]
+) -> list[Span]:
+    """Return the spans of what matches, and of the strings between, in reading order."""
     found: list[Span] = []
     end = 0
-    for match in _LINK.finditer(text):
-        found += [Span(text[end : match.start()]), _link(match)]
+    for match in pattern.finditer(text):
+        found += [*others(text[end : match.start()]), show(match)]
         end = match.end()
-    return [span for span in [*found, Span(text[end:])] if span.text]
+    return [*found, *others(text[end:])]
+
+
+def _marked_span(match: re.Match[str]) -> Span:
+    for mark in MARKS:
+        if match[mark] is not None:
+            return Span(match[mark], mark=mark)
+    if _WEB.fullmatch(match["address"]):
+        return Span(match["text"], address=match["address"])
+    return Span(f"{match['text']} ({match['address']})")
 
 
 def _link(match: re.Match[str]) -> Span:

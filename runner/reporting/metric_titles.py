@@ -2,44 +2,16 @@
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from types import ModuleType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from runner.base.quantities import label_with_unit
 from runner.plugins.metric_units import added_families
+from runner.reporting.words import NAMES
 
 if TYPE_CHECKING:
     from runner.store import Run
 
-TITLES = {
-    "settling_time": "settling time",
-    "steady_state_error": "steady-state error",
-    "overshoot": "overshoot",
-    "max_tracking_error": "largest tracking error",
-    "max_axis_error": "largest tracking error on one axis",
-    "rms_tracking_error": "rms tracking error",
-    "rms_tracking_error_last_period": "rms tracking error, last period",
-    "rms_tracking_error_period": "rms tracking error, period",
-    "cross_track_error": "largest distance from the path",
-    "max_joint_error": "largest joint error",
-    "rms_joint_error": "rms joint error",
-    "peak_torque": "largest torque",
-    "rms_torque": "rms torque",
-    "torque_chatter": "torque chatter",
-    "peak_joint_speed": "largest joint speed",
-    "peak_joint_force": "largest joint force",
-    "rms_joint_force": "rms joint force",
-    "force_chatter": "force chatter",
-    "peak_sliding_speed": "largest sliding speed",
-    "saturation_fraction": "share of ticks at a torque limit",
-    "energy": "energy",
-    "control_effort": "control effort",
-    "force_effort": "force effort",
-    "reach_loss_fraction": "share of ticks out of reach",
-    "peak_force": "largest contact force",
-    "steady_force": "contact force at rest",
-    "force_error": "error of the felt contact force",
-}
+TITLES = NAMES["metrics"]
 """Titles of the built-in metrics. A family of metrics from a plug-in may have its own TITLES."""
 
 _PREFERRED = (
@@ -63,9 +35,10 @@ def title(name: str) -> str:
     added = added_families()
     names = [*TITLES, *(metric for family in added for metric in family.UNITS)]
     base = max((base for base in names if f"_{base}_" in f"_{name}_"), key=len, default=name)
-    titles = {**_titles_of(added), **TITLES}
+    given = [getattr(family, "TITLES", None) for family in added]
+    own = {str(one): str(text) for some in given if isinstance(some, Mapping) for one, text in some.items()}
     stage, _, part = f"_{name}_".partition(f"_{base}_")
-    texts = [titles.get(base, _spaced(base)), _part(part.strip("_"))]
+    texts = [{**own, **TITLES}.get(base, _spaced(base)), _part(part.strip("_"))]
     told = ", ".join(text for text in texts if text)
     return f"{_spaced(stage).capitalize()}: {told}" if stage else told
 
@@ -78,12 +51,6 @@ def capital(text: str) -> str:
 def metric_label(name: str, unit: str) -> str:
     """Return the title of a metric with its unit, as on the axis of a figure."""
     return label_with_unit(title(name), unit)
-
-
-def _titles_of(families: Sequence[ModuleType]) -> dict[str, str]:
-    """Return the titles that families give; a value that is not a mapping is ignored."""
-    given = [getattr(family, "TITLES", None) for family in families]
-    return {str(name): str(text) for titles in given if isinstance(titles, Mapping) for name, text in titles.items()}
 
 
 def is_part(name: str) -> bool:
@@ -125,22 +92,11 @@ _OF_MOTION = (
 )
 
 
-class KeyMetric(NamedTuple):
-    """Title, value and remark of a metric.
-
-    Attributes:
-        title: What it is.
-        value: Its median with the range over the repetitions, in a unit that spares powers of ten.
-        remark: Remark for the reader; empty for nothing.
-    """
-
-    title: str
-    value: str
-    remark: str
-
-
-def key_metrics(run: "Run", most: int) -> Sequence[KeyMetric]:
+def key_metrics(run: "Run", most: int) -> Sequence[tuple[str, str, str]]:
     """Return the metrics that say most of a run's task: of a goal, of a motion along a path, of a contact.
+
+    Each has a title; its median with the range over the repetitions, in a unit that spares powers of ten; and a remark
+    or "".
 
     Args:
         run: The run; a failed one may have none.
@@ -150,19 +106,14 @@ def key_metrics(run: "Run", most: int) -> Sequence[KeyMetric]:
 
 
 def key_names(run: "Run") -> Sequence[str]:
-    """Return the names of the main metrics of a run's task that have a value."""
+    """Return the names of the main metrics of a run's task that have a value; that it never settles is one."""
     task = "contact" if "steady_force" in run.metrics else run.config["trajectory"]["kind"]
-    names = dict.fromkeys((*_OF_TASK.get(task, ()), *_OF_MOTION))
-    return [name for name in names if _says_something(name, run)]
+    names = [name for name in dict.fromkeys((*_OF_TASK.get(task, ()), *_OF_MOTION)) if name in run.metrics]
+    return [name for name in names if name == _SETTLING or run.metrics[name].median is not None]
 
 
-def _says_something(name: str, run: "Run") -> bool:
-    """Return True if a run has a value of a metric; that it never settles is one."""
-    return name in run.metrics and (name == _SETTLING or run.metrics[name].median is not None)
-
-
-def _in_words(name: str, run: "Run") -> KeyMetric:
+def _in_words(name: str, run: "Run") -> tuple[str, str, str]:
     if run.metrics[name].median is None:
-        return KeyMetric(title(name), "–", "not reached in half of the repetitions or more")
+        return title(name), "–", "not reached in half of the repetitions or more"
     count = run.record["repetitions"]
-    return KeyMetric(title(name), run.metrics[name].text, f"median of {count}" if count > 1 else "")
+    return (title(name), run.metrics[name].text, f"median of {count}" if count > 1 else "")

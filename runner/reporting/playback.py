@@ -1,6 +1,5 @@
 """Data of a motion for the page's script: frames, shapes of the arm, joints, paths and the first view."""
 
-import base64
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from typing import Any
@@ -11,6 +10,7 @@ import pinocchio as pin
 from runner.base.arrays import FloatArray
 from runner.base.sanitize import plain
 from runner.reporting.charts.figure import spaced_indices
+from runner.reporting.charts.interactive import pack
 from runner.reporting.document import Body, Playback
 from runner.robots.model import RobotModel
 
@@ -59,17 +59,17 @@ def _motion(run: Playback) -> Json:
     return {
         "name": plain(run.name),
         "ends": plain(run.ends),
-        "times": _packed(run.times[chosen]),
+        "times": pack(run.times[chosen]),
         "shapes": [
-            {"ends": _packed(ends[chosen]), "balls": ends.shape[1] == 1, "radius": radius, "color": body.color}
+            {"ends": pack(ends[chosen]), "balls": ends.shape[1] == 1, "radius": radius, "color": body.color}
             for body in run.bodies
             for ends, radius in body_shapes(body)
         ],
-        "joints": [{"name": plain(name), "at": _packed(places[chosen])} for name, places in run.joints.items()],
-        "tip": _packed(run.tip[chosen] if run.tip.size else run.tip),
-        "target": _packed(run.target[chosen] if run.target.size else run.target),
-        "path": _packed(_thinned(run.path)),
-        "desired": _packed(_thinned(run.desired)),
+        "joints": [{"name": plain(name), "at": pack(places[chosen])} for name, places in run.joints.items()],
+        "tip": pack(run.tip[chosen] if run.tip.size else run.tip),
+        "target": pack(run.target[chosen] if run.target.size else run.target),
+        "path": pack(_thinned(run.path)),
+        "desired": pack(_thinned(run.desired)),
     }
 
 
@@ -114,10 +114,6 @@ def _thinned(path: FloatArray | None) -> FloatArray:
         return np.zeros((0, 3))
     points: FloatArray = path[np.isfinite(path).all(axis=1)]
     return points[spaced_indices(len(points), _POINTS)] if len(points) else points
-
-
-def _packed(values: FloatArray) -> str:
-    return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode("ascii")
 
 
 Point = tuple[float, float, float]

@@ -10,11 +10,11 @@ from runner.base import progress
 from runner.base.errors import RunnerError
 from runner.base.sanitize import one_line
 from runner.reporting.figures import playback
-from runner.reporting.html import asset, data_uri, script_policy
 from runner.reporting.metric_titles import key_metrics
+from runner.reporting.render import asset, data_uri, script_policy
 from runner.reporting.stored import report_name
 from runner.reporting.sweep.question import in_short
-from runner.reporting.sweep.subject import choose
+from runner.reporting.sweep.subject import choose, shorten
 from runner.reporting.sweep.tuning import summary_of_tuning
 from runner.reporting.templating import html_environment
 from runner.store import Calibration, Run, Sweep, open_stored
@@ -71,7 +71,7 @@ class Row:
     def cells(self) -> list[str]:
         """The cells of HEADER."""
         numbers = [self.runs, str(self.caveats), str(self.failed), self.size, self.state]
-        return [self.when, self.entry.kind, _short(self.what), _short(self.answer), *numbers]
+        return [self.when, self.entry.kind, shorten(self.what, _LONGEST), shorten(self.answer, _LONGEST), *numbers]
 
 
 HEADER = ("when", "kind", "what", "answer", "runs", "caveats", "failed", "size", "state")
@@ -124,7 +124,7 @@ def _row(entry: Entry, sizes: Mapping[str, int]) -> Row:
 
 def _run_row(entry: Entry, run: Run) -> Row:
     found = key_metrics(run, 1)
-    answer = run.failure or "; ".join(f"{one.title} {one.value}" for one in found)
+    answer = run.failure or "; ".join(f"{name} {value}" for name, value, _ in found)
     failed = int(run.status == "failed")
     return Row(entry, " ".join(run.overrides), answer, f"1 x {run.repetitions}", len(run.caveats), failed)
 
@@ -195,7 +195,3 @@ def _thumbnail(row: Row) -> str:
         return playback(run, "", frames=2).still
     except (RunnerError, StopIteration, IndexError):
         return empty
-
-
-def _short(text: str) -> str:
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."

@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -151,7 +151,9 @@ def _metrics(run: Run) -> Table:
     rows = []
     for name, m in run.metrics.items():
         found = [m.median, m.min, *(m.quantiles[level] for level in levels), m.max]
-        rows.append([title(name), name, *(above_rounding(value, m.unit) for value in found), *_of_step(worth, name)])
+        share = worth.get(name, {}).get("share")
+        step = ["not comparable" if share is None else percent(share)] if worth else []
+        rows.append([title(name), name, *(above_rounding(value, m.unit) for value in found), *step])
     count = run.record["repetitions"]
     told = "; levels are quantiles, a repetition without a value counting as beyond every number" if many else ""
     of_step = ["the plant's step"] if worth else []
@@ -161,14 +163,6 @@ def _metrics(run: Run) -> Table:
         ["metric", Column("name on the command line", "code"), *names],
         rows,
     )
-
-
-def _of_step(worth: Mapping[str, Any], metric: str) -> list[str]:
-    """Return the cell with the contribution of the plant's step to a metric; none if it is unknown for all metrics."""
-    if not worth:
-        return []
-    share = worth.get(metric, {}).get("share")
-    return ["not comparable" if share is None else percent(share)]
 
 
 def config_blocks(run: Run) -> list[Block]:

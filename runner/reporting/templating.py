@@ -9,7 +9,7 @@ import jinja2
 from runner.base.paths import templates_dir
 from runner.base.sanitize import plain
 from runner.reporting.document import Origin
-from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, name_text, of_verdict
+from runner.reporting.equation import FOLDED, SHOWN, by_finding, by_place, name_text
 from runner.reporting.markup import spans
 from runner.reporting.outline import verdict_place
 from runner.reporting.verdicts import WORDS
@@ -91,7 +91,6 @@ def aspect(svg: str) -> str:
 
 
 def _environment(**options: Any) -> jinja2.Environment:
-    """Return an environment of our templates with our filters; autoescape is on, an unknown name is an error."""
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates_dir(), encoding="utf-8"),
         autoescape=True,
@@ -105,7 +104,6 @@ def _environment(**options: Any) -> jinja2.Environment:
         "origin_label": origin_label,
         "aspect": aspect,
         "name_text": name_text,
-        "of_verdict": of_verdict,
         "by_finding": by_finding,
         "by_place": by_place,
         "verdict_place": verdict_place,

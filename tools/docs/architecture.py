@@ -43,7 +43,7 @@ A claim of a study becomes a square on the first screen of its report by these f
 - chapter: `runner/study/chapters.py`, `runner/study/prose/reader.py`, `runner/study/prose/expressions.py`,
   `runner/study/prose/paragraphs.py`
 - report: `runner/study/report.py`, `runner/reporting/document.py`, `runner/reporting/verdicts.py`
-- page: `runner/reporting/html.py`, `reports/templates/report.html.j2`, `reports/templates/style.css`
+- page: `runner/reporting/render.py`, `reports/templates/report.html.j2`, `reports/templates/style.css`
 
 Runs of a study become a figure by the same chapter, report and page, and by these files:
 

@@ -1,5 +1,6 @@
 """Displayed forms of an audited equation, shortened, with differences marked and the elements it resembles."""
 
+import difflib
 import re
 from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import replace
@@ -11,11 +12,14 @@ from runner.audit.verdict import CheckedEquation
 from runner.base.expressions.difference import Difference, difference
 from runner.base.expressions.grammar import ExpressionError
 from runner.base.expressions.parser import parse
-from runner.base.expressions.tree import Call, Name, Node, Sum, holds, parts, shorten_expression, size
+from runner.base.expressions.tree import ELLIPSIS, Call, Name, Node, Sum, holds, parts, shorten_expression, size
 from runner.base.expressions.typesetting import Letters, linear, typeset
-from runner.reporting.audit.marks import LONG, cut, pieces
 from runner.reporting.equation import EquationForm
 
+Pieces = list[tuple[bool, str]]
+LONG = 130
+"""Characters of a string that is shown whole."""
+_AROUND = 24  # characters shown before and after each difference in a longer one
 _SYMBOLS = 40  # symbols of a form that is shown whole
 _OTHER = 0.5  # share of symbols that differ from which on an expression is another, and not one with a fault
 _LONGEST = 5000  # characters of a string that is compared sign by sign
@@ -72,27 +76,26 @@ def forms_of(entry: Entry, right: RightElements, letters: Letters = MappingProxy
         right: The right forms of the equations around it.
         letters: Names as the source writes them.
     """
-    forms = [form for form in (entry.printed, entry.emendation, entry.corrected) if form is not None]
+    named = {"as printed": entry.printed, "emended": entry.emendation, "corrected": entry.corrected}
+    shown: dict[str, Form] = {label: form for label, form in named.items() if form is not None}
+    forms = [*shown.values()]
     read = [_read(form) for form in forms]
     marks = _marks(read)
     found = []
-    for place, (form, elements) in enumerate(zip(forms, read, strict=True)):
-        label = _label(entry, form)
+    for place, (label, form, elements) in enumerate(zip(shown, forms, read, strict=True)):
         note = entry.emendation.why if entry.emendation is not None and form is entry.emendation else ""
         beside = forms[1 - place] if len(forms) > 1 and place < 2 else None
-        if form.math and form is entry.emendation and form.math == entry.printed.math:
-            found.append(EquationForm(label, note=note))
-        elif form.math:
-            found.append(EquationForm(label, [[form.math]], note=note))
+        if form.math:
+            is_same = form is entry.emendation and form.math == entry.printed.math
+            found.append(EquationForm(label, () if is_same else [[form.math]], note=note))
         elif elements is None:
             found.append(_unread(f"{label}, as the text has it", form, beside, note))
         elif form is entry.emendation and read[0] is None and not (entry.printed.math or entry.corrected):
             found.append(_unread(label, form, beside, note))
         else:
             like = right.misplaced(entry, elements) if len(forms) == place + 2 and entry.corrected is not None else ""
-            alone = len(forms) == 1
             told = f"{note} {like}".strip()
-            made = _shown(label, form, elements, marks[place], told, letters, like=like, alone=alone)
+            made = _shown(label, form, elements, marks[place], told, letters, like=like, alone=len(forms) == 1)
             if made.lines and entry.indices:
                 numbers = [f"{each} = {', '.join(map(str, found))}" for each, found in entry.indices.items()]
                 made = replace(made, lines=[*made.lines[:-1], [*made.lines[-1], *numbers]])
@@ -100,12 +103,6 @@ def forms_of(entry: Entry, right: RightElements, letters: Letters = MappingProxy
             empty = not (made.lines or like) and len(_text(form)) < _LONGEST
             found.append(_unread(label, form, beside, note) if emended and empty else made)
     return found
-
-
-def _label(entry: Entry, form: Form) -> str:
-    if form is entry.corrected:
-        return "corrected"
-    return "as printed" if form is entry.printed else "emended"
 
 
 def _read(form: Form) -> _Elements | None:
@@ -164,12 +161,8 @@ def _is_matrix(node: Node) -> bool:
 
 def _has_fault(one: Node, other: Node, found: Difference) -> bool:
     """Return True if two expressions are the same except for faults that can be pointed at."""
-    shares = _share(one, found.first), _share(other, found.second)
+    shares = [sum(map(size, marked)) / size(node) for node, marked in ((one, found.first), (other, found.second))]
     return max(shares) < 1 and min(shares) <= _OTHER and min(len(found.first), len(found.second)) <= _FAULTS
-
-
-def _share(node: Node, marked: Set[Node]) -> float:
-    return sum(map(size, marked)) / size(node)
 
 
 def _unread(label: str, form: Form, beside: Form | None, note: str) -> EquationForm:
@@ -195,10 +188,10 @@ def _shown(
     alone: bool,
 ) -> EquationForm:
     """Return a form that can be read: all of it if it is short or the only one, else the marked parts."""
-    whole = linear(_text(form))
     groups, marks = gather_elements(elements), frozenset(marked)
     if alone or sum(map(size, elements.values())) <= _SYMBOLS:
         return EquationForm(label, _lines(groups, marks, letters), note=note)
+    whole = linear(_text(form))
     if like:
         return EquationForm(label, note=note, whole=whole)
     shown = _short(
@@ -277,3 +270,31 @@ def _exchanged(found: Difference) -> str:
 
 def _typeset_name(name: str) -> str:
     return typeset(Name(name, 0))
+
+
+def pieces(text: str, beside: str) -> Pieces:
+    """Return a string in pieces, each with True if the other string lacks it; dots replace long common stretches."""
+    found: Pieces = []
+    matcher = difflib.SequenceMatcher(None, text, beside, autojunk=False)
+    for kind, start, end, other_start, other_end in matcher.get_opcodes():
+        if kind == "equal":
+            found.append((False, text[start:end]))
+        elif end > start:
+            found.append((True, text[start:end]))
+        elif other_end > other_start:
+            found.append((True, "\u200a"))  # what the other has more leaves a mark of no width
+    return found if len(text) <= LONG else list(_around(found))
+
+
+def cut(text: str) -> Pieces:
+    """Return the beginning of a string."""
+    return [(False, text if len(text) <= LONG else f"{text[:LONG]} {ELLIPSIS}")]
+
+
+def _around(found: Pieces) -> Iterator[tuple[bool, str]]:
+    for place, (marked, piece) in enumerate(found):
+        before, behind = place > 0, place + 1 < len(found)
+        if marked or len(piece) <= _AROUND * (before + behind) + 3:
+            yield marked, piece
+            continue
+        yield False, (piece[:_AROUND] if before else "") + f" {ELLIPSIS} " + (piece[-_AROUND:] if behind else "")

@@ -15,22 +15,18 @@ from matplotlib.patheffects import withStroke
 
 from runner.base.arrays import FloatArray
 from runner.reporting.charts import palette
+from runner.reporting.charts.sheet import LINES
 
 INK, GREY, PALE = "#20242a", "#7d8590", "#d3d8de"
 AXIS_COLORS = (palette.LIGHT[1], palette.LIGHT[2], palette.LIGHT[0])
 """Colours of the x, y and z axes of a frame."""
 
 _STYLE: Any = {
+    **LINES,
     "font.size": 8,
-    "axes.linewidth": 0.5,
-    "axes.edgecolor": "#555b66",
     "axes.labelcolor": INK,
     "text.color": INK,
-    "xtick.major.width": 0.5,
-    "ytick.major.width": 0.5,
     "mathtext.fontset": "stix",
-    "svg.fonttype": "path",
-    "svg.hashsalt": "runner",
 }
 
 _ASIDE = np.array([[0.6, -0.8], [0.8, 0.6]])  # turns an arrow's direction to the place of its label, next to the head

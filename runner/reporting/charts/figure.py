@@ -226,12 +226,6 @@ def usable(limits: tuple[float, float] | None, log: bool) -> bool:
     return not log or min(limits) > 0
 
 
-def runs(mask: NDArray[np.bool_]) -> list[slice]:
-    """Return the unbroken runs of True in a mask, shape (T,)."""
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], mask, [False])).astype(np.int8)))
-    return [slice(int(start), int(stop)) for start, stop in zip(edges[::2], edges[1::2], strict=True)]
-
-
 def band(series: Series) -> tuple[FloatArray, FloatArray] | None:
     """Return the outline of a series' shaded band as x and y, polygons parted by NaN, or None where it has no band."""
     if series.low is None or series.high is None:
@@ -239,7 +233,8 @@ def band(series: Series) -> tuple[FloatArray, FloatArray] | None:
     finite = np.isfinite(series.x) & np.isfinite(series.low) & np.isfinite(series.high)
     x: list[FloatArray] = []
     y: list[FloatArray] = []
-    for run in runs(finite):
+    for ends in np.flatnonzero(np.diff(finite, prepend=False, append=False)).reshape(-1, 2).tolist():
+        run = slice(*ends)
         x += [series.x[run], series.x[run][::-1], np.array([np.nan])]
         y += [series.high[run], series.low[run][::-1], np.array([np.nan])]
     return (np.concatenate(x)[:-1], np.concatenate(y)[:-1]) if x else None

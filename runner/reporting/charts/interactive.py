@@ -196,8 +196,13 @@ def _compared(series: Series) -> bool:
 
 def _typed(values: FloatArray) -> Json:
     # A value beyond single precision overflows the autorange; NaN is a gap.
-    finite = np.where(np.abs(values) <= _LARGEST, values, np.nan).astype("<f4")
-    return {"dtype": "f4", "bdata": base64.b64encode(finite.tobytes()).decode("ascii")}
+    finite = np.where(np.abs(values) <= _LARGEST, values, np.nan)
+    return {"dtype": "f4", "bdata": pack(finite)}
+
+
+def pack(values: FloatArray) -> str:
+    """Return numbers in single precision as base64, which the page's scripts unpack."""
+    return base64.b64encode(np.asarray(values, dtype="<f4").tobytes()).decode("ascii")
 
 
 def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
@@ -228,9 +233,12 @@ def _map(panel: Map, block: Maps, low: float, high: float) -> Json:
     if scales.prints_values(panel, block):
         drawn |= {"text": scales.printed_values(panel, block), "texttemplate": "%{text}"}
     if panel.hints:
-        drawn |= {"hovertext": _by_rows([neutral(hint) for hint in panel.hints], len(columns)), "hoverinfo": "text"}
+        drawn |= {
+            "hovertext": np.reshape(list(map(neutral, panel.hints)), panel.values.shape).tolist(),
+            "hoverinfo": "text",
+        }
     if panel.runs:
-        drawn["customdata"] = _by_rows(list(panel.runs), len(columns))
+        drawn["customdata"] = np.reshape(panel.runs, panel.values.shape).tolist()
     traces = [drawn, *_overlay(panel)]
     layout = {
         "xaxis": {"title": {"text": neutral(panel.x_label)}, **_named_places(panel.x_names)},
@@ -265,7 +273,3 @@ def _overlay(panel: Map) -> list[Json]:
             | {"x": columns.tolist(), "y": rows.tolist()}
         )
     return traces
-
-
-def _by_rows(values: list[str], columns: int) -> list[list[str]]:
-    return [values[start : start + columns] for start in range(0, len(values), columns)]

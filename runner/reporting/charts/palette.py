@@ -10,9 +10,6 @@ DARK = ("#0e7ad2", "#f7816b", "#73dda2", "#efb945", "#9facff", "#75b9d3", "#ca6b
 MEANINGS = {"stable": 2, "unstable": 3}
 """Palette index of a curve whose name says how it went: green and orange."""
 
-DESIRED = "#8a929c"
-"""Colour of a desired path, which belongs to no body."""
-
 
 def color(index: int) -> str:
     """Return the colour of a palette index on paper, as #rrggbb; indices beyond the palette start again."""
@@ -22,16 +19,6 @@ def color(index: int) -> str:
 def rounds(index: int) -> int:
     """Return the number of full rounds through the palette before an index: points of each time have their own mark."""
     return index // len(LIGHT)
-
-
-def rgb(index: int) -> tuple[int, int, int]:
-    """Return the colour of a palette index as red, green and blue from 0 to 255."""
-    return rgb_of(color(index))
-
-
-def rgb_of(text: str) -> tuple[int, int, int]:
-    """Return a colour written as #rrggbb as red, green and blue from 0 to 255."""
-    return int(text[1:3], 16), int(text[3:5], 16), int(text[5:7], 16)
 
 
 def indices(chosen: list[int | None]) -> list[int]:

@@ -4,12 +4,12 @@ import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from runner.base.arrays import FloatArray
-from runner.base.quantities import SUPERSCRIPT, choose_unit, digits_between, number
+from runner.base.quantities import choose_unit, digits_between, number
 from runner.reporting.charts.figure import Curves, Map, Maps, Panel, Series
 
 OVERLAY = 1
@@ -24,6 +24,8 @@ _SMALLEST_PRINTED = 1e-4  # value without a power of ten
 _MOST_PRINTED = 10  # cells side by side whose values can be read
 _UNIT = re.compile(r"\((m|s)\)$")
 _SMALLEST, _LARGEST = 1e-3, 1e4  # of what is written without a power of ten
+_CHANNELS = {"x": ("x",), "y": ("y", "low", "high"), "value": ("values", "low", "high")}
+Drawn = TypeVar("Drawn", Series, Map)
 Mark = Callable[[float], str]
 
 
@@ -44,15 +46,8 @@ def maps_in_readable_units(figure: Maps) -> Maps:
         return figure
     values = np.concatenate([np.zeros(1), *(panel.values.ravel() for panel in figure.panels)])
     factor, unit = choose_unit(float(np.abs(values[np.isfinite(values)]).max()), found[1])
-    panels = [
-        replace(
-            panel,
-            **{name: factor * part for name in ("values", "low", "high") if (part := getattr(panel, name)) is not None},
-        )
-        for panel in figure.panels
-    ]
-    label = f"{figure.value_label[: found.start()]}({unit})"
-    return replace(figure, value_label=label, panels=panels)
+    panels = [_scaled(panel, "value", factor) for panel in figure.panels]
+    return replace(figure, value_label=f"{figure.value_label[: found.start()]}({unit})", panels=panels)
 
 
 def _in_unit(panel: Panel, row: Sequence[Panel], axis: str) -> Panel:
@@ -81,14 +76,13 @@ def _largest(panel: Panel, axis: str) -> float:
     return float(np.concatenate([np.zeros(1), *values]).max())
 
 
-def _channels(series: Series, axis: str) -> dict[str, FloatArray]:
-    edges = {"low": series.low, "high": series.high} if axis == "y" else {}
-    return {axis: getattr(series, axis), **{name: edge for name, edge in edges.items() if edge is not None}}
+def _channels(shown: Series | Map, axis: str) -> dict[str, FloatArray]:
+    return {name: part for name in _CHANNELS[axis] if (part := getattr(shown, name)) is not None}
 
 
-def _scaled(series: Series, axis: str, factor: float) -> Series:
-    changed: dict[str, Any] = {name: factor * values for name, values in _channels(series, axis).items()}
-    return replace(series, **changed)
+def _scaled(shown: Drawn, axis: str, factor: float) -> Drawn:
+    changed: dict[str, Any] = {name: factor * values for name, values in _channels(shown, axis).items()}
+    return replace(shown, **changed)
 
 
 def marks(low: float, high: float, log: bool) -> Mark:
@@ -111,10 +105,8 @@ def power_mark(value: float) -> str:
     """Return a value with a power of ten, such as 5·10⁻⁴."""
     if value == 0.0:
         return "0"
-    value = float(f"{value:.6g}")
-    digits = next(count for count in range(6) if math.isclose(float(f"{value:.{count}e}"), value, rel_tol=1e-6))
-    mantissa, _, exponent = f"{value:.{digits}e}".partition("e")
-    return f"{mantissa}·10{str(int(exponent)).translate(SUPERSCRIPT)}".replace("-1·10", "-10").removeprefix("1·")
+    digits = next(count for count in range(1, 7) if math.isclose(float(f"{value:.{count - 1}e}"), value, rel_tol=1e-6))
+    return number(value, digits, plain=math.inf).replace("-1·10", "-10").removeprefix("1·")
 
 
 def at_2_and_5(write: Mark) -> Mark:

@@ -17,6 +17,15 @@ from matplotlib.text import Text
 from runner.base.sanitize import plain
 from runner.schema.units import is_number
 
+LINES = {
+    "axes.linewidth": 0.5,
+    "axes.edgecolor": "#555b66",
+    "xtick.major.width": 0.5,
+    "ytick.major.width": 0.5,
+    "svg.fonttype": "path",
+    "svg.hashsalt": "runner",
+}
+"""Parameters of matplotlib that all drawings share."""
 _MM = 25.4  # in an inch
 _DESIGNED = 7.0  # pt, for which the measures below are made
 _LONGEST = 28  # letters, beyond which a name is cut
@@ -98,6 +107,7 @@ def render_figure(make: Callable[[], Figure], sheet: Sheet, kind: Literal["svg",
 def style(sheet: Sheet) -> Any:
     """Return the parameters of matplotlib that stills on a sheet are drawn with."""
     return {
+        **LINES,
         "font.size": sheet.font,
         "axes.titlesize": sheet.title,
         "axes.labelsize": sheet.font,
@@ -105,21 +115,15 @@ def style(sheet: Sheet) -> Any:
         "ytick.labelsize": sheet.font,
         "legend.fontsize": sheet.font,
         "axes.titlepad": 4,
-        "axes.linewidth": 0.5,
-        "axes.edgecolor": "#555b66",
         "axes.spines.top": False,
         "axes.spines.right": False,
         "axes.grid": True,
         "grid.color": "#e3e6ea",
         "grid.linewidth": 0.5,
-        "xtick.major.width": 0.5,
-        "ytick.major.width": 0.5,
         "lines.linewidth": 1.0,
         "lines.markersize": 3.0,
         "path.simplify_threshold": 0.2,
         "pdf.fonttype": 42,
-        "svg.fonttype": "path",
-        "svg.hashsalt": "runner",
     }
 
 

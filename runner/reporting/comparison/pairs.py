@@ -205,7 +205,7 @@ def match(a: Measurements, b: Measurements) -> Pairs:
     keys = list(dict.fromkeys(axis.name for side in (a, b) for axis in side.axes))
     texts = {key: _values(key, a, b) for key in keys}
     sizes = len(a.hashes), len(b.hashes)
-    rows = number_rows([_codes([*of_a, *of_b]) for of_a, of_b in texts.values()], sum(sizes))
+    rows = number_rows([np.unique([*of_a, *of_b], return_inverse=True)[1] for of_a, of_b in texts.values()], sum(sizes))
     places = [some * max(sizes) + _again(some) for some in np.split(rows, [sizes[0]])]
     of_b, of_a = _partners(np.arange(sizes[1]), np.arange(sizes[0]), places[1], places[0])
     if not len(of_a):
@@ -216,12 +216,6 @@ def match(a: Measurements, b: Measurements) -> Pairs:
 
     alone = [labels(side, np.setdiff1d(np.arange(sizes[side]), of)) for side, of in ((0, of_a), (1, of_b))]
     return Pairs(a, b, of_a, of_b, a.name, b.name, {}, keys, labels(0, of_a), 0, (alone[0], alone[1]))
-
-
-def _codes(texts: Sequence[str]) -> Cells:
-    """Return a number for each string, equal for equal strings, shape (n,)."""
-    known: dict[str, int] = {}
-    return np.array([known.setdefault(text, len(known)) for text in texts], dtype=np.intp)
 
 
 def _again(rows: Cells) -> Cells:

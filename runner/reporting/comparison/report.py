@@ -17,6 +17,7 @@ from runner.reporting.comparison.sweeps import (
     compare_sweeps,
     counts_by_sign,
     format_count,
+    noise_alone,
     size_told,
 )
 from runner.reporting.document import (
@@ -75,7 +76,7 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
 def _abstract(found: Sequence[SweepComparison]) -> list[str]:
     told = [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
     told += [text for one in found for text in sentences(one.answers)]
-    return [*told, *([NOISE_ALONE] if any(one.noise_alone for one in found) else [])]
+    return [*told, *([NOISE_ALONE] if any(noise_alone([one.pairs.a, one.pairs.b]) for one in found) else [])]
 
 
 def _key_numbers(found: SweepComparison) -> list[tuple[str, str, str]]:

@@ -1,7 +1,7 @@
 """Comparison of two sweeps or runs by cell and repetition, and of the levels of one sweep axis."""
 
 import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,12 +54,6 @@ class SweepComparison:
     answers: Sequence[Answer]
     cells: Sequence[Asked]
     candidates: int
-
-    @property
-    def noise_alone(self) -> bool:
-        """True if repetitions differ only in their noise because mismatch.spread is 0 in both."""
-        a, b = self.pairs.a, self.pairs.b
-        return min(a.repetitions, b.repetitions) > 1 and noise_alone(config for config, _ in (*a.configs, *b.configs))
 
     def cells_told(self) -> Iterator[str]:
         """Yield which cells are compared, and which are not and why."""
@@ -223,10 +217,12 @@ def counts_by_sign(one: Asked) -> tuple[int, int]:
     return int(np.sum(moved < -ROUNDING)), int(np.sum(moved > ROUNDING))
 
 
-def noise_alone(configs: Iterable[Mapping[str, Any]]) -> bool:
-    """Return True if the repetitions of runs draw only noise: nothing of the arm is drawn from the seed."""
-    mismatches = [config.get("mismatch", {}) for config in configs]
-    return not any("kind" in mismatch or _draws(mismatch) for mismatch in mismatches)
+def noise_alone(sides: Sequence[Measurements]) -> bool:
+    """Return True if the repetitions of sweeps or runs draw only noise: nothing of the arm is drawn from the seed."""
+    mismatches = [config.get("mismatch", {}) for side in sides for config, _ in side.configs]
+    return min(side.repetitions for side in sides) > 1 and not any(
+        "kind" in mismatch or _draws(mismatch) for mismatch in mismatches
+    )
 
 
 def _draws(mismatch: Mapping[str, Any]) -> bool:

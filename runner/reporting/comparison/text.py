@@ -156,8 +156,7 @@ def _doubt_lines(sides: Sequence[Measurements]) -> Iterator[str]:
             found.setdefault((rule, text), []).append(f"{name} {cells}".strip())
     for (rule, text), places in found.items():
         yield one_line(f"May mislead: {rule} ({', '.join(places)}): {text}.")
-    repeated = min(side.repetitions for side in sides) > 1
-    if repeated and noise_alone(config for side in sides for config, _ in side.configs):
+    if noise_alone(sides):
         yield NOISE_ALONE
 
 

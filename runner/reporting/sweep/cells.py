@@ -214,13 +214,8 @@ def _by_level(axis: Axis, failed: NDArray[np.bool_]) -> list[list[str]]:
     return [[axis.name, axis.text(level), f"{lost[level]} of {count[level]}"] for level in chosen]
 
 
-def has_caveats(subject: Subject) -> bool:
-    """Return True if there is something to say."""
-    return any(subject.measurements.caveats) or bool(subject.measurements.caveat_changes)
-
-
-def caveats_section(subject: Subject) -> Section:
-    """Return the rules that found something, each with its number of cells and the worst one, and changes of rules."""
+def caveats_sections(subject: Subject) -> list[Section]:
+    """Return the section on rules that found something, each with its worst cell, and on changes of rules; or none."""
     measurements = subject.measurements
     cells = len(measurements.hashes)
     blocks: list[Block] = []
@@ -235,4 +230,4 @@ def caveats_section(subject: Subject) -> Section:
         changes = "; ".join(f"{what} ({count} of {cells} cells)" for what, count in measurements.caveat_changes.items())
         text = literal(f"Caveats were looked for by {changes}.")
         blocks.append(Notice("warning", "Caveats by other rules than today's", text))
-    return Section("Caveats", blocks)
+    return [Section("Caveats", blocks)] if blocks else []

@@ -19,10 +19,9 @@ from runner.reporting.sweep import distributions, effects, maps, spec, tradeoff
 from runner.reporting.sweep.cells import (
     axes_section,
     causes_of_failure,
-    caveats_section,
+    caveats_sections,
     failing_cells,
     failures_section,
-    has_caveats,
     nothing_differs,
 )
 from runner.reporting.sweep.question import (
@@ -71,7 +70,7 @@ def sweep_document(sweep: Sweep, metrics: Sequence[str] = (), runs_address: str 
     if several and not answers:
         sections.append(effects.section(subject))
     shown = len(sections) or None
-    sections += [caveats_section(subject)] if has_caveats(subject) else []
+    sections += caveats_sections(subject)
     sections.append(axes_section(subject, sweep.command))
     ranked = subject.ranked
     if several:
@@ -112,7 +111,6 @@ def _key_numbers(subject: Subject) -> list[tuple[str, str, str]]:
 
 
 def _title(subject: Subject) -> str:
-    """Return the question of a sweep."""
     axis = asked_axis(subject)
     if axis is None:
         return "Sweep of one cell" if not subject.axes else "Sweep over seeds"
@@ -140,7 +138,7 @@ def _abstract(subject: Subject, sweep: Sweep, answers: Sequence[Answer]) -> list
         texts += effects.describe_shared_variation(subject)
     rules = [f"{rule} ({count} of {cells} cells)" for rule, count, *_ in measurements.caveats_by_rule()]
     texts += [f"May mislead: {', '.join(rules)}; see Caveats."] if rules else []
-    if measurements.repetitions > 1 and noise_alone(config for config, _ in measurements.configs):
+    if noise_alone([measurements]):
         texts.append(NOISE_ALONE)
     return texts
 

@@ -125,9 +125,9 @@ def key_label(name: str) -> str:
     return label_with_unit(name, UNITS.get(name) or key_unit(name))
 
 
-def shorten(text: str) -> str:
+def shorten(text: str, longest: int = _LONGEST) -> str:
     """Return a value of a config, cut to the width of a table's column."""
-    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+    return text if len(text) <= longest else f"{text[: longest - 3]}..."
 
 
 def choose(measurements: Measurements, wanted: Sequence[str] = ()) -> Subject:

@@ -20,7 +20,7 @@ from runner.reporting.document import Block, Curves, Document, Notice, Origin, P
 from runner.reporting.figures import cover
 from runner.reporting.markup import literal
 from runner.reporting.metric_titles import metric_label, title
-from runner.reporting.sweep.cells import caveats_section, failed_table, has_caveats
+from runner.reporting.sweep.cells import caveats_sections, failed_table
 from runner.reporting.sweep.distributions import motion_blocks
 from runner.reporting.sweep.question import answer_blocks
 from runner.reporting.sweep.report import list_runs, made_by, run_command
@@ -137,9 +137,8 @@ def tuning_document(tuning: Tuning, folder: Path) -> Document:
         sections.append(
             Section("Failed trials", (failed_table("trials", ["trial", "run", "values", "failure"], rows),))
         )
-    seen = Subject(measurements, ())
-    sections += [caveats_section(seen)] if has_caveats(seen) else []
     sections += [
+        *caveats_sections(Subject(measurements, ())),
         _all_runs(trials, sweep, made, measurements, folder),
         made_by(measurements, ("tuning", tuning.folder.name)),
     ]

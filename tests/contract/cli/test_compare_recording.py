@@ -11,9 +11,9 @@ import pytest
 import runner
 from runner.base.paths import examples_dir
 from runner.recordings.compare import compare_recording
-from runner.reporting import html
 from runner.reporting.formulas import faulty
 from runner.reporting.recording_report import recording_document, report_folder
+from runner.reporting.render import render_html
 from runner.sweeps.job import run
 
 HERE = examples_dir() / "recording"
@@ -76,7 +76,7 @@ def test_names_in_a_recording_cannot_become_markup(swing, tmp_path):
     (tmp_path / "a.csv").write_text(text.replace("elbow,", f"{name},", 1))
     said = (HERE / "columns.yaml").read_text().replace("elbow:", f"{name!r}:")
     (tmp_path / "map.yaml").write_text(said)
-    page = html.render(recording_document(compare_recording(swing, tmp_path / "a.csv", tmp_path / "map.yaml")))
+    page = render_html(recording_document(compare_recording(swing, tmp_path / "a.csv", tmp_path / "map.yaml")))
     assert "alert(1)" in page
     assert "<script>alert" not in page
 

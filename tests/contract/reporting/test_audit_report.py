@@ -7,9 +7,10 @@ import pytest
 
 from runner.audit.audit import audit
 from runner.audit.verdict import VERDICTS
-from runner.reporting import formulas, html, outline
+from runner.reporting import formulas, outline
 from runner.reporting.audit.report import audit_document
 from runner.reporting.document import Curves, Equations, Table
+from runner.reporting.render import render_html
 from runner.reporting.verdicts import WORDS, tallies
 
 
@@ -25,7 +26,7 @@ def document(checked):
 
 @pytest.fixture(scope="module")
 def page(document):
-    return html.render(document)
+    return render_html(document)
 
 
 def tables(document, kind):

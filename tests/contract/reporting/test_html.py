@@ -14,9 +14,10 @@ import pytest
 from support.sample_document import HOSTILE, curves, document, playback
 
 from runner.base.sanitize import plain
-from runner.reporting import html, outline
+from runner.reporting import outline
 from runner.reporting.document import Block, Claim, ClaimResult, Code, Document, Origin, Section, Text, Verdicts
 from runner.reporting.markup import spans
+from runner.reporting.render import render_html
 from runner.reporting.templating import html_environment, typst_environment
 
 
@@ -49,7 +50,7 @@ class Page(HTMLParser):
 
 @pytest.fixture(scope="module")
 def quiet():
-    return Page(html.render(document("words")))
+    return Page(render_html(document("words")))
 
 
 @pytest.mark.parametrize("kind", get_args(Block), ids=lambda kind: kind.block)
@@ -60,7 +61,7 @@ def test_every_block_type_has_a_macro(kind):
 
 @pytest.mark.parametrize("text", HOSTILE)
 def test_texts_add_no_tag_and_are_shown_literally(quiet, text):
-    page = Page(html.render(document(text)).encode("utf-8", "replace").decode())
+    page = Page(render_html(document(text)).encode("utf-8", "replace").decode())
     # mathematics, or its source where it is refused
     extra = {"code", "br", "math", "mi", "mn", "mo", "mrow", "msub", "msup", "mtext", "mspace", "mfrac"}
     extra |= {"p"} if "\n" in text else set()  # a line of the abstract is a paragraph
@@ -85,7 +86,7 @@ def sha256(text):
 @pytest.mark.parametrize("moving", [False, True])
 def test_the_policy_lists_the_page_s_own_scripts_and_no_others(moving):
     blocks = [curves(), playback()] if moving else [curves()]
-    page = Page(html.render(replace(document("words"), cover=None, sections=[Section("One", blocks)])))
+    page = Page(render_html(replace(document("words"), cover=None, sections=[Section("One", blocks)])))
     allowed = sources(page)
     scripts = [content for attributes, content in page.scripts if attributes.get("type") in (None, "module")]
     (library,) = [content for attributes, content in page.scripts if attributes.get("id") == "plotly"]
@@ -95,7 +96,7 @@ def test_the_policy_lists_the_page_s_own_scripts_and_no_others(moving):
 
 
 def test_no_text_can_end_a_script():
-    page = Page(html.render(document("</script><!--\u2028")))
+    page = Page(render_html(document("</script><!--\u2028")))
     data = [content for attributes, content in page.scripts if attributes.get("type") == "application/json"]
     assert len(data) == 2  # runs, palette
     for content in data:
@@ -104,7 +105,7 @@ def test_no_text_can_end_a_script():
 
 
 def test_nothing_is_asked_from_the_network():
-    text = html.render(document())
+    text = render_html(document())
     assert not re.findall(r"(?<!<a )(?:src|href)=[\"']?(?:https?:)?//", text)  # a link waits for a click
     assert "default-src 'none'" in text
 
@@ -112,9 +113,9 @@ def test_nothing_is_asked_from_the_network():
 def test_plotly_stands_once_and_only_where_curves_are():
     with_two = Document("", "", "", [Section("", [curves(), curves()])], "")
     without = Document("", "", "", [Section("", [Text("no curves")])], "")
-    assert html.render(with_two).count('id="plotly"') == 1
-    assert 'id="plotly"' not in html.render(without)
-    packed = Page(html.render(with_two))
+    assert render_html(with_two).count('id="plotly"') == 1
+    assert 'id="plotly"' not in render_html(without)
+    packed = Page(render_html(with_two))
     (library,) = [content for attributes, content in packed.scripts if attributes.get("id") == "plotly"]
     assert b"Plotly" in gzip.decompress(base64.b64decode(library))
 
@@ -122,7 +123,7 @@ def test_plotly_stands_once_and_only_where_curves_are():
 def test_a_motion_has_controls_and_several_runs_a_choice():
     tip = np.zeros((60, 3))
     several = playback(name="A", tip=tip, target=tip, others=[playback(30, name="B"), playback(30, name="C")])
-    page = Page(html.render(Document("", "", "", [Section("", [playback(), several])], "")))
+    page = Page(render_html(Document("", "", "", [Section("", [playback(), several])], "")))
     names = [value for name, value in page.attributes if name == "name"]
     assert [name for name in names if name in ("speed", "error", "run", "ghost")] == [
         "speed", "speed", "error", "run", "ghost",
@@ -132,12 +133,12 @@ def test_a_motion_has_controls_and_several_runs_a_choice():
 
 
 def test_a_page_without_figures_has_no_script_for_them():
-    assert "startMotions" not in html.render(Document("", "", "", [Section("", [Text("words")])], ""))
+    assert "startMotions" not in render_html(Document("", "", "", [Section("", [Text("words")])], ""))
 
 
 def test_a_named_file_can_be_saved_and_is_not_on_paper():
     file = Document("", "", "", [Section("", [Code("a: <1>", "config.yaml")])], "")
-    page = Page(html.render(file))
+    page = Page(render_html(file))
     assert [value for name, value in page.attributes if name == "data-save"] == ["config.yaml"]
     assert "a: <1>" in page.shown
     macros = typst_environment().get_template("blocks.typ.j2").make_module({})
@@ -146,14 +147,14 @@ def test_a_named_file_can_be_saved_and_is_not_on_paper():
 
 
 def test_formulas_are_mathematics_and_the_page_has_their_font():
-    page = html.render(Document("", "", "$omega_n$", [], ""))
+    page = render_html(Document("", "", "$omega_n$", [], ""))
     assert "<math><msub><mi>𝜔</mi><mi>𝑛</mi></msub></math>" in page
     assert page.count("data:font/woff2;base64,") == 1
-    assert "data:font" not in html.render(Document("", "", "no mathematics", [], ""))
+    assert "data:font" not in render_html(Document("", "", "no mathematics", [], ""))
 
 
 def test_data_and_pictures_are_packed_and_named_by_their_places():
-    page = Page(html.render(document()))
+    page = Page(render_html(document()))
     for kind, count in (("plots", 3), ("pictures", 2)):
         text = next(content for attributes, content in page.scripts if attributes.get("id") == kind)
         assert len(json.loads(gzip.decompress(base64.b64decode(text)))) == count
@@ -166,7 +167,7 @@ def test_claims_figures_and_tables_are_places_that_texts_lead_to():
     claim = Claim("3", "It settles", "page 1", "1 s", [ClaimResult("", "1 s", "matches")], "", "runner experiment=a/b")
     told = Text("claim 3 is judged by figure 3.5; figure 9.9 is not here")
     blocks = [told, Verdicts("All.", [claim]), curves("seen", origin=origin)]
-    page = html.render(Document("", "", "", [Section("A", blocks)], ""))
+    page = render_html(Document("", "", "", [Section("A", blocks)], ""))
     assert 'href="#claim-3">claim 3</a>' in page
     assert 'href="#figure-3-5">figure 3.5</a>' in page
     assert 'href="#figure-9-9"' not in page
@@ -176,17 +177,17 @@ def test_claims_figures_and_tables_are_places_that_texts_lead_to():
 
 
 def test_the_same_document_gives_the_same_page():
-    assert html.render(document()) == html.render(document())
+    assert render_html(document()) == render_html(document())
 
 
 def test_sections_are_numbered_and_listed():
-    page = Page(html.render(replace(document(), sections=[Section("A", [], [Section("B")]), Section("C")])))
+    page = Page(render_html(replace(document(), sections=[Section("A", [], [Section("B")]), Section("C")])))
     own = ["#s1", "#s1-1", "#s2"]  # in the contents, and at the headings
     assert [value for name, value in page.attributes if name == "href" and value.startswith("#s")] == [*own, *own]
 
 
 def test_every_figure_has_an_address_and_what_can_be_done_with_it():
-    page = Page(html.render(document()))
+    page = Page(render_html(document()))
     ids = [value for name, value in page.attributes if name == "id"]
     assert len(ids) == len(set(ids))
     captioned = page.tags.count("figcaption")

@@ -8,8 +8,9 @@ import pytest
 from support.pdf_text import pages
 from support.sample_document import HOSTILE, document
 
-from runner.reporting import pdf
+from runner.reporting import render
 from runner.reporting.document import Block, Curves, Document, Panel, Section, Series, Table, Text
+from runner.reporting.render import render_pdf
 from runner.reporting.table import numbers
 from runner.reporting.templating import quote_typst, typst_environment, typst_value
 
@@ -22,7 +23,7 @@ def test_every_block_type_has_a_macro(kind):
 
 @pytest.mark.parametrize("text", HOSTILE)
 def test_any_text_in_any_field_gives_a_document(text):
-    assert pdf.render(document(text)).startswith(b"%PDF")
+    assert render_pdf(document(text)).startswith(b"%PDF")
 
 
 @pytest.mark.parametrize("text", HOSTILE)
@@ -40,28 +41,28 @@ def test_a_template_refuses_what_is_neither_text_nor_number():
 
 
 def test_the_same_document_gives_the_same_bytes():
-    assert pdf.render(document()) == pdf.render(document())
+    assert render_pdf(document()) == render_pdf(document())
 
 
 def test_the_date_is_that_of_the_document():
-    assert b"20261121" in pdf.render(document())
-    assert pdf.render(replace(document(), date="no date")).startswith(b"%PDF")
+    assert b"20261121" in render_pdf(document())
+    assert render_pdf(replace(document(), date="no date")).startswith(b"%PDF")
 
 
 def test_long_tables_break_over_pages(monkeypatch):
     rows = [[f"{number}", "x" * 300] for number in range(120)]
     made = Document("T", "", "", [Section("S", [Table("Long.", [*numbers("n"), "word"], rows)])], "2026-11-21")
-    compile_typst = pdf.typst.compile
+    compile_typst = render.typst.compile
     monkeypatch.setattr(
-        pdf.typst, "compile", lambda *given, **named: compile_typst(*given, **named | {"format": "svg"})
+        render.typst, "compile", lambda *given, **named: compile_typst(*given, **named | {"format": "svg"})
     )
-    assert len(pdf.render(made)) > 4
+    assert len(render_pdf(made)) > 4
 
 
 def test_a_link_leads_to_its_section_and_one_without_section_is_text():
     table = Table("where", ["place"], [["§1"], ["§9.9"]])
-    links = pdf.render(Document("t", "s", "a", [Section("one", [table])], "2026-01-01"))
-    plain = pdf.render(Document("t", "s", "a", [Section("one", [replace(table, rows=[["1"], ["9.9"]])])], "2026-01-01"))
+    links = render_pdf(Document("t", "s", "a", [Section("one", [table])], "2026-01-01"))
+    plain = render_pdf(Document("t", "s", "a", [Section("one", [replace(table, rows=[["1"], ["9.9"]])])], "2026-01-01"))
     assert links.count(b"/Subtype/Link") == plain.count(b"/Subtype/Link") + 1
 
 
@@ -80,7 +81,7 @@ def test_figures_and_tables_stay_in_their_section_within_a_page_of_their_mention
         )
         for number, name in enumerate(names)
     ]
-    made = pages(pdf.render(Document("T", "", "", [Section("Chapter", sections=sections)], "")))
+    made = pages(render_pdf(Document("T", "", "", [Section("Chapter", sections=sections)], "")))
     text = " ".join(made)
     # The last place of a heading: the contents name it, too.
     order = [text.rindex(f"{word} {name}") for name in names for word in ("Section", "Mention", "Finding", "Listed")]

@@ -10,8 +10,8 @@ from support.pdf_text import pages
 from runner.base.errors import RunnerError
 from runner.base.paths import example_study_dir
 from runner.cli.main import dispatch
-from runner.reporting import html, pdf
 from runner.reporting.document import Table
+from runner.reporting.render import render_html, render_pdf
 from runner.study.chapters import Chapters
 from runner.study.check import problems
 from runner.study.execute import make_all
@@ -98,13 +98,13 @@ def test_answers_of_the_first_chapter_open_the_report(tmp_path, made):
     assert (plain.answers, [each.title for each in opened.answers]) == ([], ["It does."])
     assert all(finding[1].claim != "It does." for finding in findings(plain))
     assert [number for number, each in findings(opened) if each.claim == "It does."] == ["1"]
-    page = html.render(opened)
+    page = render_html(opened)
     places = [
         page.index(text) for text in ("Does it err?</h2>", "It does.", ">A</p>", "Errors.", "</header>", "One</h2>")
     ]
     assert places == sorted(places)
     assert page.count("It does.") == 1
-    text = " ".join(" ".join(pages(pdf.render(opened))).split())
+    text = " ".join(" ".join(pages(render_pdf(opened))).split())
     places = [text.index(words) for words in ("Does it err?", "It does.", "Errors.", "Contents", "2 One")]
     assert places == sorted(places)
     assert text.count("It does.") == 1

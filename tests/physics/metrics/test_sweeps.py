@@ -8,7 +8,7 @@ from runner.reporting import outline
 from runner.reporting.comparison.runs import runs_document
 from runner.reporting.document import Notice, RunList, Table
 from runner.reporting.formulas import faulty
-from runner.reporting.run_list import SHOWN
+from runner.reporting.render import SHOWN
 from runner.reporting.run_report import run_document
 from runner.reporting.sweep.report import sweep_document
 from runner.store import open_run, open_sweep

@@ -11,7 +11,6 @@ from runner.reporting.equation import (
     by_finding,
     by_place,
     name_text,
-    of_verdict,
 )
 
 
@@ -39,12 +38,11 @@ def test_a_note_beside_a_finding_stays():
     assert (words, row.forms[1].note) == ("Wrong.", "Mended.")
 
 
-def test_equations_are_listed_by_place_and_verdict():
+def test_equations_are_listed_by_place():
     rows = [equation("1"), equation("2", place="page 2", verdict="correct"), equation("3")]
     assert [(place, [row.number for row in each]) for place, each in by_place(rows)] == [
         ("page 1", ["1", "3"]), ("page 2", ["2"]),
     ]  # fmt: skip
-    assert [row.number for row in of_verdict(rows, "correct")] == ["2"]
 
 
 def letter(letter, **scripts):

@@ -4,6 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
+from matplotlib.colors import to_rgb
 
 from runner.reporting.charts import palette
 from runner.reporting.charts.static import COLOR_MARKS
@@ -24,7 +25,7 @@ LEAST_CONTRAST = 3.0  # to what lies behind, of WCAG 2.1, 1.4.11
 
 
 def linear(color):
-    parts = np.array(palette.rgb_of(color)) / 255.0
+    parts = np.array(to_rgb(color))
     return np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
 
 

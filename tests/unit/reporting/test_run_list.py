@@ -8,7 +8,7 @@ import pytest
 from support.sample_document import HOSTILE, run_list
 
 from runner.reporting.markup import spans
-from runner.reporting.run_list import ON_PAPER, first_runs, run_list_spec
+from runner.reporting.render import ON_PAPER, first_runs, run_list_spec
 
 
 def test_columns_keep_their_order():

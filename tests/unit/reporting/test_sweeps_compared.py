@@ -9,7 +9,7 @@ from support.sample_sides import LAWS, side
 from runner.base.errors import RunnerError
 from runner.base.quantities import ROUNDING
 from runner.reporting.answers import ask
-from runner.reporting.comparison.sweeps import compare_sweeps, counts_by_sign
+from runner.reporting.comparison.sweeps import compare_sweeps, counts_by_sign, noise_alone
 from runner.statistics import compare_paired
 
 
@@ -137,9 +137,9 @@ def test_failed_and_missing_values():
 
 def test_spread_is_more_than_noise():
     a, b = side("A", LAWS, error), side("B", LAWS, error)
-    assert compare_sweeps(a, b).noise_alone
+    assert noise_alone([a, b])
     spread = side("B", LAWS, error, mismatch={"spread": 0.1})
-    assert not compare_sweeps(a, spread).noise_alone
+    assert not noise_alone([a, spread])
 
 
 def test_sweeps_without_a_common_metric_and_unknown_ones_are_refused():

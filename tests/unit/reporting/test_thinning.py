@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runner.reporting.charts.figure import Series, band, envelope, runs, spaced_indices, thin
+from runner.reporting.charts.figure import Series, band, envelope, spaced_indices, thin
 
 
 @given(st.integers(2001, 9000), st.data())
@@ -38,10 +38,6 @@ def test_gaps_and_edges_of_a_band_survive():
 
 def test_a_curve_of_nothing_but_gaps_is_no_error():
     assert np.isnan(thin(Series("", np.arange(3000.0), np.full(3000, np.nan))).y).all()
-
-
-def test_runs_are_the_unbroken_stretches():
-    assert runs(np.array([True, True, False, True])) == [slice(0, 2), slice(3, 4)]
 
 
 def test_a_band_is_one_polygon_for_each_unbroken_stretch():

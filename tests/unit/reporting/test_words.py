@@ -1,5 +1,7 @@
 """Sentences of comparisons: counts, and repetitions that differ only in noise."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from runner.reporting.comparison.sweeps import format_count, noise_alone
@@ -11,5 +13,11 @@ def test_a_number_goes_with_what_is_counted(count, text):
 
 
 def test_nothing_but_noise_is_drawn_where_no_config_has_a_spread():
-    assert noise_alone([{"mismatch": {"spread": 0.0}}, {}])
-    assert not noise_alone([{"mismatch": {"spread": 0.0}}, {"mismatch": {"spread": 0.1}}])
+    still, spread, free = ({"mismatch": {"spread": 0.0}}, {"mismatch": {"spread": 0.1}}, {})
+
+    def side(*configs, repetitions=2):
+        return SimpleNamespace(repetitions=repetitions, configs=[(config, ()) for config in configs])
+
+    assert noise_alone([side(still), side(free)])
+    assert not noise_alone([side(still, spread)])
+    assert not noise_alone([side(still), side(free, repetitions=1)])
