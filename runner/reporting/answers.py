@@ -71,6 +71,11 @@ class Asked:
         return self.pairs.at if self.pairs else {}
 
     @property
+    def place(self) -> str:
+        """These levels as a string, such as "robot=macro", or "all"."""
+        return label_text(self.at) if self.at else "all"
+
+    @property
     def full_names(self) -> tuple[str, str]:
         """The names; numbers with their axis, such as "controller.period=0.01"."""
         axis = self.pairs.axis if self.pairs else ""
@@ -347,7 +352,7 @@ def short_table(answers: Sequence[Answer]) -> tuple[list[str | Column], list[lis
     rows = [
         [
             title(one.metric),
-            *[label_text(one.at) if one.at else "all"] * at,
+            *[one.place] * at,
             *[", ".join(one.names)] * several,
             *one.short_cells,
         ]

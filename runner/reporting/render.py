@@ -72,7 +72,7 @@ def write_report(document: Document, folder: Path, formats: Collection[str] = ("
 
 
 def _content(document: Document) -> dict[str, Any]:
-    """Return what both templates show of a document."""
+    """Return the values that both templates show of a document."""
     shown = {"chapters": outline.chapters(document), "places": Places(document), "tallies": tallies(document)}
     return {"document": document, **shown}
 

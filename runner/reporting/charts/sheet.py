@@ -26,6 +26,7 @@ LINES = {
     "svg.hashsalt": "runner",
 }
 """Parameters of matplotlib that all drawings share."""
+_SIZES = ("font.size", "axes.labelsize", "xtick.labelsize", "ytick.labelsize", "legend.fontsize")
 _MM = 25.4  # in an inch
 _DESIGNED = 7.0  # pt, for which the measures below are made
 _LONGEST = 28  # letters, beyond which a name is cut
@@ -108,12 +109,8 @@ def style(sheet: Sheet) -> Any:
     """Return the parameters of matplotlib that stills on a sheet are drawn with."""
     return {
         **LINES,
-        "font.size": sheet.font,
+        **dict.fromkeys(_SIZES, sheet.font),
         "axes.titlesize": sheet.title,
-        "axes.labelsize": sheet.font,
-        "xtick.labelsize": sheet.font,
-        "ytick.labelsize": sheet.font,
-        "legend.fontsize": sheet.font,
         "axes.titlepad": 4,
         "axes.spines.top": False,
         "axes.spines.right": False,

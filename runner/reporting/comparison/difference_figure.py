@@ -7,7 +7,6 @@ import numpy as np
 from runner.base.arrays import FloatArray
 from runner.base.quantities import label_with_unit
 from runner.reporting.answers import Answer
-from runner.reporting.comparison.pairs import label_text
 from runner.reporting.document import Panel, Series
 from runner.reporting.metric_titles import capital, title
 
@@ -23,15 +22,15 @@ def difference_panel(columns: Sequence[tuple[str, Answer]], across: str) -> Pane
         across: Label of the horizontal axis.
     """
     answers = [answer for _, answer in columns]
-    ends = np.array([_ends(answer) for answer in answers], dtype=float).reshape(-1, 3)
-    low, middle, high = np.where(np.isfinite(ends), ends, np.nan).T
+    ends = [(*(one.interval or (np.nan, np.nan)), one.comparison.difference) for one in answers]
+    low, high, middle = np.where(np.isfinite(ends), ends, np.nan).T
     x = np.arange(len(answers), dtype=float)
     dots = np.concatenate([_dots(place, answer) for place, answer in enumerate(answers)], axis=1)
     series = [
         Series("", np.array([-0.5, len(answers) - 0.5]), np.zeros(2), "dotted", color=1),
         Series("a pair", dots[0], dots[1], "points", color=2),
         Series("interval", np.repeat(x, 3), np.column_stack([low, high, np.full(len(x), np.nan)]).ravel(), color=0),
-        Series("difference", x, middle, "points", color=0, hints=[_hint(answer) for answer in answers]),
+        Series("difference", x, middle, "points", color=0, hints=[f"{one.place}: {one.word}" for one in answers]),
     ]
     label = label_with_unit(f"difference in {title(answers[0].metric)}", answers[0].unit)
     return Panel(capital(title(answers[0].metric)), across, label, series, x_names=[name for name, _ in columns])
@@ -43,12 +42,3 @@ def _dots(place: int, answer: Answer) -> FloatArray:
     values = values[np.isfinite(values)][:_MOST_DOTS]
     across = np.linspace(-1.0, 1.0, len(values)) if len(values) > 1 else np.zeros(len(values))
     return np.stack([place + _WIDTH * across, values])
-
-
-def _ends(answer: Answer) -> tuple[float, float, float]:
-    low, high = answer.interval or (np.nan, np.nan)
-    return low, answer.comparison.difference, high
-
-
-def _hint(answer: Answer) -> str:
-    return f"{label_text(answer.at) if answer.at else 'all'}: {answer.word}"

@@ -63,20 +63,17 @@ def comparison_document(sides: Sequence[Measurements], wanted: Sequence[str] = (
         compared = [
             Section(f"{one.pairs.second} against {one.pairs.first}", (), _sections(one, wanted)) for one in found
         ]
+    told = [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
+    told += [text for one in found for text in sentences(one.answers)]
+    told += [NOISE_ALONE] if any(noise_alone([one.pairs.a, one.pairs.b]) for one in found) else []
     return Document(
         title=f"{len(sides)} sweeps compared",
         subtitle=literal(", ".join(f"{side.name}: {side.folder.resolve().name}" for side in sides)),
-        abstract=literal(" ".join(_abstract(found))),
+        abstract=literal(" ".join(told)),
         sections=[_sides(sides), *compared, _caveats(sides), _made(sides)],
         date=max(max(side.provenance["made on"]) for side in sides),
         key_numbers=_key_numbers(found[0]),
     )
-
-
-def _abstract(found: Sequence[SweepComparison]) -> list[str]:
-    told = [one.differences.in_words(one.pairs.first, one.pairs.second) for one in found]
-    told += [text for one in found for text in sentences(one.answers)]
-    return [*told, *([NOISE_ALONE] if any(noise_alone([one.pairs.a, one.pairs.b]) for one in found) else [])]
 
 
 def _key_numbers(found: SweepComparison) -> list[tuple[str, str, str]]:

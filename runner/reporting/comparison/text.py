@@ -58,8 +58,7 @@ def level_lines(side: Measurements, axis: str, answers: Sequence[Answer], everyt
         yield from _short_lines(answers)
         return
     rows: list[list[Cell]] = [
-        [label_text(one.at) if one.at else "all", ", ".join(one.names), one.metric, one.unit, *one.plain_cells]
-        for one in answers
+        [one.place, ", ".join(one.names), one.metric, one.unit, *one.plain_cells] for one in answers
     ]
     yield terminal(Table("", ["at", axis, "metric", "unit", *numbers(*HEADER), "the second is"], rows), indent="")
     yield ""

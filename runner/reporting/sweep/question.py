@@ -131,7 +131,7 @@ def pairs_section(subject: Subject) -> Section | None:
         )
         found = judge(ask([*overall, *chosen], subject.metrics), first_screen(subject.metrics))
         for metric, blocks in tables.items():
-            rows = [_row(answer) for answer in found if answer.metric == metric]
+            rows = [[one.place, ", ".join(one.names), *one.cells] for one in found if one.metric == metric]
             if rows:
                 blocks.append(_table(subject, axis, metric, rows, bool(overall), fewer))
     sections = [Section(capital(title(metric)), blocks) for metric, blocks in tables.items() if blocks]
@@ -155,8 +155,3 @@ def _table(
         ["at", axis.name, *numbers(*HEADER), "the second is"],
         rows,
     )
-
-
-def _row(answer: Answer) -> Sequence[str]:
-    at = ", ".join(f"{name}={text}" for name, text in answer.at.items()) or "all"
-    return [at, ", ".join(answer.names), *answer.cells]
