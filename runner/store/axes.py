@@ -70,8 +70,6 @@ class Axes(Sequence[tuple[str, ...]]):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Sequence) and list(self) == list(other)
 
-    __hash__ = None  # type: ignore[assignment]
-
     def runs_of_levels(self) -> Iterator[tuple[SweepAxis | str, int]]:
         """Yield each entry that is simulated, and the number of successive cells that share one of its values."""
         successive = len(self)

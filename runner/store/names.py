@@ -52,8 +52,6 @@ class Names(Sequence[str]):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Sequence) and list(self) == list(other)
 
-    __hash__ = None  # type: ignore[assignment]
-
 
 def look_up(names: Texts, ordered: Texts) -> NDArray[np.intp]:
     """Return the index of each name in an ascending array, shape (n,); -1 for a missing name.

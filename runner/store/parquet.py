@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     import pyarrow
 
 VALUES_FILE = "values.parquet"
+OF_NUMBERS = {"use_dictionary": False, "use_byte_stream_split": True}
+"""Options of `encode_parquet` for a table of numbers."""
+
 _MOST_BYTES = 2**31 - 1  # total size of the strings of a column
 
 
@@ -39,11 +42,13 @@ def text_column(values: Sequence[str]) -> "pyarrow.Array":
     return pyarrow.Array.from_buffers(pyarrow.string(), len(values), buffers)
 
 
-def float_column(values: NDArray[np.float64]) -> "pyarrow.Array":
-    """Return a column of numbers, shape (n,); NaN stays NaN."""
+def plain_column(values: NDArray[Any]) -> "pyarrow.Array":
+    """Return a column of numbers or booleans of the type of an array, shape (n,); NaN stays NaN."""
     import pyarrow
 
-    return _plain(pyarrow.float64(), np.ascontiguousarray(values, dtype=np.float64), len(values))
+    content = _bits(values) if values.dtype == bool else np.ascontiguousarray(values)
+    buffers = [None, pyarrow.py_buffer(content)]
+    return pyarrow.Array.from_buffers(pyarrow.from_numpy_dtype(values.dtype), len(values), buffers)
 
 
 def optional_column(values: NDArray[np.float64]) -> "pyarrow.Array":
@@ -53,20 +58,6 @@ def optional_column(values: NDArray[np.float64]) -> "pyarrow.Array":
     numbers = np.ascontiguousarray(values, dtype=np.float64)
     buffers = [_unless_all(~np.isnan(numbers)), pyarrow.py_buffer(numbers)]
     return pyarrow.Array.from_buffers(pyarrow.float64(), len(numbers), buffers)
-
-
-def whole_column(values: Sequence[int]) -> "pyarrow.Array":
-    """Return a column of 32-bit integers."""
-    import pyarrow
-
-    return _plain(pyarrow.int32(), np.array(values, dtype=np.int32), len(values))
-
-
-def truth_column(values: Sequence[bool]) -> "pyarrow.Array":
-    """Return a column of booleans."""
-    import pyarrow
-
-    return _plain(pyarrow.bool_(), _bits(np.array(values, dtype=bool)), len(values))
 
 
 def list_column(values: NDArray[np.float64], sizes: NDArray[np.intp], present: NDArray[np.bool_]) -> "pyarrow.Array":
@@ -85,12 +76,6 @@ def list_column(values: NDArray[np.float64], sizes: NDArray[np.intp], present: N
     return pyarrow.Array.from_buffers(kind, len(sizes), [_unless_all(present), offsets], children=[numbers])
 
 
-def _plain(kind: Any, values: NDArray[Any], count: int) -> "pyarrow.Array":
-    import pyarrow
-
-    return pyarrow.Array.from_buffers(kind, count, [None, pyarrow.py_buffer(values)])
-
-
 def _bits(values: NDArray[np.bool_]) -> NDArray[np.uint8]:
     return np.packbits(values, bitorder="little")
 
@@ -105,11 +90,17 @@ def _unless_all(present: NDArray[np.bool_]) -> Any:
 def values_parquet(values: Mapping[str, FloatArray]) -> bytes:
     """Return metrics in each repetition, each of shape (repetitions,), as Parquet; NaN, for no value, becomes null."""
     import pyarrow
+
+    columns = [optional_column(column) for column in values.values()]
+    return encode_parquet(pyarrow.Table.from_arrays(columns, list(values)), **OF_NUMBERS)
+
+
+def encode_parquet(table: "pyarrow.Table", **options: Any) -> bytes:
+    """Return a table as Parquet; `pyarrow.parquet.write_table` has the options."""
     import pyarrow.parquet
 
-    table = pyarrow.Table.from_arrays([optional_column(column) for column in values.values()], list(values))
     buffer = io.BytesIO()
-    pyarrow.parquet.write_table(table, buffer, compression="zstd", use_dictionary=False, use_byte_stream_split=True)
+    pyarrow.parquet.write_table(table, buffer, compression="zstd", **options)
     return buffer.getvalue()
 
 

@@ -156,8 +156,6 @@ class Metrics(Mapping[str, Metric]):
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Metrics) and self._stored == other._stored
 
-    __hash__ = None  # type: ignore[assignment]
-
     def __contains__(self, name: object) -> bool:
         return name in self._stored
 

@@ -8,7 +8,6 @@ A shard is written once, as a whole, and its name contains the digest of its con
 wrote shards, so that the later of two shards is known without a clock.
 """
 
-import io
 import json
 import math
 from collections.abc import Iterator, Sequence
@@ -23,7 +22,7 @@ from runner.base.arrays import FloatArray
 from runner.base.limits import ExcessError, open_parquet
 from runner.store.atomic import write_atomically
 from runner.store.names import Names
-from runner.store.parquet import list_column, numbers, text_column, truth_column, whole_column
+from runner.store.parquet import encode_parquet, list_column, numbers, plain_column, text_column
 from runner.store.record import find_faults
 from runner.store.run import Run
 from runner.store.seal import SCHEMA, DamagedError, SchemaError, digest, encode_finite
@@ -125,19 +124,18 @@ def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Pat
         StoreError: if the file cannot be written.
     """
     import pyarrow
-    import pyarrow.parquet
 
     rows = [_row_of(run) if isinstance(run, Run) else run for run in runs]
     ends = [row.outcome for row in rows]
     columns = {
         "run": text_column([end.name for end in ends]),
         "failure": text_column([end.failure for end in ends]),
-        "cut_short": truth_column([end.cut_short for end in ends]),
+        "cut_short": plain_column(np.array([end.cut_short for end in ends], dtype=bool)),
         "config": text_column([row.config for row in rows]),
         "urdf": text_column([row.urdf for row in rows]),
         "record": text_column([row.record for row in rows]),
         "metrics": text_column([json.dumps([name for name, _ in row.metrics]) for row in rows]),
-        "caveats": whole_column([end.caveats for end in ends]),
+        "caveats": plain_column(np.array([end.caveats for end in ends], dtype=np.int32)),
     }
     fields = [pyarrow.field(name, column.type) for name, column in columns.items()]
     measured = list(metric_columns([(row.metrics, row.values) for row in rows]))
@@ -145,9 +143,7 @@ def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Pat
         [*columns.values(), *(column for _, column in measured)],
         schema=pyarrow.schema([*fields, *(field for field, _ in measured)], {"schema": str(SCHEMA)}),
     )
-    buffer = io.BytesIO()
-    pyarrow.parquet.write_table(table, buffer, compression="zstd", use_dictionary=_SHARED, write_statistics=False)
-    content = buffer.getvalue()
+    content = encode_parquet(table, use_dictionary=_SHARED, write_statistics=False)
     path = outputs / "shards" / f"{name}.{digest(content)[:_HEX]}.parquet"
     write_atomically(path, content)
     return path
@@ -196,7 +192,7 @@ def read_outcomes(path: Path) -> Outcomes:
         SchemaError: if the shard has another schema.
     """
     columns = ("run", "failure", "cut_short", "caveats")
-    table = _read(path, columns)
+    table = read_columns(path, columns)
     try:
         return Outcomes(*(table[name].to_pylist() for name in columns))
     except (AttributeError, TypeError, ValueError) as error:
@@ -210,11 +206,11 @@ def open_row(path: Path, row: int) -> Run:
         DamagedError: if the shard cannot be read, or differs from what was written.
         SchemaError: if the shard has another schema.
     """
-    values = _read_rows(path)
+    values = _read_once(path, _COLUMNS)
     try:
         config, record, names = (json.loads(values[column][row].as_py()) for column in ("config", "record", "metrics"))
         if "metrics" not in record:
-            record["metrics"] = _summarize(_read_metrics(path), row, names)
+            record["metrics"] = _summarize(_read_once(path, (), METRIC), row, names)
         fault = find_faults(record)
     except (KeyError, ValueError, TypeError, RecursionError) as error:
         fault = str(error)
@@ -230,7 +226,7 @@ def _summarize(table: Any, row: int, names: Sequence[str]) -> dict[str, dict[str
 
     if not names:
         return {}
-    values = np.array([_list_at(table[METRIC + name], row) for name in names])
+    values = np.array([numbers(table[METRIC + name][row].values) for name in names])
     found = {}
     for name, own, ends in zip(names, values.tolist(), over_repetitions(values).tolist(), strict=True):
         unit = table.field(METRIC + name).metadata[b"unit"].decode()
@@ -242,12 +238,7 @@ def _summarize(table: Any, row: int, names: Sequence[str]) -> dict[str, dict[str
 
 def _values_in(path: Path, row: int, metric: str) -> FloatArray:
     """Return the values of a metric of the run in a row of a shard, shape (repetitions,), NaN for none."""
-    return _list_at(_read(path, [METRIC + metric])[METRIC + metric], row)
-
-
-def _list_at(column: Any, row: int) -> FloatArray:
-    """Return the numbers of a list in a column, NaN for none."""
-    return numbers(column[row].values)
+    return numbers(read_columns(path, [METRIC + metric])[METRIC + metric][row].values)
 
 
 def metric_columns(runs: Sequence[tuple[tuple[tuple[str, str], ...], FloatArray]]) -> Iterator[tuple[Any, Any]]:
@@ -275,28 +266,13 @@ def metric_columns(runs: Sequence[tuple[tuple[tuple[str, str], ...], FloatArray]
         yield pyarrow.field(METRIC + metric[0], column.type, metadata={"unit": metric[1]}), column
 
 
-def read_columns(path: Path, columns: Sequence[str]) -> Any:
-    """Return some columns of a shard, and all columns of metrics, as a pyarrow.Table.
+def read_columns(path: Path, columns: Sequence[str], start: str = "") -> Any:
+    """Return some columns of a shard, and those whose names have a prefix such as METRIC, as a pyarrow.Table.
 
     Raises:
         DamagedError: if the shard cannot be read, or differs from what was written.
         SchemaError: if the shard has another schema.
     """
-    return _read(path, columns, METRIC)
-
-
-@lru_cache(maxsize=4)  # runs are read in order, which is nearly the order of the shards
-def _read_rows(path: Path) -> Any:
-    return _read(path, _COLUMNS)
-
-
-@lru_cache(maxsize=4)
-def _read_metrics(path: Path) -> Any:
-    return read_columns(path, ())
-
-
-def _read(path: Path, columns: Sequence[str], start: str | None = None) -> Any:
-    """Return columns of a shard, and the columns whose names have a prefix."""
     import pyarrow
 
     try:
@@ -316,3 +292,6 @@ def _read(path: Path, columns: Sequence[str], start: str | None = None) -> Any:
     if table.column_names != wanted:
         raise DamagedError(f"cannot read {path}: it is not a shard: it needs columns {', '.join(columns)}; {_REMEDY}")
     return table
+
+
+_read_once = lru_cache(maxsize=8)(read_columns)  # runs are read in order, which is nearly the order of the shards

@@ -3,7 +3,6 @@
 A run with metrics is complete.
 """
 
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -18,7 +17,7 @@ from runner.metrics.caveats.rule import Found
 from runner.simulation.results import RunResult
 from runner.statistics.spec import bounds_of, judge
 from runner.store.atomic import write_atomically
-from runner.store.parquet import VALUES_FILE, float_column, values_parquet
+from runner.store.parquet import OF_NUMBERS, VALUES_FILE, encode_parquet, plain_column, values_parquet
 from runner.store.run import Run
 from runner.store.seal import JsonTexts, encode_finite, write_job
 
@@ -46,7 +45,7 @@ def write_run(outputs: Path, name: str, result: RunResult) -> Run:
     folder = outputs / "runs" / name
     config = yaml.dump(dict(result.config.resolved), sort_keys=False, Dumper=yaml.CSafeDumper)
     files = {
-        "trace.parquet": _parquet(result.trace),
+        "trace.parquet": encode_parquet(trace_table(result.trace), **OF_NUMBERS),
         "config.yaml": config.encode(),
         "robot.urdf": result.config.arm.urdf.encode(),
     }
@@ -156,15 +155,4 @@ def trace_table(trace: Trace) -> Any:
     schema = pyarrow.schema(
         [pyarrow.field(name, pyarrow.float64(), metadata={"unit": unit}) for name, unit, _ in columns]
     )
-    return pyarrow.Table.from_arrays([float_column(values) for *_, values in columns], schema=schema)
-
-
-def _parquet(trace: Trace) -> bytes:
-    """Return a trace as Parquet; see trace_table."""
-    import pyarrow.parquet
-
-    buffer = io.BytesIO()
-    pyarrow.parquet.write_table(
-        trace_table(trace), buffer, compression="zstd", use_dictionary=False, use_byte_stream_split=True
-    )
-    return buffer.getvalue()
+    return pyarrow.Table.from_arrays([plain_column(values) for *_, values in columns], schema=schema)

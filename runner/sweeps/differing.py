@@ -73,8 +73,6 @@ class Distance:
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Distance) and (astuple(self) == astuple(other) or float(self) == float(other))
 
-    __hash__ = None  # type: ignore[assignment]
-
 
 class Resolver:
     """Resolves the configs of stored runs; runs with the same robot share the text of its URDF."""

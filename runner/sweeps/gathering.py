@@ -76,7 +76,7 @@ class Gathered:
         """
         import pyarrow
 
-        table = read_columns(path, ("run", "failure", "config", "record")).take(rows)
+        table = read_columns(path, ("run", "failure", "config", "record"), METRIC).take(rows)
         rules = None
         with contextlib.suppress(pyarrow.ArrowException, KeyError):  # two types of values under one key
             record = _parsed(table["record"].to_pylist())

@@ -12,7 +12,7 @@ from runner.plugins.metric_units import unit_of
 from runner.store import Finished, Outcome
 from runner.store.run import Run
 from runner.store.seal import JsonTexts
-from runner.store.shards import ShardRow, read_columns, read_outcomes, shard_name, write_shard
+from runner.store.shards import METRIC, ShardRow, read_columns, read_outcomes, shard_name, write_shard
 from runner.store.writing import make_record, record_texts
 
 NAMES = ("settling_time", "peak_torque_q1", "macro_overshoot", "energy", "saturation_fraction")
@@ -77,7 +77,7 @@ def test_rows_of_texts_stand_in_a_shard_beside_runs(tmp_path, repetitions):
         tmp_path, shard_name(1, 1), [*rows[:3], Run(tmp_path / "runs" / "a3", config, alone, "<robot/>")]
     )
     assert list(read_outcomes(path)) == [row.outcome for row in rows]
-    columns = read_columns(path, ["run"])
+    columns = read_columns(path, ["run"], METRIC)
     for metric, values in metrics.items():
         expected = [[None if np.isnan(value) else value for value in own] for own in values]
         assert columns[f"metric {metric}"].to_pylist() == expected
