@@ -49,7 +49,6 @@ class Tuning(study.Tuning):
         return public_class(Run, store.Finished(self.folder.parent.parent).open(self.trials[best[0]].run))
 
     def _best(self) -> list[int]:
-
         return best(self.trials, self.study.objectives)
 
     def _lines(self) -> list[str]:

@@ -3,7 +3,7 @@
 import argparse
 import os
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -17,14 +17,15 @@ class Stored:
 
     Args:
         kinds: Kinds of stored results that the command accepts.
+        other: Function that returns True for another path that the command accepts.
     """
 
-    def __init__(self, *kinds: Kind) -> None:
-        self.kinds = kinds
+    def __init__(self, *kinds: Kind, other: Callable[[Path], object] = lambda _: False) -> None:
+        self.kinds, self._other = kinds, other
 
     def __call__(self, text: str) -> Path:
-        """Return the folder."""
-        return find_folder(text, self.kinds)
+        """Return the path."""
+        return Path(text) if self._other(Path(text)) else find_folder(text, self.kinds)
 
 
 class Names:

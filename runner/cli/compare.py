@@ -24,20 +24,12 @@ if TYPE_CHECKING:
     from runner.store import Run, Sweep
 
 
-class StoredOrRecording(Stored):
-    """Argument type: the folder of a stored result, or a recording."""
-
-    def __call__(self, text: str) -> Path:
-        """Return the folder or the file of an argument."""
-        return Path(text) if _is_recording(text) else super().__call__(text)
-
-
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
     parser.add_argument(
         "folders",
         nargs="+",
-        type=StoredOrRecording("run", "sweep"),
+        type=Stored("run", "sweep", other=_is_recording),
         metavar="DIR",
         help="runs, sweeps, latest, a CSV file or a ROS bag",
     )
@@ -151,12 +143,12 @@ def _explain_mixture(run: "Run", sweep: "Sweep") -> str:
     )
 
 
-def _is_recording(path: str | Path) -> bool:
-    if kind_of(Path(path)):
+def _is_recording(path: Path) -> bool:
+    if kind_of(path):
         return False
     from runner.recordings import is_bag
 
-    return Path(path).suffix.lower() == ".csv" or is_bag(Path(path))
+    return path.suffix.lower() == ".csv" or is_bag(path)
 
 
 def _seconds(text: str) -> float:

@@ -28,20 +28,11 @@ _NARROWEST, _WIDEST = 60.0, 400.0  # mm
 _MOTIONS = (".gif", ".mp4")
 
 
-class _Drawn(Stored):
-    """Argument type: the folder of a stored result, or a study by its name, its folder or its report's folder."""
-
-    def __call__(self, text: str) -> Path:
-        path = Path(text)
-        return path if _study_of(path) else super().__call__(text)
-
-
 def add_arguments(parser: Parser) -> None:
     """Add the arguments."""
-    drawn = _Drawn("run", "sweep", "tuning")
     parser.add_argument(
         "folders",
-        type=drawn,
+        type=Stored("run", "sweep", "tuning", other=_study_of),
         nargs="+",
         metavar="DIR",
         help="a run, sweep or tuning; several runs or sweeps to compare; a study's name or folder; or latest",

@@ -6,6 +6,7 @@ Example: runner list controllers
 import re
 from argparse import Namespace
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -46,10 +47,6 @@ def _topic(group: str) -> str:
     if group.endswith("y"):
         return f"{group[:-1]}ies"
     return group if group.endswith(("s", "noise")) else f"{group}{'es' if group.endswith('ch') else 's'}"
-
-
-def _list_group(group: str) -> Callable[[Sequence[Path]], dict[str, str]]:
-    return lambda config_dirs: group_options(group, config_dirs)
 
 
 def _list_plants(config_dirs: Sequence[Path]) -> dict[str, str]:
@@ -115,7 +112,7 @@ def _list_studies(_: Sequence[Path]) -> dict[str, str]:
 
 
 TOPICS: Mapping[str, Callable[[Sequence[Path]], dict[str, str]]] = {
-    **{_topic(group): _list_group(group) for group in groups()},
+    **{_topic(group): partial(group_options, group) for group in groups()},
     "plants": _list_plants,
     "metrics": _list_metrics,
     "claims": _list_claims,

@@ -33,7 +33,9 @@ def json_schema(group: str = "") -> dict[str, Any]:
     """
     if group and group not in GROUPS:
         raise RunnerError(unknown("group", group, GROUPS))
-    properties = _of_group(group) if group else {**_properties(RunSettings), **{name: _group(name) for name in GROUPS}}
+    properties = _of_group(group) if group else _properties(RunSettings)
+    if not group:
+        properties |= {name: {"anyOf": [_object(_of_group(name)), {"type": "null"}]} for name in GROUPS}
     more = {"defaults": {"type": "array", "description": "Options of groups that this file takes, in order."}}
     if not group:
         more["hydra"] = {"type": "object", "description": "Settings of Hydra."}
@@ -49,10 +51,6 @@ def meanings(model: type[StrictModel]) -> dict[str, str]:
         entries = re.findall(r"^    (\w+): (.+?)(?=^    \w|\Z)", text, re.M | re.S)
         found |= {name: " ".join(meaning.split()) for name, meaning in entries if name in model.model_fields}
     return found
-
-
-def _group(name: str) -> dict[str, Any]:
-    return {"anyOf": [_object(_of_group(name)), {"type": "null"}]}
 
 
 def _of_group(name: str) -> dict[str, Any]:

@@ -35,6 +35,12 @@ class Signal(NamedTuple):
         return f"tip {self.of}" if self.kind == "tip" else f"{self.kind} of {self.of}"
 
 
+def stacked(signals: Mapping[Signal, FloatArray], wanted: Sequence[Signal]) -> FloatArray | None:
+    """Return some signals as columns, shape (N, n); None if one is missing."""
+    found = [signals[signal] for signal in wanted if signal in signals]
+    return np.column_stack(found) if len(found) == len(wanted) else None
+
+
 class TimeColumn(StrictModel):
     """Column of the time.
 

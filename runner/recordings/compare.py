@@ -143,7 +143,7 @@ def compare_recording(run: Run, path: Path, columns: Path, fill_gaps: float = 0.
     if questions:
         raise RunnerError(f"{columns}: {'; '.join(questions)}")
     units = {signal: recording.units[column].unit for signal, column in recording.columns.items()}
-    q = recording.of_joints("position", trace.joint_names)
+    q = recording.positions(trace.joint_names)
     friction, reason = friction_of(setting.config.arm.model, recording)
     return RecordingComparison(
         run=run,
@@ -185,7 +185,7 @@ def _speeds(recording: Recording, q: FloatArray, at: FloatArray) -> FloatArray:
 def friction_of(model: RobotModel, recording: Recording) -> tuple[Friction | None, str]:
     """Return the friction of a recorded arm, or why it cannot be identified."""
     joints = model.joint_names
-    q = recording.of_joints("position", joints)
+    q = recording.positions(joints)
     if q is None:
         missing = [joint for joint in joints if Signal("position", joint) not in recording.signals]
         return None, f"no position of {', '.join(missing)} is recorded"

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from runner.base.arrays import FloatArray
 from runner.base.errors import RunnerError
 from runner.recordings import BAGS, is_bag
-from runner.recordings.columns_map import ColumnsMap, Factor, Signal
+from runner.recordings.columns_map import ColumnsMap, Factor, Signal, stacked
 from runner.recordings.files import read_bag_columns, read_csv_columns
 from runner.recordings.smoothing import CUTOFF, evenly
 from runner.schema.model import LARGEST
@@ -61,11 +61,9 @@ class Recording:
         """Time from a row to the middle of the time in which its torque acts, in s."""
         return 0.5 * self.period if self.held else 0.0
 
-    def of_joints(self, kind: str, joints: Sequence[str]) -> FloatArray | None:
-        """Return the positions or torques of all joints, shape (N, nq); None where one is not recorded."""
-        wanted = [self.signals.get(Signal("torque" if kind == "torque" else "position", joint)) for joint in joints]
-        found = [signal for signal in wanted if signal is not None]
-        return np.column_stack(found) if len(found) == len(wanted) else None
+    def positions(self, joints: Sequence[str]) -> FloatArray | None:
+        """Return the positions of all joints, shape (N, nq); None where one is not recorded."""
+        return stacked(self.signals, [Signal("position", joint) for joint in joints])
 
     def torque_at(self, signal: Signal, times: FloatArray) -> FloatArray:
         """Return a torque at other times, along straight lines between the middles of the times in which it acts."""

@@ -13,7 +13,7 @@ from runner.config.validation import validate
 from runner.metrics import effort, positioning, tracking
 from runner.metrics.family import MetricContext
 from runner.metrics.summary import measure, of_run
-from runner.recordings.columns_map import Signal
+from runner.recordings.columns_map import Signal, stacked
 from runner.robots.robot import end_points
 from runner.simulation.assembly import metric_context
 from runner.simulation.recorder import describe
@@ -101,8 +101,8 @@ def both_metrics(
     """
     run = setting.trace.during(ticks)
     joints = run.joint_names
-    q, tau = (_all(recorded, [Signal(kind, joint) for joint in joints]) for kind in ("position", "torque"))
-    tip = _all(recorded, [Signal("tip", axis) for axis in AXES])
+    q, tau = (stacked(recorded, [Signal(kind, joint) for joint in joints]) for kind in ("position", "torque"))
+    tip = stacked(recorded, [Signal("tip", axis) for axis in AXES])
     config = setting.config
     points = run.end_points.copy() if q is None else end_points(config.arm, q, config.ignore_base_rotation)
     if tip is not None:
@@ -132,8 +132,3 @@ def both_metrics(
 def _base(name: str, known: Mapping[str, bool]) -> str:
     """Return the metric that a name is of; the name itself where it is of a stage or of none of these."""
     return max((base for base in known if f"{name}_".startswith(f"{base}_")), key=len, default=name)
-
-
-def _all(recorded: Mapping[Signal, FloatArray], signals: list[Signal]) -> FloatArray | None:
-    found = [recorded[signal] for signal in signals if signal in recorded]
-    return np.column_stack(found) if len(found) == len(signals) else None

@@ -101,15 +101,11 @@ def _check_some(entries: dict[str, Any]) -> dict[str, Any]:
 
 
 class _BandFile(StrictModel):
-    """Content of a file of bands."""
-
     schema_: Annotated[object, AfterValidator(_check_schema), Field(alias="schema")]
     metrics: Annotated[dict[Annotated[str, AfterValidator(_check_metric)], Band], AfterValidator(_check_some)]
 
 
 class _CellFile(StrictModel):
-    """Content of the file of a sweep."""
-
     schema_: Annotated[object, AfterValidator(_check_schema), Field(alias="schema")]
     cells: Annotated[dict[str, dict[str, Spread]], AfterValidator(_check_some)]
 
@@ -333,6 +329,7 @@ def find_shipped(run: Run) -> Bands:
 
     Raises:
         RunnerError: if there is none; the message names the command that lists them.
+        StoreError: if it cannot be read, or is not one of runs.
     """
     choices = run.provenance.get("choices", {})
     name = f"{choices.get('experiment')}.{choices.get('preset')}"
@@ -343,15 +340,6 @@ def find_shipped(run: Run) -> Bands:
             f"{run.folder}: no bundled baseline for {what}. Give one by --baseline FILE; --save-baseline FILE writes "
             f"that of a sweep. `runner list baselines` prints the {len(known)} bundled ones."
         )
-    return load_shipped(name)
-
-
-def load_shipped(name: str) -> Bands:
-    """Read a bundled baseline.
-
-    Raises:
-        StoreError: if it cannot be read or is not one.
-    """
     bands = load_baseline(baseline_path(name), name)
     if not isinstance(bands, Bands):
         raise StoreError(f"{name} holds cells of a sweep; a bundled baseline holds bands")

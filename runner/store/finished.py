@@ -47,8 +47,10 @@ def find_outcome(outputs: Path, name: str) -> Outcome | None:
     return outcome(Run(folder, {}, check_job(folder, "metrics.json")))
 
 
-class Finished:
-    """Finished runs at the time of construction. If a run has two outcomes, the better one counts.
+class Finished(Outcomes):
+    """Finished runs at the time of construction, those in shards by ascending name.
+
+    If a run has two outcomes, the better one counts.
 
     A good run is better than a failed run, and a failed run is better than an aborted run. Of equal outcomes, the one
     in a run folder counts, then the one in the later shard.
@@ -58,9 +60,6 @@ class Finished:
 
     Attributes:
         damage: Message for each damaged file that was read; such a file counts as missing.
-        names: Names of the runs in shards, ascending, shape (n,).
-        rank: Rank of the outcome of each run, shape (n,); see Outcome.
-        caveats: Number of caveats of each run, shape (n,).
         shard: Index of the shard that contains each run, shape (n,); see `shard_of`.
         row: Row of each run in its shard, shape (n,).
     """
@@ -78,20 +77,17 @@ class Finished:
                 self._shards.append(path)
             except DamagedError as error:
                 self.damage.append(str(error))
-        self._take(parts)
-
-    def _take(self, parts: Sequence[Outcomes]) -> None:
-        """Keep the best outcome of each run, by ascending name."""
         sizes = [len(part) for part in parts]
         names = np.concatenate([part.names for part in parts] or [np.zeros(0, dtype="S1")])
         rank = np.concatenate([part.rank for part in parts] or [np.zeros(0, dtype=np.int8)])
         kept = best_of_each(names, rank, -np.arange(len(names)))
         starts = np.cumsum([0, *sizes])
-        self.names, self.rank = names[kept], rank[kept]
         self.shard = np.searchsorted(starts, kept, side="right") - 1
         self.row = kept - starts[self.shard]
-        self.caveats = np.concatenate([part.caveats for part in parts] or [np.zeros(0, dtype=np.int32)])[kept]
-        self._failures = {(shard, row): text for shard, part in enumerate(parts) for row, text in part.failures.items()}
+        caveats = np.concatenate([part.caveats for part in parts] or [np.zeros(0, dtype=np.int32)])
+        failed = np.flatnonzero(rank[kept]).tolist()
+        failures = {place: parts[self.shard[place]].failures[int(self.row[place])] for place in failed}
+        super().__init__(names[kept], rank[kept], caveats[kept], failures)
 
     def folders(self, names: Names) -> set[str]:
         """Return the given runs that may have their own run folder."""
@@ -116,23 +112,14 @@ class Finished:
             self.damage.append(str(error))
             return None
 
-    def in_shard(self, name: str) -> Outcome | None:
-        """Return the outcome of a run in a shard, or None if there is none."""
-        place = int(look_up(Names.of([name]).texts, self.names)[0])
-        return None if place < 0 else self.outcome_at(place)
-
-    def outcome_at(self, place: int) -> Outcome:
-        """Return the outcome of the run at an index of `names`."""
-        failure = self._failures.get((int(self.shard[place]), int(self.row[place])), "")
-        return Outcome(self.names[place].decode(), failure, bool(self.rank[place] == 2), int(self.caveats[place]))
-
     def shard_of(self, place: int) -> Path:
         """Return the shard that contains the run at an index of `names`."""
         return self._shards[int(self.shard[place])]
 
     def outcome(self, name: str) -> Outcome | None:
         """Return the outcome of a run, or None if it is not finished."""
-        ends = [end for end in (self.in_folder(name), self.in_shard(name)) if end is not None]
+        place, own = int(self.places_of(Names.of([name]))[0]), self.in_folder(name)
+        ends = [*([] if own is None else [own]), *([] if place < 0 else [self[place]])]
         return min(ends, key=lambda end: end.rank, default=None)
 
     def open(self, name: str) -> Run:
@@ -141,7 +128,7 @@ class Finished:
         Raises:
             StoreError: if the run is unfinished or damaged; lists the damaged shards that may contain it.
         """
-        place = int(look_up(Names.of([name]).texts, self.names)[0])
+        place = int(self.places_of(Names.of([name]))[0])
         if place < 0:
             try:
                 return open_run(self._outputs / "runs" / name)

@@ -10,18 +10,19 @@ wrote shards, so that the later of two shards is known without a clock.
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runner.base.arrays import FloatArray
 from runner.base.limits import ExcessError, open_parquet
 from runner.store.atomic import write_atomically
-from runner.store.names import Names
+from runner.store.names import Names, Texts
 from runner.store.parquet import encode_parquet, list_column, numbers, plain_column, text_column
 from runner.store.record import find_faults
 from runner.store.run import Run
@@ -150,28 +151,21 @@ def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Pat
 
 
 class Outcomes(Sequence[Outcome]):
-    """Outcomes of the runs of a shard, row by row.
+    """Outcomes of runs in shards, in a few bytes each.
 
     Args:
-        names: Name of each run.
-        failures: Failure of each run; empty for a good run.
-        cut_short: Whether each run was aborted.
-        caveats: Number of caveats of each run.
-
-    Attributes:
         names: Name of each run, shape (n,).
         rank: Rank of each run, shape (n,); see Outcome.
         caveats: Number of caveats of each run, shape (n,).
-        failures: Failures by row, only of failed runs.
+        failures: Failures by index, only of failed runs.
+
+    Attributes: as given.
     """
 
     def __init__(
-        self, names: Sequence[str], failures: Sequence[str], cut_short: Sequence[bool], caveats: Sequence[int]
+        self, names: Texts, rank: NDArray[np.int8], caveats: NDArray[np.int32], failures: Mapping[int, str]
     ) -> None:
-        self.names = Names.of(names).texts
-        self.failures = {row: text for row, text in enumerate(failures) if text}
-        self.rank = np.where(cut_short, _CUT_SHORT, np.array(failures, dtype=object) != "").astype(np.int8)
-        self.caveats = np.array(caveats, dtype=np.int32)
+        self.names, self.rank, self.caveats, self.failures = names, rank, caveats, failures
 
     def __len__(self) -> int:
         return len(self.names)
@@ -194,7 +188,10 @@ def read_outcomes(path: Path) -> Outcomes:
     columns = ("run", "failure", "cut_short", "caveats")
     table = read_columns(path, columns)
     try:
-        return Outcomes(*(table[name].to_pylist() for name in columns))
+        names, failures, cut_short, caveats = (table[name].to_pylist() for name in columns)
+        rank = np.where(cut_short, _CUT_SHORT, np.array(failures, dtype=object) != "").astype(np.int8)
+        failed = {row: text for row, text in enumerate(failures) if text}
+        return Outcomes(Names.of(names).texts, rank, np.array(caveats, dtype=np.int32), failed)
     except (AttributeError, TypeError, ValueError) as error:
         raise DamagedError(f"cannot read {path}: it is not a shard: {error}; {_REMEDY}") from error
 

@@ -126,9 +126,8 @@ def write_sweep(
     Raises:
         StoreError: if a file cannot be written.
     """
-    rows = list(_rows(jobs))
-    folder = outputs / "sweeps" / _name(rows)
-    write_atomically(folder / _FILE, _sealed_sweep(rows, _head(folder, command, spec, date)))
+    folder = outputs / "sweeps" / _name(_rows(jobs))
+    write_jobs(folder, jobs, command, spec, date)
     return folder
 
 
@@ -153,9 +152,16 @@ def write_grid(outputs: Path, axes: Axes, names: Names, command: str, spec: "Map
     return folder
 
 
-def write_jobs(folder: Path, jobs: Sequence[tuple[Sequence[str], str]], command: str) -> None:
-    """Store the overrides and the run of each job in a folder of another kind, such as a tuning; see write_sweep."""
-    write_atomically(folder / _FILE, _sealed_sweep(list(_rows(jobs)), _head(folder, command, _NO_SPEC)))
+def write_jobs(
+    folder: Path,
+    jobs: Sequence[tuple[Sequence[str], str]],
+    command: str,
+    spec: "Mapping[str, Bound]" = _NO_SPEC,
+    date: str = "",
+) -> None:
+    """Store the overrides and the run of each job in a given folder, such as that of a tuning; see write_sweep."""
+    start = json.dumps(_head(folder, command, spec, date))[:-1]
+    write_atomically(folder / _FILE, seal_text(f'{start}, "jobs": [\n' + ",\n".join(_rows(jobs)) + "\n]}\n"))
 
 
 def _head(folder: Path, command: str, spec: "Mapping[str, Bound]", date: str = "") -> dict[str, Any]:
@@ -171,11 +177,6 @@ def _head(folder: Path, command: str, spec: "Mapping[str, Bound]", date: str = "
         "history": merge_histories(known, settings(spec, date or today())),
     }
     return {**head(), "command": command, **{key: value for key, value in told.items() if value}}
-
-
-def _sealed_sweep(rows: Sequence[str], begin: Mapping[str, Any]) -> bytes:
-    start = json.dumps(begin)[:-1]
-    return seal_text(f'{start}, "jobs": [\n' + ",\n".join(rows) + "\n]}\n")
 
 
 def _rows(jobs: Iterable[tuple[Sequence[str], str]]) -> Iterator[str]:

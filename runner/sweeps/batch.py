@@ -41,13 +41,13 @@ def make_together(jobs: Sequence[tuple[str, RunConfig]], rules: Rules, writer: R
     """
     batcher, texts, made, failed = BatchSimulator(), JsonTexts(), set[str](), False
     try:
-        with deadline(rules.time_limit):
+        with deadline(rules.settings.time_limit):
             few = [] if added_parts("metric") else [job for job in jobs if job[1].settings.repetitions <= MOST_LISTED]
             found = [(name, batcher.repetitions(config)) for name, config in few]
         chosen = [(name, runs) for name, runs in found if runs is not None]
         steps = simulate_together([runs for _, runs in chosen], batcher)
         while True:
-            with deadline(rules.time_limit):
+            with deadline(rules.settings.time_limit):
                 complete = next(steps, None)
             if complete is None:
                 break

@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from runner import store
 from runner.base import progress
 from runner.base.errors import ConfigError
-from runner.config.judgement import Bound
-from runner.config.limits import LimitsConfig, SweepConfig, memory_of_run
+from runner.config.limits import memory_of_run
 from runner.config.run import RunConfig
 from runner.simulation.assembly import check_assembly
 from runner.store.identity import json_text
@@ -33,9 +32,7 @@ class Checked:
         costs: Number of ticks of each cell, summed over its repetitions, shape (cells,).
         calibrations: Numbers of the cells that are calibrations, not runs.
         outputs: Outputs folder of the runs and calibrations.
-        settings: Settings of the sweep.
-        limits: Limits of CPU time and memory.
-        spec: Bounds on metrics.
+        first: Config of the first run. All runs have its settings of the sweep, limits and bounds on metrics.
         resolved: Values that differ between the configs of the runs.
         memory: Memory of the largest run, in bytes.
     """
@@ -44,9 +41,7 @@ class Checked:
     costs: NDArray[np.int64]
     calibrations: frozenset[int]
     outputs: Path
-    settings: SweepConfig
-    limits: LimitsConfig
-    spec: Mapping[str, Bound]
+    first: RunConfig
     resolved: Resolved
     memory: float
 
@@ -59,7 +54,7 @@ def check(plan: Plan) -> Checked:
     """
     names, costs = np.empty(len(plan), dtype="S24"), np.empty(len(plan), dtype=np.int64)
     calibrations: set[int] = set()
-    problems = _Problems()
+    problems: dict[str, tuple[int, int]] = {}  # first cell that has the problem, and number of such cells
     first: RunConfig | None = None
     memory = 0.0
     resolved = Resolved()
@@ -76,7 +71,10 @@ def check(plan: Plan) -> Checked:
                 continue
             config, composed = job.config, job.config.composed
             first = first or config
-            _check_alike(first, config)
+            if _shared(first) != _shared(config):
+                raise ConfigError(
+                    "outputs, sweep.*, limits.*, caveats.*, spec.*: must have one value in all runs of a sweep"
+                )
             _check_assembly(config, assembled)
             names[cells] = _names(config, block)
             repetitions = config.settings.repetitions
@@ -85,41 +83,23 @@ def check(plan: Plan) -> Checked:
             described = resolve(composed.resolved, config.timing.step, start)
             resolved.add(described, composed.overrides, block.cells)
         except ConfigError as error:
-            problems.add(error, block)
+            for problem in error.problems:
+                place, count = problems.get(problem, (block.cells[0], 0))
+                problems[problem] = min(place, block.cells[0]), count + len(block.cells)
         finally:
             progress.step(len(block.cells))
     if problems or first is None:
-        problems.report(plan)
+        _report(plan, problems)
     outputs = Path(first.settings.outputs)
-    shared = first.sweep, first.limits, first.spec.metrics
-    return Checked(Names(names), costs, frozenset(calibrations), outputs, *shared, resolved, memory)
+    return Checked(Names(names), costs, frozenset(calibrations), outputs, first, resolved, memory)
 
 
-class _Problems:
-    """Problems, each with its first cell and the number of cells that have it."""
-
-    def __init__(self) -> None:
-        self._found: dict[str, tuple[int, int]] = {}
-
-    def __bool__(self) -> bool:
-        return bool(self._found)
-
-    def add(self, error: ConfigError, block: Block) -> None:
-        """Add the problems of the cells of a block."""
-        for problem in error.problems:
-            first, count = self._found.get(problem, (block.cells[0], 0))
-            self._found[problem] = min(first, block.cells[0]), count + len(block.cells)
-
-    def report(self, plan: Plan) -> NoReturn:
-        """Raise an error with the problems in the order of the cells.
-
-        Raises:
-            ConfigError: always.
-        """
-        found = sorted(self._found.items(), key=lambda item: item[1][0])
-        more = len(found) - _PROBLEMS_SHOWN
-        hint = "  nothing was started" if more <= 0 else f"  and {more} more problems; nothing was started"
-        raise ConfigError([_describe(plan, problem, *where) for problem, where in found[:_PROBLEMS_SHOWN]], hint)
+def _report(plan: Plan, problems: Mapping[str, tuple[int, int]]) -> NoReturn:
+    """Raise an error with the problems in the order of the cells."""
+    found = sorted(problems.items(), key=lambda item: item[1][0])
+    more = len(found) - _PROBLEMS_SHOWN
+    hint = "  nothing was started" if more <= 0 else f"  and {more} more problems; nothing was started"
+    raise ConfigError([_describe(plan, problem, *where) for problem, where in found[:_PROBLEMS_SHOWN]], hint)
 
 
 def _names(config: RunConfig, block: Block) -> Texts:
@@ -127,11 +107,6 @@ def _names(config: RunConfig, block: Block) -> Texts:
     if block.seeds is None:
         return Names.of([store.run_hash(config.resolved, config.arm.urdf)]).texts
     return store.run_hashes(config.resolved, config.arm.urdf, block.seeds).texts
-
-
-def _check_alike(first: RunConfig, other: RunConfig) -> None:
-    if _shared(first) != _shared(other):
-        raise ConfigError("outputs, sweep.*, limits.*, caveats.*, spec.*: must have one value in all runs of a sweep")
 
 
 def _shared(config: RunConfig) -> tuple[object, ...]:

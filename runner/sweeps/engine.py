@@ -122,7 +122,7 @@ def _next_done(client: Any, futures: Sequence[Any]) -> Any:
 
 def _give_up(chunk: Chunk) -> Report:
     reason = f"its worker process died {_DEATHS + 1} times"
-    if chunk.rules.time_limit is not None:
+    if chunk.rules.settings.time_limit is not None:
         reason += f", by itself or because it could not be interrupted for {STUCK:g} s after sweep.time_limit"
     return give_up(chunk, reason)
 

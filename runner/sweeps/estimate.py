@@ -104,7 +104,7 @@ def _estimate_alike(plan: Plan, checked: Checked, runs: NDArray[np.intp], kept: 
     per_tick, together, known = probed[len(probed) // 2]
     in_shards = (1.0 - kept) * len(runs) if together else 0.0
     fixed = _FIXED * (len(runs) - in_shards) + _FIXED_TOGETHER * in_shards
-    limit = checked.settings.time_limit
+    limit = checked.first.sweep.time_limit
     if known == "more than" and limit is not None:
         return Estimate(fixed + limit * len(runs), "up to")
     return Estimate(float(fixed + per_tick * checked.costs[runs].sum()), known)

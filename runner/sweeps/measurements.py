@@ -329,7 +329,6 @@ def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measure
 
 
 def _by_seed(cells: NDArray[np.intp], seeds: NDArray[np.int64]) -> list[NDArray[np.intp]]:
-    """Return cells grouped by seed."""
     return [cells[seeds[cells] == seed] for seed in np.unique(seeds[cells])]
 
 

@@ -43,7 +43,7 @@ class Ends(Mapping[str, Outcome]):
         places = look_up(finished.names[stored], self._names)
         self._rank[places], self._caveats[places] = finished.rank[stored], finished.caveats[stored]
         for which in np.flatnonzero(finished.rank[stored]).tolist():
-            self._failures[int(places[which])] = finished.outcome_at(int(stored[which])).failure
+            self._failures[int(places[which])] = finished.failures[int(stored[which])]
 
     @property
     def left(self) -> NDArray[np.intp]:

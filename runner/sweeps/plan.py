@@ -279,7 +279,6 @@ class Listed(Plan):
 
 
 def _may_be_seeds(key: SweptKey) -> bool:
-    """Return True if all values of a key are seeds."""
     values = key.values
     if key.option:
         return False

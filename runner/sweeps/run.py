@@ -123,10 +123,10 @@ def run_sweep(plan: Plan, engine: Engine, command: str, accept_cut_short: bool =
     with at_work(outputs):
         folder = _write_sweep(plan, checked, command)
         note(folder)
-        rules = replace(make_rules(checked.settings, folder, len(names)), accept_cut_short=accept_cut_short)
+        rules = replace(make_rules(checked.first.sweep, folder, len(names)), accept_cut_short=accept_cut_short)
         ends, stored = make_missing(plan, checked, rules, engine)
     failed = [(cell, ends[names[cell]]) for cell in ends.failed.tolist()]
-    failures = [(plan.overrides(cell), end.failure, _where(end.name, outputs, folder)) for cell, end in failed]
+    failures = [(plan.overrides(cell), end.failure, rules.details(end.name)) for cell, end in failed]
     return Ended(folder, outputs, names, ends, failures, len(ends.left), stored, checked.resolved)
 
 
@@ -162,9 +162,9 @@ def _write_sweep(plan: Plan, checked: Checked, command: str) -> Path:
     """Store the overrides and the hash of each run; return the sweep's folder."""
     axes = plan.axes()
     if axes is not None:
-        return store.write_grid(checked.outputs, axes, checked.names, command, checked.spec)
+        return store.write_grid(checked.outputs, axes, checked.names, command, checked.first.spec.metrics)
     runs = [(plan.overrides(i), name) for i, name in enumerate(checked.names) if i not in checked.calibrations]
-    return store.write_sweep(checked.outputs, runs, command, checked.spec)
+    return store.write_sweep(checked.outputs, runs, command, checked.first.spec.metrics)
 
 
 def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
@@ -176,11 +176,8 @@ def make_rules(settings: SweepConfig, folder: Path, runs: int) -> Rules:
         outputs=folder.parent.parent,
         sweep=folder,
         trace=automatic if settings.trace == "auto" else settings.trace,
-        accept_failed=settings.retry == "none",
+        settings=settings,
         accept_cut_short=settings.retry == "none",
-        stop_at_failure=settings.on_failure == "stop",
-        attempts=settings.attempts,
-        time_limit=settings.time_limit,
         one_in=one_in(runs),
     )
 
@@ -246,7 +243,7 @@ def make_jobs(
     ticks = int(checked.costs[cells].sum())
     progress.begin("estimating")
     expected = estimate(plan, checked, cells, queue.rules.kept)
-    check_cpu_time(checked.limits, expected.seconds, len(cells), expected.known)
+    check_cpu_time(checked.first.limits, expected.seconds, len(cells), expected.known)
     pace = Pace(queue.rules.sweep)
     with _workers(queue, len(cells), engine, expected) as reports:
         progress.begin("simulating", ticks, "ticks", lambda: queue.ticks_made)
@@ -296,7 +293,7 @@ def _seconds_in_process(rules: Rules, workers: int, expected: Estimate) -> float
     if workers == 0:
         return math.inf
     pays_from = START_UP * workers / max(min(workers, os.cpu_count() or 1) - 1, 1)
-    alone = has_users_parts() or rules.time_limit is not None or expected.known != "about"
+    alone = has_users_parts() or rules.settings.time_limit is not None or expected.known != "about"
     return 0.0 if alone or expected.seconds > pays_from else pays_from
 
 
@@ -329,8 +326,3 @@ def clean(rules: Rules, names: Sequence[str]) -> None:
         remove_leftovers(folder)
         if not (folder / "metrics.json").exists():
             shutil.rmtree(folder, ignore_errors=True)
-
-
-def _where(name: str, outputs: Path, folder: Path) -> Path:
-    log = folder / "logs" / f"{name}.txt"
-    return log if log.exists() else outputs / "runs" / name / "metrics.json"

@@ -104,7 +104,10 @@ def work(chunk: Chunk, tell: Callable[[int], None] | None = None) -> Report:
     with _one_at_a_time, report_ticks(tell), ThreadPoolExecutor(1) as disk:
         try:
             use_only(chunk.rules.plugins)
-            _check_folder(chunk.rules)
+            if not (chunk.rules.sweep / "sweep.json").exists():
+                raise StoreError(
+                    f"a worker does not see {chunk.rules.sweep}; outputs must be a folder that all workers share"
+                )
             _make_all(chunk, disk, outcomes)
         except RunnerError as error:
             trouble = str(error)
@@ -156,11 +159,6 @@ def find_calibrated(outputs: Path, name: str) -> store.Outcome | None:
     return None if store.find_calibration(outputs, name) is None else store.Outcome(name, "", False)
 
 
-def _check_folder(rules: Rules) -> None:
-    if not (rules.sweep / "sweep.json").exists():
-        raise StoreError(f"a worker does not see {rules.sweep}; outputs must be a folder that all workers share")
-
-
 def _make(name: str, composed: Composed, rules: Rules) -> RunResult | store.Run | store.Outcome:
     """Make one job; return a run as it is stored, or the outcome of a stored calibration."""
     job = _checked(name, composed)
@@ -201,8 +199,8 @@ def _checked(name: str, composed: Composed) -> RunJob | CalibrationJob:
 
 def _try(make: Callable[[], Made], rules: Rules) -> tuple[Made | None, str, str]:
     """Return the result, or None with the reason of the failure and the traceback of an error."""
-    limit = rules.time_limit
-    for _ in range(rules.attempts):
+    limit = rules.settings.time_limit
+    for _ in range(rules.settings.attempts):
         try:
             with deadline(limit):
                 return make(), "", ""

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from runner import store
+from runner.config.limits import SweepConfig
 from runner.simulation.results import RunResult
 from runner.store.atomic import write_atomically
 from runner.store.shards import ShardRow, outcome, write_shard
@@ -27,11 +28,8 @@ class Rules:
         outputs: Outputs folder, absolute; all workers must have access to it.
         sweep: Folder of the sweep, absolute.
         trace: Selection of the runs that keep their trace.
-        accept_failed: True if a stored run that failed counts as done.
+        settings: Settings of the sweep; `trace` and `accept_cut_short` are derived from them.
         accept_cut_short: True if a stored run that was aborted counts as done.
-        stop_at_failure: True if the first failed run ends the sweep.
-        attempts: Number of attempts for a run that is aborted.
-        time_limit: Longest wall-clock time of a run, in s; None for no limit.
         one_in: Number of runs for each run in the sample that keeps its trace.
     """
 
@@ -39,12 +37,14 @@ class Rules:
     outputs: Path
     sweep: Path
     trace: TraceKeeping
-    accept_failed: bool
+    settings: SweepConfig
     accept_cut_short: bool
-    stop_at_failure: bool
-    attempts: int
-    time_limit: float | None
     one_in: int = _SAMPLE
+
+    @property
+    def stop_at_failure(self) -> bool:
+        """Whether the first failed run ends the sweep."""
+        return self.settings.on_failure == "stop"
 
     @property
     def kept(self) -> float:
@@ -61,13 +61,17 @@ class Rules:
         """Return the log file of a failed run that has no separate folder."""
         return self.sweep / "logs" / f"{name}.txt"
 
+    def details(self, name: str) -> Path:
+        """Return the file with the details of a failed run: its log, or the record in its folder."""
+        return log if (log := self.log(name)).exists() else self.outputs / "runs" / name / "metrics.json"
+
     def accepts(self, end: store.Outcome | None) -> bool:
         """Return True if a stored run counts as done."""
         return end is not None and self.accepts_rank(end.rank)
 
     def accepts_rank(self, rank: int) -> bool:
         """Return True if a stored run whose outcome has this rank counts as done; see Outcome."""
-        return rank == 0 or (self.accept_failed and (self.accept_cut_short or rank == 1))
+        return rank == 0 or (self.settings.retry == "none" and (self.accept_cut_short or rank == 1))
 
 
 def one_in(runs: int) -> int:

@@ -4,7 +4,6 @@ Slow answers are kept in the cache of compiled code while everything that they d
 """
 
 import hashlib
-import itertools
 import os
 import re
 import sys
@@ -13,7 +12,7 @@ from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from runner.base.paths import conf_dir, package_dir, robots_dir
-from runner.config.compose.files import group_options, groups, user_overrides
+from runner.config.compose.files import group_options, groups, state_of, user_overrides
 from runner.symbolic import cache
 
 _SIGN = re.compile(r"[+~]*")
@@ -174,17 +173,6 @@ def cache_key(question: Sequence[str], config_dirs: Sequence[Path]) -> str | Non
     packages = [(place, os.stat(place).st_mtime_ns) for place in sys.path if os.path.isdir(place)]  # noqa: PTH112, PTH116
     digest = hashlib.sha256(repr((sys.version, os.getcwd(), user_overrides(), question, packages)).encode())  # noqa: PTH109
     roots = (conf_dir(), robots_dir(), package_dir(), *(folder.resolve() for folder in config_dirs))
-    files = [*itertools.islice((path for root in roots for path in _tree(root)), _MOST + 1)]
-    try:
-        states = [(path, status.st_mtime_ns, status.st_size) for path in files for status in (os.stat(path),)]  # noqa: PTH116
-    except OSError:  # a file that another process has just removed
-        return None
+    states = state_of(roots, _MOST)
     digest.update(repr(states).encode())
-    return digest.hexdigest() if len(files) <= _MOST else None
-
-
-def _tree(root: Path) -> Iterator[str]:
-    """Yield the paths of the files in a folder and its subfolders, in a fixed order."""
-    for folder, folders, files in os.walk(root, followlinks=True):
-        folders[:] = sorted(name for name in folders if name != "__pycache__")
-        yield from (os.path.join(folder, name) for name in sorted(files))  # noqa: PTH118
+    return None if states is None else digest.hexdigest()

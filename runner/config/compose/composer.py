@@ -4,11 +4,9 @@ The chosen options determine the files of a config, and Hydra takes about 100 ms
 options is cached. Hydra's own function then applies the overrides of values to a copy, in about 1 ms.
 """
 
-import os
 import pickle
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +25,7 @@ from runner.base.errors import ConfigError
 from runner.base.paths import conf_dir, studies_dir, studies_with
 from runner.base.sanitize import quoted
 from runner.config.compose.composition_errors import COMPOSITION_ERRORS, explain
-from runner.config.compose.files import groups, user_overrides
+from runner.config.compose.files import groups, state_of, user_overrides
 from runner.config.compose.overrides import force, prepare
 from runner.config.compose.sources import checked_sources
 from runner.plugins.discovery import in_use
@@ -38,8 +36,6 @@ _SWEEPER = (
     ("address", str, "that of a Dask scheduler, as tcp://127.0.0.1:8786"),
     ("params", Mapping, "keys with their values"),
 )
-
-Files = tuple[tuple[str, int, int], ...]  # path, time of change in ns, size
 
 
 class Composer:
@@ -106,7 +102,7 @@ class Composer:
         # The last option of a group counts. The order of the groups has no effect.
         lines = tuple(str(each.input_line) for each in sorted(options, key=lambda each: each.key_or_group))
         studies = [studies_dir() / name / "experiment" for name in studies_with("experiment")]
-        files = _files(conf_dir(), *studies, *self.config_dirs)
+        files = state_of((conf_dir(), *studies, *self.config_dirs), _MOST)
         load = _load_options if files is not None else _load_options.__wrapped__
         others = files, default_plant(), in_use()
         config: DictConfig = pickle.loads(load(self.config_dirs, lines, root, mode, *others))  # noqa: S301
@@ -177,23 +173,3 @@ def _load_options(
     except RecursionError:
         check_composed(config)  # reports that it is nested too deeply
         raise
-
-
-def _files(*folders: Path) -> Files | None:
-    """Return the files in some folders; None if there are too many, or a folder does not exist."""
-    try:
-        found = tuple(islice((each for folder in folders for each in _below(folder)), _MOST + 1))
-    except OSError:
-        return None
-    return found if len(found) <= _MOST else None
-
-
-def _below(folder: Path | str) -> Iterator[tuple[str, int, int]]:
-    with os.scandir(folder) as entries:
-        for entry in entries:
-            if entry.is_dir():
-                yield entry.path, 0, 0
-                yield from _below(entry.path)
-            else:
-                status = entry.stat()
-                yield entry.path, status.st_mtime_ns, status.st_size

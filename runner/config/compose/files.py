@@ -8,8 +8,9 @@ meaning on another machine.
 
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
+from itertools import islice
 from pathlib import Path
 
 from runner.base.errors import ConfigError, nearest
@@ -55,6 +56,34 @@ def group_options(group: str, config_dirs: Sequence[Path] = ()) -> dict[str, str
             kind: (module.__doc__ or "").partition("\n")[0] for kind, module in CONTROLLERS.of_functions().items()
         }
     return dict(sorted(found.items()))
+
+
+def state_of(folders: Iterable[Path], most: int) -> tuple[tuple[str, int, int], ...] | None:
+    """Return path, time of change in ns and size of all files in some folders; of subfolders the path, and zeros.
+
+    Args:
+        folders: The folders.
+        most: Largest number of files and subfolders.
+
+    Returns:
+        None if there are more, or a folder or file does not exist.
+    """
+    try:
+        found = tuple(islice((each for folder in folders for each in _below(folder)), most + 1))
+    except OSError:
+        return None
+    return found if len(found) <= most else None
+
+
+def _below(folder: Path | str) -> Iterator[tuple[str, int, int]]:
+    with os.scandir(folder) as entries:
+        for entry in sorted(entries, key=lambda entry: entry.name):
+            if not entry.is_dir():
+                status = entry.stat()
+                yield entry.path, status.st_mtime_ns, status.st_size
+            elif entry.name != "__pycache__":
+                yield entry.path, 0, 0
+                yield from _below(entry.path)
 
 
 def described_files(root: Path) -> dict[str, str]:
@@ -130,23 +159,18 @@ def settings_path() -> Path:
     return Path(os.path.expanduser(base)) / "arm-control-runner" / "config.yaml"  # noqa: PTH111 - never raises
 
 
-def user_settings() -> Mapping[str, str]:
-    """Return the settings by key.
+def user_overrides() -> list[str]:
+    """Return the settings as overrides, which precede the typed overrides.
 
     Raises:
         ConfigError: with file and line, for a file that cannot be read, an unknown key or an invalid value.
     """
-    return _read(settings_path())
-
-
-def user_overrides() -> list[str]:
-    """Return the settings as overrides, which precede the typed overrides."""
-    return [f"{key}={value}" for key, value in user_settings().items()]
+    return [f"{key}={value}" for key, value in _read(settings_path()).items()]
 
 
 def outputs_dir() -> Path:
-    """Return the outputs folder for a command line that names none."""
-    return Path(user_settings().get("outputs", "outputs"))
+    """Return the outputs folder for a command line that names none; see user_overrides for errors."""
+    return Path(_read(settings_path()).get("outputs", "outputs"))
 
 
 @lru_cache(maxsize=1)

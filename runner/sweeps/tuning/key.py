@@ -50,8 +50,9 @@ class Key:
     @property
     def probes(self) -> tuple[float, ...]:
         """Both ends of the range and a value between them."""
-        between = self.low * (self.high / self.low) ** _INSIDE if self.log else self._at(_INSIDE)
-        return (self.value(self.low), self.value(between), self.value(self.high))
+        low, high = self.low, self.high
+        between = low * (high / low) ** _INSIDE if self.log else low + _INSIDE * (high - low)
+        return (self.value(low), self.value(between), self.value(high))
 
     def value(self, proposed: float) -> float:
         """Return the nearest allowed value to a proposed one: whole, or on the grid, if the key requires it."""
@@ -71,9 +72,6 @@ class Key:
     def override(self, value: float) -> str:
         """Return the override that sets the key to a value."""
         return f"{self.name}={value!r}"
-
-    def _at(self, share: float) -> float:
-        return self.low + share * (self.high - self.low)
 
 
 def read_key(override: Override) -> Key | None:

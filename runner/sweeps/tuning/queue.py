@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
@@ -20,15 +20,6 @@ from runner.sweeps.tuning.sampler import propose
 from runner.sweeps.tuning.study import Study
 from runner.sweeps.work import Chunk, Report
 from runner.sweeps.writer import Rules
-
-
-@dataclass(frozen=True)
-class _Started:
-    """Chosen trial: its values, its run, and the failure if it has none."""
-
-    params: Mapping[str, float]
-    run: str
-    failure: str
 
 
 class TrialQueue(Queue):
@@ -53,7 +44,7 @@ class TrialQueue(Queue):
         super().__init__(self._composed, self._runs, self._costs_of_runs, np.zeros(0, dtype=np.intp), rules)
         self._study, self._journal, self._loader = study, journal, loader
         self._trials, self._seed = trials, seed
-        self._started = deque[_Started]()
+        self._started = deque[Trial]()  # without values
         self._configs: dict[int, Composed] = {}
         self._ends: dict[str, store.Outcome] = {}
 
@@ -104,9 +95,9 @@ class TrialQueue(Queue):
             job = RunJob(validate(composed))
             run = job.name
         except ConfigError as error:
-            self._started.append(_Started(params, "", "; ".join(error.problems)))
+            self._started.append(Trial(params, (), "", "; ".join(error.problems)))
             return
-        self._started.append(_Started(params, run, ""))
+        self._started.append(Trial(params, (), run, ""))
         if run not in self._cell_of:
             cell = self._cell_of[run] = len(self._runs)
             self._runs.append(run)
@@ -120,7 +111,7 @@ class TrialQueue(Queue):
             self._journal.append(self._judge(self._started[0]))
             self._started.popleft()
 
-    def _judge(self, started: _Started) -> Trial:
+    def _judge(self, started: Trial) -> Trial:
         objectives = self._study.objectives
         failure = started.failure or self._ends[started.run].failure
         if not failure:
@@ -128,7 +119,7 @@ class TrialQueue(Queue):
             found = [objective.read(run) for objective in objectives]
             values = tuple(value for value in found if value is not None)
             if len(values) == len(found):
-                return Trial(started.params, values, started.run, "")
+                return replace(started, values=values)
             beyond = [objective.metric for objective, value in zip(objectives, found, strict=True) if value is None]
             failure = f"{', '.join(beyond)}: beyond every number"
-        return Trial(started.params, tuple(objective.worst for objective in objectives), started.run, failure)
+        return replace(started, values=tuple(objective.worst for objective in objectives), failure=failure)

@@ -8,7 +8,6 @@ from typing import cast
 
 import numpy as np
 from hydra.core.override_parser.overrides_parser import OverridesParser
-from hydra.core.override_parser.types import Override
 
 from runner import store
 from runner.base.dotted_keys import get
@@ -29,7 +28,7 @@ from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import RANGES, Key, read_key
 from runner.sweeps.tuning.objective import Objective, Trial, best
 from runner.sweeps.tuning.queue import TrialQueue
-from runner.sweeps.tuning.study import Fresh, Study, Tuning, journal_path
+from runner.sweeps.tuning.study import JOURNAL, Fresh, Study, Tuning
 from runner.sweeps.writer import Rules
 
 _FEWEST = 8  # repetitions on the fresh seed, enough to compare five metrics in pairs
@@ -74,9 +73,9 @@ def tune(
     store.prepare(checked.outputs)
     with at_work(checked.outputs):
         folder = study.folder(checked.outputs, checked.names)
-        rules = replace(make_rules(checked.settings, folder, trials), trace="all")
+        rules = replace(make_rules(checked.first.sweep, folder, trials), trace="all")
         folder.mkdir(parents=True, exist_ok=True)
-        journal = Journal(journal_path(folder), keys, objectives)
+        journal = Journal(folder / JOURNAL, keys, objectives)
         study.write(folder, journal.trials)
         note(folder)
         queue = TrialQueue(study, journal, loader, rules, trials, seed)
@@ -142,7 +141,11 @@ def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[s
     problems: list[str] = []
     for text, override in zip(overrides, parsed, strict=True):
         try:
-            key = _read_key(override, groups(config_dirs))
+            key = read_key(override)
+            if key is not None and key.name in groups(config_dirs):
+                raise ConfigError(f"{key.name}: is a group of options, not a number")
+            if key is not None and not is_simulated(key.name):
+                raise ConfigError(f"{key.name}: says how runs are made, not what is simulated; it cannot be tuned")
         except ConfigError as error:
             problems += error.problems
             continue
@@ -155,15 +158,6 @@ def _read(overrides: Sequence[str], config_dirs: Sequence[Path]) -> tuple[list[s
     if not keys:
         raise ConfigError(f"nothing to tune; give a key a range, as in KEY={RANGES}")
     return fixed, list(keys.values())
-
-
-def _read_key(override: Override, known_groups: Sequence[str]) -> Key | None:
-    key = read_key(override)
-    if key is not None and key.name in known_groups:
-        raise ConfigError(f"{key.name}: is a group of options, not a number")
-    if key is not None and not is_simulated(key.name):
-        raise ConfigError(f"{key.name}: says how runs are made, not what is simulated; it cannot be tuned")
-    return key
 
 
 def _check_numbers(plan: Plan, keys: Sequence[Key]) -> None:
@@ -193,6 +187,6 @@ def _check_ranges(loader: Composer, shared: Sequence[str], keys: Sequence[Key]) 
             problems |= dict.fromkeys(error.problems)
     if problems:
         raise ConfigError(problems, "  nothing was started")
-    if checked.settings.trace not in ("auto", "all"):
-        raise ConfigError(f"sweep.trace: a tuning keeps the trace of every run; found '{checked.settings.trace}'")
+    if checked.first.sweep.trace not in ("auto", "all"):
+        raise ConfigError(f"sweep.trace: a tuning keeps the trace of every run; found '{checked.first.sweep.trace}'")
     return plan, replace(checked, names=Names.of(names))

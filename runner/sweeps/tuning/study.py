@@ -12,6 +12,9 @@ from runner.store.sweep import write_jobs
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective, Trial, best
 
+JOURNAL = "journal.log"
+"""File of a tuning's journal."""
+
 _FILE = "tuning.json"
 _MEND = "the tuning's command makes it again"
 
@@ -114,11 +117,6 @@ def at_ends(tuning: Tuning) -> list[str]:
     return found
 
 
-def journal_path(folder: Path) -> Path:
-    """Return the file of a tuning's journal."""
-    return folder / "journal.log"
-
-
 def open_tuning(folder: Path) -> Tuning:
     """Open a stored tuning.
 
@@ -127,7 +125,7 @@ def open_tuning(folder: Path) -> Tuning:
     """
     from runner.sweeps.tuning.journal import read_trials  # imports Optuna
 
-    path, journal = folder / _FILE, journal_path(folder)
+    path, journal = folder / _FILE, folder / JOURNAL
     try:
         content = read_json(path, _MEND)
         study = Study(

@@ -11,7 +11,7 @@ from runner.config.compose.files import group_options
 from runner.plugins.metric_units import unit_of
 from runner.reporting.published_claims import load_claims
 from runner.store import Run
-from runner.store.baselines import Band, Bands, check_run, load_baseline, load_shipped, renew_bands, shipped_baselines
+from runner.store.baselines import Band, Bands, baseline_path, check_run, load_baseline, renew_bands, shipped_baselines
 
 
 @pytest.fixture
@@ -155,7 +155,7 @@ def test_a_failed_run_has_no_good_metric(tmp_path):
 def test_the_shipped_baselines_are_valid():
     wrong = []
     for name in shipped_baselines():
-        reference = load_shipped(name)
+        reference = load_baseline(baseline_path(name), name)
         experiment, _, preset = name.rpartition(".")
         if experiment not in group_options("experiment") or preset not in group_options("preset"):
             wrong.append(name)

@@ -17,6 +17,7 @@ from support.patience import PATIENCE
 
 from runner import store
 from runner.base.errors import ConfigError, RunnerError, StoreError
+from runner.config.limits import SweepConfig
 from runner.simulation.compiled.loops import CompiledLoops
 from runner.simulation.loop import InterpretedLoops
 from runner.sweeps import work
@@ -25,6 +26,8 @@ from runner.sweeps.estimate import Estimate
 from runner.sweeps.run import Engine
 from runner.sweeps.writer import one_in
 from runner.symbolic.engine import evaluator
+
+SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None)
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "trajectory=quintic", "duration=1")
 PERIODS = "controller.period=0.01,0.06"  # the second one diverges
@@ -115,7 +118,7 @@ def test_traces_are_kept_as_asked_and_metrics_always(sweep, tmp_path):
 
 
 def test_one_in_a_hundred_is_sampled(tmp_path):
-    rules = work.Rules((), tmp_path, tmp_path, "sample", True, True, False, 1, None)
+    rules = work.Rules((), tmp_path, tmp_path, "sample", SETTINGS, True)
     kept = sum(rules.keeps_trace(f"{np.random.default_rng(n).bytes(12).hex()}", False) for n in range(5000))
     assert 30 <= kept <= 70
     assert all(rules.keeps_trace(f"{n:024x}", True) for n in range(20))
@@ -129,8 +132,7 @@ def test_the_sample_of_a_very_large_sweep_is_no_larger_than_that_of_a_large_one(
 
 def test_the_sample_of_a_larger_sweep_is_part_of_that_of_a_smaller_one(tmp_path):
     small, large = (
-        work.Rules((), tmp_path, tmp_path, "sample", True, True, False, 1, None, one_in(runs))
-        for runs in (10**4, 10**6)
+        work.Rules((), tmp_path, tmp_path, "sample", SETTINGS, True, one_in(runs)) for runs in (10**4, 10**6)
     )
     names = [f"{number:024x}" for number in range(20_000)]
     kept = [name for name in names if large.keeps_trace(name, False)]

@@ -5,6 +5,7 @@ from support.short_runs import SHORT
 
 from runner import store
 from runner.config.compose.composer import Composer
+from runner.config.limits import SweepConfig
 from runner.sweeps.tuning.journal import Journal
 from runner.sweeps.tuning.key import Key
 from runner.sweeps.tuning.objective import Objective
@@ -12,6 +13,8 @@ from runner.sweeps.tuning.queue import TrialQueue
 from runner.sweeps.tuning.study import Study
 from runner.sweeps.work import work
 from runner.sweeps.writer import Rules
+
+SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None)
 
 
 @pytest.fixture
@@ -22,7 +25,7 @@ def queue(tmp_path):
     store.prepare(tmp_path)
     folder = tmp_path / "tunings" / "one"
     study.write(folder, [])
-    rules = Rules((), tmp_path, folder, "all", True, True, False, 1, None)
+    rules = Rules((), tmp_path, folder, "all", SETTINGS, True)
     return TrialQueue(study, Journal(folder / "journal.log", keys, goals), Composer(), rules, 5, 0)
 
 

@@ -10,7 +10,7 @@ from runner.store import SchemaError
 from runner.store.listing import list_entries, runs_of_sweeps
 from runner.store.seal import sealed_json
 from runner.sweeps.status import at_work
-from runner.sweeps.tuning.study import journal_path, open_tuning
+from runner.sweeps.tuning.study import JOURNAL, open_tuning
 
 DIVERGES = ("plant=rk4", "controller.singularity_damping=0", "duration=1")
 STOP = "sweep.on_failure=stop"
@@ -61,7 +61,7 @@ def test_more_trials_add_to_those_that_are_there(tuned, simulated_runs):
 @pytest.mark.costs(2)
 def test_trials_do_not_depend_on_where_a_tuning_was_interrupted(tuned):
     whole = tuned(trials=12)
-    journal = journal_path(whole.folder)
+    journal = whole.folder / JOURNAL
     lines = journal.read_bytes().splitlines(keepends=True)
     for kept in (2, 11):
         journal.write_bytes(b"".join(lines[:kept]))

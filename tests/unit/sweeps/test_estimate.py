@@ -42,7 +42,9 @@ def estimated(monkeypatch):
         monkeypatch.setattr(pace, "seconds_together", found_together)
         monkeypatch.setattr(pace, "seconds_per_tick", found)
         checked = SimpleNamespace(
-            costs=np.array(costs), calibrations=calibrations, settings=SimpleNamespace(time_limit=limit)
+            costs=np.array(costs),
+            calibrations=calibrations,
+            first=SimpleNamespace(sweep=SimpleNamespace(time_limit=limit)),
         )
         return estimate(Plan(), checked, np.arange(len(costs)), kept)
 

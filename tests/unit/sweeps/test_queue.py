@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 
 from runner.config.composed import Composed
+from runner.config.limits import SweepConfig
 from runner.store import Outcome
 from runner.sweeps import queue as queues
 from runner.sweeps.queue import Queue
 from runner.sweeps.work import Report
 from runner.sweeps.writer import Rules
+
+SETTINGS = SweepConfig(trace="auto", retry="none", on_failure="continue", attempts=1, time_limit=None)
 
 
 def alike(cells):
@@ -16,7 +19,7 @@ def alike(cells):
 
 
 def queue_of(tmp_path, costs):
-    rules = Rules((), tmp_path, tmp_path, "never", True, True, False, 1, None)
+    rules = Rules((), tmp_path, tmp_path, "never", SETTINGS, True)
     names = [f"{cell:024x}" for cell in range(len(costs))]
     return Queue(alike, names, costs, np.arange(len(costs)), rules)
 
