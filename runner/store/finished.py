@@ -50,10 +50,8 @@ def find_outcome(outputs: Path, name: str) -> Outcome | None:
 class Finished(Outcomes):
     """Finished runs at the time of construction, those in shards by ascending name.
 
-    If a run has two outcomes, the better one counts.
-
-    A good run is better than a failed run, and a failed run is better than an aborted run. Of equal outcomes, the one
-    in a run folder counts, then the one in the later shard.
+    If a run has two outcomes, the better one counts. A good run is better than a failed run, and a failed run is better
+    than an aborted run. Of equal outcomes, the one in a run folder counts, then the one in the later shard.
 
     Args:
         outputs: The outputs folder.
@@ -86,7 +84,7 @@ class Finished(Outcomes):
         self.row = kept - starts[self.shard]
         caveats = np.concatenate([part.caveats for part in parts] or [np.zeros(0, dtype=np.int32)])
         failed = np.flatnonzero(rank[kept]).tolist()
-        failures = {place: parts[self.shard[place]].failures[int(self.row[place])] for place in failed}
+        failures = {place: parts[self.shard[place]].failures.get(int(self.row[place]), "") for place in failed}
         super().__init__(names[kept], rank[kept], caveats[kept], failures)
 
     def folders(self, names: Names) -> set[str]:

@@ -150,22 +150,21 @@ def write_shard(outputs: Path, name: str, runs: Sequence[Run | ShardRow]) -> Pat
     return path
 
 
+@dataclass(eq=False)
 class Outcomes(Sequence[Outcome]):
     """Outcomes of runs in shards, in a few bytes each.
 
-    Args:
+    Attributes:
         names: Name of each run, shape (n,).
         rank: Rank of each run, shape (n,); see Outcome.
         caveats: Number of caveats of each run, shape (n,).
         failures: Failures by index, only of failed runs.
-
-    Attributes: as given.
     """
 
-    def __init__(
-        self, names: Texts, rank: NDArray[np.int8], caveats: NDArray[np.int32], failures: Mapping[int, str]
-    ) -> None:
-        self.names, self.rank, self.caveats, self.failures = names, rank, caveats, failures
+    names: Texts
+    rank: NDArray[np.int8]
+    caveats: NDArray[np.int32]
+    failures: Mapping[int, str]
 
     def __len__(self) -> int:
         return len(self.names)

@@ -43,7 +43,7 @@ class Rules:
 
     @property
     def stop_at_failure(self) -> bool:
-        """Whether the first failed run ends the sweep."""
+        """True if the first failed run ends the sweep."""
         return self.settings.on_failure == "stop"
 
     @property
