@@ -1,7 +1,6 @@
 """Third-party arms that the doctor writes from a URDF."""
 
 import functools
-import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -92,7 +91,7 @@ def _examine(name):
     if name in SHIPPED:
         path, tip = SHIPPED[name]
         return examination.examine(DATA / path, tip, name)
-    path = folder() / f"{os.getpid()}_{name}.urdf"
+    path = folder() / f"{name}.urdf"
     path.write_text(MADE[name])
     return examination.examine(path, None, name)
 
