@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from support.step_response import step_response
 
 from runner.store import open_run
-from runner.studies.meca500.frequency_response import step_response
 
 STILL = ("robot=meca500", "trajectory.start=[0.18,0.01,0.06]", "trajectory.goal=[0.18,0.01,0.06]")
 PUSH = (*STILL, "environment=push", "environment.start_time=0.1", "duration=1.2")

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 from support.physics import assert_energy_kept
+from support.step_response import step_response
 
 from runner.base.errors import ConfigError
 from runner.controllers.force.admittance_filter import Admittance, AdmittanceFilter, discretise
 from runner.sensing.wrench import wrench_transform
-from runner.studies.meca500.frequency_response import step_response
 
 MASS = np.array([2.0, 3.0, 1.0, 0.02, 0.03, 0.01])
 DAMPING = np.array([20.0, 120.0, 0.0, 0.1, 0.9, 0.2])  # light, heavy, none
