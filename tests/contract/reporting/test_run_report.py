@@ -43,6 +43,11 @@ def test_the_report_on_two_runs_is_as_recorded(runs, as_recorded):
     as_recorded("reports", "two engines", runs_document([runs["rk4"], runs["mujoco"]]))
 
 
+def test_runs_beyond_those_that_can_be_told_apart_are_not_drawn(runs):
+    document = runs_document([runs["goal"], runs["other seed"]] * 5)
+    assert "2 runs are not drawn" in [notice.title for notice in blocks_of(document, Notice)]
+
+
 def test_a_finished_run_is_told_whole(finished):
     document = run_document(finished)
     assert document.title.startswith("Macro, operational space, quintic, ")
