@@ -60,6 +60,7 @@ def test_derivatives_of_torques_are_those_of_the_ticks_at_which_they_act(analyse
         assert found.derivatives[name] == pytest.approx(by.derivatives, rel=1e-6), name
 
 
+@pytest.mark.costs(5)
 def test_an_arm_that_is_heavier_in_all_links_moves_alike_with_larger_torques(analysed):
     """Law and plant are both proportional to the masses where nothing clips, so that the arm takes the same way."""
     for overrides, groups in ((MACRO, OWN), (SEVEN, ("masses",))):
@@ -81,6 +82,7 @@ def test_the_sample_s_share_of_the_noise(analysed):
     assert found.elasticities("steady_state_error")[0] == pytest.approx(1.0, abs=1e-3)
 
 
+@pytest.mark.costs(3)
 def test_a_clipped_peak_is_the_limit(analysed):
     found = analysed(*HARD, groups=OWN)
     at = {parameter.name: place for place, parameter in enumerate(found.parameters)}

@@ -119,6 +119,7 @@ def check_completeness(found, overrides):
     assert len(rest) > 5
 
 
+@pytest.mark.costs(3)
 def test_derivatives_by_gains_are_those_of_runs_composed_again(analysed):
     check_derivatives(analysed(*TIED, groups=("gains",)), TIED)
 
