@@ -183,7 +183,7 @@ def _error(checked: CheckedEquation) -> str:
     if checked.verdict != "wrong as printed":
         return f"within {quantity(entry.tolerance, entry.unit, 2)}"
     if math.isinf(measured.largest):
-        return f"without bound, typically {quantity(measured.typical, entry.unit)}"
+        return "without bound"
     return f"up to {quantity(measured.largest, entry.unit)}, typically {quantity(measured.typical, entry.unit)}"
 
 
