@@ -10,7 +10,7 @@ from pydantic import Field
 
 from runner.base.arrays import FloatArray
 from runner.base.errors import ConfigError
-from runner.base.lazy_modules import pin
+from runner.base.lazy_modules import eigen, pin
 from runner.plants.decoupled import TorquePlantConfig, assemble_flexible, assemble_plant
 from runner.plants.decoupled import default_step as default_step
 from runner.plants.flexible_config import FlexibleJointsConfig
@@ -230,7 +230,7 @@ def _refused(error: ValueError) -> ConfigError:
 
 def _is_flat(body: Any) -> bool:
     """Return True if a body's inertia about an axis is nearly zero, which MuJoCo rejects in a tensor."""
-    moments = np.linalg.eigvalsh(_tensor(body))
+    moments = eigen.SelfAdjointEigenSolver(_tensor(body)).eigenvalues()
     return bool(moments[0] < _LEAST_OF_TENSOR and moments.any())
 
 
@@ -244,8 +244,8 @@ def _give_inertia(body: Any, least: float) -> None:
 
     A disc's moment may exceed it by rounding, which MuJoCo rejects.
     """
-    moments, axes = np.linalg.eigh(_tensor(body))
-    moments = np.maximum(moments, least)
+    principal = eigen.SelfAdjointEigenSolver(_tensor(body))
+    moments, axes = np.maximum(principal.eigenvalues(), least), principal.eigenvectors().copy()
     moments[0] = max(moments[0], (1.0 + _ROUNDING) * moments[2] - moments[1])
     axes[:, 0] *= np.linalg.det(axes)  # right-handed
     along = pin.Quaternion(*body.iquat.tolist()) * pin.Quaternion(axes)

@@ -20,7 +20,7 @@ from runner.symbolic.cache import read_answer, write_answer
 
 # Folders and their modules. A module's id follows "="; without "=" it is the module's name.
 _TABLE = """
-    base: trace
+    base: portable trace
     calibration: __init__=calibration.__init__ gravity=calibration.gravity orientations procedure
         tool_centre_point=calibration.tool_centre_point tool_direction=calibration.tool_direction
         uncertainty=repeatability weighing
