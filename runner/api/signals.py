@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 
 from runner import store
-from runner.base.errors import ConfigError, RunnerError, unknown
+from runner.base.errors import RunnerError, unknown
 from runner.base.quantities import label_with_unit
 from runner.reporting.charts.scales import curves_in_readable_units
 from runner.reporting.charts.static import as_figure, draw
@@ -23,7 +23,6 @@ from runner.store.run import units_of
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runner.config.run import RunConfig
 
 _JOINT = re.compile(r"(q|dq|tau)(\d+)(_command)?")
 _AXIS = re.compile(r"(\w+)_([xyz])")
@@ -75,8 +74,9 @@ def _simulated(run: store.Run, repetition: int) -> Signals:
     from runner.simulation.assembly import metric_context
     from runner.simulation.run import simulate_repetition
     from runner.store.writing import trace_table
+    from runner.sweeps.rerun import checked_config
 
-    config = _checked(run, repetition)
+    config = checked_config(run, f"repetition {repetition} of {run.hash}")
     trace = simulate_repetition(config, repetition)
     found = evaluate(trace, metric_context(config), [])
     for name in run.metrics:
@@ -89,25 +89,6 @@ def _simulated(run: store.Run, repetition: int) -> Signals:
             )
     table = trace_table(trace)
     return Signals(table.to_pandas(), units_of(table))
-
-
-def _checked(run: store.Run, repetition: int) -> "RunConfig":
-    """Return the config of a run; raise an error if the code or the robot has changed since the run."""
-    from runner.config.validation import validate
-
-    cannot = f"repetition {repetition} of {run.hash} cannot be simulated again: "
-    if store.run_hash(run.config, run.urdf) != run.hash:
-        raise RunnerError(
-            f"{cannot}the code has changed since the run (the runner, a plug-in, or the version of an engine), or one "
-            "of its plug-ins is not loaded; simulate it again with runner.run"
-        )
-    try:
-        config = validate(run.composed)
-    except ConfigError as error:
-        raise RunnerError(f"{cannot}{'; '.join(error.problems)}") from None
-    if config.arm.urdf != run.urdf:
-        raise RunnerError(f"{cannot}the file of its robot has changed since the run; simulate it again with runner.run")
-    return config
 
 
 def families(columns: Sequence[str]) -> dict[str, dict[str, str]]:
