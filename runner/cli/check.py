@@ -53,13 +53,15 @@ def run(options: argparse.Namespace) -> int:
     from runner import store
     from runner.store.baselines import Bands, cell_names, load_baseline, renew_bands, save_baseline
     from runner.store.kinds import kind_of
+    from runner.sweeps.rounding import Sensitivity, find_sensitive
 
     if options.save_baseline:
         path, sweep = options.save_baseline, store.open_sweep(options.folder)
         before = load_baseline(path) if path.exists() else None
         bands = before if isinstance(before, Bands) else None
-        count = renew_bands(bands, list(sweep.runs()), path) if bands else save_baseline(sweep, path)
-        print(f"saved: {count} metrics of {options.folder} are now in {path}")
+        found = Sensitivity() if bands else find_sensitive(sweep)
+        count = renew_bands(bands, list(sweep.runs()), path) if bands else save_baseline(sweep, path, found.changes)
+        print(f"saved: {count} metrics of {options.folder} are now in {path}{found.in_words()}")
         return 0
     baseline = load_baseline(options.baseline) if options.baseline else None
     if not (baseline is None or isinstance(baseline, Bands)):

@@ -63,6 +63,7 @@ class Spread(StrictModel):
         min: Smallest value; null if no repetition has one.
         max: Largest value; null if any repetition has none.
         seeds: Number of repetitions.
+        sensitive: Relative change of the metric through rounding; none if it is not sensitive to rounding.
     """
 
     unit: str
@@ -70,6 +71,7 @@ class Spread(StrictModel):
     min: float | None
     max: float | None
     seeds: int
+    sensitive: float | None = None
 
     def holds(self, value: float | None) -> bool:
         """Return True if a median is in the range of the seeds; no value counts as above every number."""
@@ -202,8 +204,13 @@ def check_run(run: Run, baseline: Bands) -> list[Finding]:
     return findings
 
 
-def save_baseline(sweep: Sweep, path: Path) -> int:
+def save_baseline(sweep: Sweep, path: Path, sensitive: Mapping[str, Mapping[str, float]]) -> int:
     """Write the baseline of a sweep; return its number of metrics.
+
+    Args:
+        sweep: The sweep.
+        path: The file.
+        sensitive: Relative change through rounding of each metric that is sensitive to it, by the hash of the run.
 
     Raises:
         StoreError: if a run of the sweep is missing or failed, or the file cannot be written.
@@ -212,8 +219,13 @@ def save_baseline(sweep: Sweep, path: Path) -> int:
     for cell, run in zip(cell_names(sweep), sweep.runs(), strict=True):
         if run.failure is not None:
             raise StoreError(f"a failed run cannot be in a baseline: [{cell}] {run.failure}")
+        changes = sensitive.get(run.hash, {})
         cells[cell] = {
-            name: {**{key: metric[key] for key in ("unit", "median", "min", "max")}, "seeds": run.record["repetitions"]}
+            name: {
+                **{key: metric[key] for key in ("unit", "median", "min", "max")},
+                "seeds": run.record["repetitions"],
+                **({"sensitive": changes[name]} if name in changes else {}),
+            }
             for name, metric in run.record["metrics"].items()
         }
     text = yaml.dump({"schema": SCHEMA, "cells": cells}, sort_keys=False, width=120, Dumper=yaml.CSafeDumper)
