@@ -35,6 +35,7 @@ class Gathered:
         caveats: Caveats of each cell.
         rules: Rules that were checked for caveats, each with the number of cells.
         configs: Each resolved config with its cells; the configs of a shard's cells may differ in the seed.
+        rounding: Relative change of each metric through rounding, shape (cells,); 0 if it is unknown.
     """
 
     def __init__(self, cells: int) -> None:
@@ -46,6 +47,7 @@ class Gathered:
         self.caveats: list[Sequence[Mapping[str, Any]]] = [()] * cells
         self.rules: list[tuple[Mapping[str, Any] | None, int]] = []
         self.configs: list[tuple[Mapping[str, Any], list[Cells]]] = []
+        self.rounding: dict[str, FloatArray] = {}
         self._places: dict[object, int] = {}  # index of each config, by its JSON without the seed
         self._values: dict[str, FloatArray] = {}
         self._measured = np.zeros(cells, dtype=bool)
@@ -57,6 +59,8 @@ class Gathered:
         self.seeds[cell] = int(run.provenance["seed"])
         self._count_rules(run.caveat_rules, 1)
         self._note(run)
+        for name, change in ({} if run.rounding is None else run.rounding["metrics"]).items():
+            self.rounding.setdefault(name, np.zeros(len(self.hashes)))[cell] = change
         for name, metric in run.metrics.items():
             own = run.values(name)
             row = np.where(np.isnan(own), np.inf, own)
@@ -83,7 +87,8 @@ class Gathered:
             provenance = record.field("provenance")
             seeds, caveats = provenance.field("seed").to_numpy(), _caveats(record)
             metrics, made_by = list(_metrics(table)), list(_made_by(provenance))
-            rules = _rules(record) if seeds.dtype.kind == "i" else None
+            columnar = seeds.dtype.kind == "i" and record.type.get_field_index("rounding") < 0
+            rules = _rules(record) if columnar else None
         if rules is None:
             for row, cell in zip(rows.tolist(), cells.tolist(), strict=True):
                 self.add_run(cell, open_row(path, row))

@@ -45,6 +45,7 @@ class Measurements:
         configs: Each resolved config with its cells; the configs of these cells may differ in the seed.
         finer: Values of each metric in the first repetitions on a finer step of the plant, as `values`; NaN if
             unknown.
+        rounding: Relative change of each metric through rounding, shape (cells,); 0 if it is unknown.
         name: Name in a comparison, such as "A".
         folder: Folder of the sweep or run.
         command: The command that makes the sweep or run.
@@ -66,6 +67,7 @@ class Measurements:
     differences: Sequence[Difference] = ()
     configs: Sequence[tuple[Mapping[str, Any], NDArray[np.intp]]] = ()
     finer: Mapping[str, FloatArray] = field(default_factory=dict)
+    rounding: Mapping[str, FloatArray] = field(default_factory=dict)
     name: str = ""
     folder: Path = Path()
     command: str = ""
@@ -325,6 +327,7 @@ def _measured(overrides: Sequence[Sequence[str]], gathered: Gathered) -> Measure
         gathered.seeds,
         resolved.differences(axes),
         [(config, np.concatenate(members)) for config, members in gathered.configs],
+        rounding=gathered.rounding,
     )
 
 

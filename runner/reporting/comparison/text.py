@@ -8,7 +8,7 @@ import numpy as np
 
 from runner.base.dotted_keys import dotted, leaves
 from runner.base.sanitize import one_line
-from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, sentences, short_table
+from runner.reporting.answers import EXPLAINED, HEADER, Answer, Asked, ask, sentences, short_table
 from runner.reporting.comparison.differences import Value, find_differences
 from runner.reporting.comparison.pairs import label_text, match
 from runner.reporting.comparison.sweeps import (
@@ -109,7 +109,8 @@ def run_lines(
     for side, run in zip(sides, runs, strict=True):
         yield one_line(f"{side.name}  {run.folder}  {run.failure or run.status}")
     yield ""
-    yield one_line(find_differences(match(*sides)).in_words(a, b))
+    pairs = match(*sides)
+    yield one_line(find_differences(pairs).in_words(a, b))
     yield _changed_keys("config", [simulated_part(run.config) for run in runs], [a, b])
     if runs[0].urdf != runs[1].urdf:
         yield "  the text of robot.urdf differs"
@@ -131,7 +132,12 @@ def run_lines(
         header = ["metric", "unit", *numbers(f"{b} - {a}", *HEADER[1:]), f"{b} is"]
         yield terminal(Table("", header, [[one.metric, one.unit, *one.plain_cells] for one in answers]))
         yield EXPLAINED
-    elif not everything:
+        return
+    both = [name for name in dict.fromkeys(names) if all(name in side.values for side in sides)]
+    rounded = [one.metric for one in ask([pairs], both) if one.comparison.rounding and one.within_rounding]
+    if rounded and pairs.share_seeds.all():
+        yield f"equal up to rounding, which changes them as much: {', '.join(rounded)}"
+    if not everything:
         yield ALL
 
 
