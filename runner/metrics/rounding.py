@@ -46,7 +46,7 @@ class RoundingGrowth:
 
     def record(self) -> dict[str, Any]:
         """Return the content for metrics.json."""
-        return asdict(self)
+        return {**asdict(self), "failures": list(self.failures)}
 
 
 def move_start(q: FloatArray, signs: FloatArray) -> FloatArray:

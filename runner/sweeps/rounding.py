@@ -28,7 +28,7 @@ class Sensitivity:
     left: set[str] = field(default_factory=set)
 
     def in_words(self) -> str:
-        """Return what was found, to be appended to a sentence; empty if nothing is sensitive and all runs are known."""
+        """Return the number of sensitive metrics and of runs that are not marked, as lines after a first one."""
         count = sum(map(len, self.changes.values()))
         texts = [f"{count} {'is' if count == 1 else 'are'} sensitive to rounding"] if count else []
         if self.lost:

@@ -15,8 +15,8 @@ def caveat_of(growth: RoundingGrowth, threshold: float) -> Caveat | None:
     """
     if growth.largest <= threshold:
         return None
-    told = f"rounding errors grow by a factor of {growth.factor:.2g} until t = {growth.at:.4g} s"
-    text = f"{told}: another processor gives {_told(growth, threshold)}; judge it by repetitions with noise"
+    head = f"rounding errors grow by a factor of {growth.factor:.2g} until t = {growth.at:.4g} s"
+    text = f"{head}: another processor gives {_told(growth, threshold)}; judge it by repetitions with noise"
     return Caveat(NAME, text, growth.largest)
 
 
